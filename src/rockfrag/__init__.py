@@ -1,0 +1,1 @@
+"""Rocking and overturning of free-standing objects in earthquakes."""

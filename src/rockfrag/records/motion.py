@@ -1,0 +1,119 @@
+"""What every later stage receives: one component of ground or floor acceleration."""
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.files import write_table
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One horizontal acceleration history, linear between samples.
+
+    Attributes
+    ----------
+    acceleration
+        Acceleration [m/s²], shape (n,), read-only.
+    dt
+        Sampling interval [s].
+    name
+        Short name, unique within a study.
+    metadata
+        What is known about it: ``event``, ``station``, ``component``, ``start_time``, ``floor``, …
+    provenance
+        One entry per step it went through: ``{"step": name, **parameters}``.
+
+    Raises
+    ------
+    InputError
+        If there is no sample, a sample is not finite, or ``dt`` is not a positive number.
+    """
+
+    acceleration: NDArray[np.float64]
+    dt: float
+    name: str = ""
+    metadata: Mapping[str, Any] = field(default_factory=dict)
+    provenance: tuple[Mapping[str, Any], ...] = ()
+
+    def __post_init__(self) -> None:
+        acceleration = np.array(self.acceleration, dtype=np.float64)
+        if acceleration.ndim != 1 or acceleration.size == 0:
+            raise InputError(
+                f"motion {self.name!r}: acceleration needs shape (n,) with n ≥ 1, "
+                f"got {acceleration.shape}."
+            )
+        if not np.isfinite(acceleration).all():
+            first = int(np.flatnonzero(~np.isfinite(acceleration))[0])
+            raise InputError(f"motion {self.name!r}: sample {first} is not a finite number.")
+        if not (np.isfinite(self.dt) and self.dt > 0):
+            raise InputError(
+                f"motion {self.name!r}: dt must be a positive number of seconds, got {self.dt}."
+            )
+        acceleration.setflags(write=False)
+        object.__setattr__(self, "acceleration", acceleration)
+        object.__setattr__(self, "dt", float(self.dt))
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Time of each sample [s], shape (n,), from zero."""
+        return np.arange(self.acceleration.size) * self.dt
+
+    @property
+    def pga(self) -> float:
+        """Peak absolute acceleration [m/s²]."""
+        return float(np.abs(self.acceleration).max())
+
+    def after(
+        self, step: str, acceleration: NDArray[np.float64], dt: float | None = None, **parameters: Any
+    ) -> "Motion":
+        """Return the motion that ``step`` made of this one, with the step in its provenance."""
+        return replace(
+            self,
+            acceleration=acceleration,
+            dt=self.dt if dt is None else dt,
+            provenance=(*self.provenance, {"step": step, **parameters}),
+        )
+
+
+def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) -> None:
+    """Write motions to one Parquet file, a row per motion.
+
+    Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and
+    ``provenance`` (JSON).
+    """
+    table = pd.DataFrame(
+        {
+            "name": [m.name for m in motions],
+            "dt_s": [m.dt for m in motions],
+            "npts": [m.acceleration.size for m in motions],
+            "acceleration_m_s2": [m.acceleration for m in motions],
+            "metadata": [json.dumps(dict(m.metadata), sort_keys=True) for m in motions],
+            "provenance": [
+                json.dumps([dict(p) for p in m.provenance], sort_keys=True) for m in motions
+            ],
+        }
+    )
+    write_table(table, path)
+
+
+def read_motion_set(path: str | os.PathLike[str]) -> list[Motion]:
+    """Read what :func:`write_motion_set` wrote."""
+    table = pd.read_parquet(path)
+    return [
+        Motion(
+            acceleration=np.asarray(row.acceleration_m_s2, dtype=np.float64),
+            dt=row.dt_s,
+            name=row.name,
+            metadata=json.loads(row.metadata),
+            provenance=tuple(json.loads(row.provenance)),
+        )
+        for row in table.itertuples(index=False)
+    ]

@@ -1,0 +1,252 @@
+"""Rigid blocks and stacks of two: what every integrator, fast or plain, starts from.
+
+Conventions (thesis chapter 2, ``docs/derivation.md``): a rotation θ > 0 is clockwise and its pole is the
+right corner, s = +1; an acceleration a > 0 of the ground pushes blocks towards θ < 0.  Lengths are read
+in the standing block's frame, x to the right and y up, and
+R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwise.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from rockfrag.errors import InputError
+from rockfrag.units import STANDARD_GRAVITY
+
+
+class Vector(NamedTuple):
+    """A vector in the plane [m]: x to the right, y up."""
+
+    x: float
+    y: float
+
+    def turned(self, angle: float) -> "Vector":
+        """Turn clockwise by ``angle`` [rad]: R(angle)(x, y)."""
+        c, s = math.cos(angle), math.sin(angle)
+        return Vector(self.x * c + self.y * s, -self.x * s + self.y * c)
+
+    def minus(self, other: "Vector") -> "Vector":
+        """Return the vector from ``other``'s tip to this one's."""
+        return Vector(self.x - other.x, self.y - other.y)
+
+
+def _positive(owner: str, name: str, value: float, unit: str) -> None:
+    if not (math.isfinite(value) and value > 0):
+        raise InputError(f"{owner}: {name} must be a positive number of {unit}, got {value}.")
+
+
+def _finite(owner: str, name: str, value: float, unit: str) -> None:
+    if not math.isfinite(value):
+        raise InputError(f"{owner}: {name} must be a finite number of {unit}, got {value}.")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A rigid body that stands on two edges.
+
+    Parameters
+    ----------
+    width
+        Distance between the two edges it stands and rocks on, 2b [m].
+    height
+        Height of the block, 2h [m]; a statue on a pedestal stands at the pedestal's height.
+    mass
+        Mass [kg].
+    inertia
+        Moment of inertia about the centre of gravity [kg m²]; that of a uniform rectangle,
+        m (b² + h²) / 3, if not given.
+    cg_height
+        Height of the centre of gravity above the base [m]; half the height if not given.
+    cg_offset
+        Distance of the centre of gravity to the right of the middle of the base [m].
+    lean
+        Angle by which an uneven base makes the block lean clockwise as it stands [rad].
+
+    Raises
+    ------
+    InputError
+        If a length, mass or inertia is not positive, or if the block cannot stand because its centre
+        of gravity is not above its base.
+    """
+
+    width: float
+    height: float
+    mass: float
+    inertia: float | None = None
+    cg_height: float | None = None
+    cg_offset: float = 0.0
+    lean: float = 0.0
+
+    def __post_init__(self) -> None:
+        _positive("Block", "width", self.width, "metres")
+        _positive("Block", "height", self.height, "metres")
+        _positive("Block", "mass", self.mass, "kilograms")
+        if self.inertia is not None:
+            _positive("Block", "inertia", self.inertia, "kg m²")
+        if self.cg_height is not None:
+            _positive("Block", "cg_height", self.cg_height, "metres")
+        _finite("Block", "cg_offset", self.cg_offset, "metres")
+        _finite("Block", "lean", self.lean, "radians")
+        if min(self.critical_angle(+1), self.critical_angle(-1)) <= 0:
+            raise InputError(
+                f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
+                f"gravity is not above its base of {self.width} m, so it cannot stand."
+            )
+
+    @property
+    def b(self) -> float:
+        """Half the width [m]."""
+        return self.width / 2
+
+    @property
+    def h(self) -> float:
+        """Height of the centre of gravity above the base, before any lean [m]."""
+        return self.height / 2 if self.cg_height is None else self.cg_height
+
+    @property
+    def centroidal_inertia(self) -> float:
+        """Moment of inertia about the centre of gravity [kg m²]."""
+        if self.inertia is not None:
+            return self.inertia
+        return self.mass * (self.width**2 + self.height**2) / 12
+
+    @property
+    def slenderness(self) -> float:
+        """Height over width, H/B [-]."""
+        return self.height / self.width
+
+    @property
+    def centre(self) -> Vector:
+        """Centre of gravity of the standing block, from the middle of its base [m]."""
+        return Vector(self.cg_offset, self.h).turned(self.lean)
+
+    def arm(self, pole: int) -> Vector:
+        """Vector from the pole (+1 right, -1 left) to the centre of gravity as it stands [m]."""
+        return self.centre.minus(Vector(pole * self.b, 0.0))
+
+    def critical_angle(self, pole: int) -> float:
+        """Rotation about ``pole`` at which the block balances on it, a positive angle [rad]."""
+        arm = self.arm(pole)
+        return math.atan2(-pole * arm.x, arm.y)
+
+    @property
+    def alpha(self) -> float:
+        """The smaller of the two critical angles, θc = atan(b/h) of a symmetric block [rad]."""
+        return min(self.critical_angle(+1), self.critical_angle(-1))
+
+    def radius(self, pole: int = 1) -> float:
+        """Distance R from the pole to the centre of gravity [m]."""
+        return math.hypot(*self.arm(pole))
+
+    def pole_inertia(self, pole: int = 1) -> float:
+        """Moment of inertia about the pole, I_O = I_C + m R² [kg m²]."""
+        return self.centroidal_inertia + self.mass * self.radius(pole) ** 2
+
+    def frequency(self, pole: int = 1, g: float = STANDARD_GRAVITY) -> float:
+        """Frequency parameter p = √(m g R / I_O) [1/s]; thesis eq. 2.16 with its square mended."""
+        return math.sqrt(self.mass * g * self.radius(pole) / self.pole_inertia(pole))
+
+    def momentum_restitution(self, pole_before: int = 1) -> float:
+        """Ratio of angular velocities after and before an impact that conserves momentum [-].
+
+        The block turns about ``pole_before`` and comes down on the other pole (Housner 1963; thesis
+        eq. 2.12, 2.14: 1 - 1.5 sin²α for a uniform block).
+        """
+        before, after = self.arm(pole_before), self.arm(-pole_before)
+        product = before.x * after.x + before.y * after.y
+        return (self.centroidal_inertia + self.mass * product) / self.pole_inertia(-pole_before)
+
+
+@dataclass(frozen=True)
+class Stack:
+    """A statue standing on a pedestal, both free to rock.
+
+    Parameters
+    ----------
+    pedestal, statue
+        The lower and the upper block (blocks 1 and 2 of the thesis).
+    offset
+        Distance of the middle of the statue's base to the right of the pedestal's middle [m].
+
+    Raises
+    ------
+    InputError
+        If the statue's base reaches beyond the pedestal's, or the two together cannot stand.
+    """
+
+    pedestal: Block
+    statue: Block
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        _finite("Stack", "offset", self.offset, "metres")
+        if abs(self.offset) + self.statue.b > self.pedestal.b * (1 + 1e-12):
+            raise InputError(
+                f"Stack: the statue's base (width {self.statue.width} m, offset {self.offset} m) "
+                f"reaches beyond the pedestal's (width {self.pedestal.width} m)."
+            )
+        for pole in (+1, -1):
+            # the statue must stand on its leaning pedestal, and both together on the ground
+            statue, whole = self.statue_arm(pole), self.common_arm(pole)
+            if pole * statue.x >= 0 or pole * whole.x >= 0:
+                raise InputError(
+                    "Stack: a centre of gravity is not above its base once the pedestal's lean "
+                    "is counted, so the stack cannot stand."
+                )
+
+    def interface_pole(self, pole: int) -> Vector:
+        """Statue's pole as it stands, from the middle of the pedestal's base [m]."""
+        return Vector(self.offset + pole * self.statue.b, self.pedestal.height).turned(
+            self.pedestal.lean
+        )
+
+    def reach(self, ground_pole: int, statue_pole: int) -> Vector:
+        """Vector d from the pedestal's pole to the statue's pole as they stand [m].
+
+        Its length is l (poles on the same side) or l' (opposite sides) of thesis eq. 2.61, 2.63.
+        """
+        return self.interface_pole(statue_pole).minus(Vector(ground_pole * self.pedestal.b, 0.0))
+
+    def statue_arm(self, statue_pole: int) -> Vector:
+        """Vector r2 from the statue's pole to its centre of gravity as it stands [m]."""
+        return self.statue.arm(statue_pole).turned(self.pedestal.lean)
+
+    def common_arm(self, ground_pole: int) -> Vector:
+        """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
+        m1, m2 = self.pedestal.mass, self.statue.mass
+        one = self.pedestal.arm(ground_pole)
+        reach, arm = self.reach(ground_pole, 1), self.statue_arm(1)
+        return Vector(
+            (m1 * one.x + m2 * (reach.x + arm.x)) / (m1 + m2),
+            (m1 * one.y + m2 * (reach.y + arm.y)) / (m1 + m2),
+        )
+
+    @property
+    def mass(self) -> float:
+        """Total mass [kg]."""
+        return self.pedestal.mass + self.statue.mass
+
+    def glued(self) -> Block:
+        """Return the two as one rigid body, which is what rocks in pattern 3."""
+        m1, m2 = self.pedestal.mass, self.statue.mass
+        to_statue = self.reach(1, 1)
+        arm2 = self.statue_arm(1)
+        centre1 = self.pedestal.centre
+        centre2 = Vector(
+            self.pedestal.b + to_statue.x + arm2.x,
+            to_statue.y + arm2.y,
+        )
+        x = (m1 * centre1.x + m2 * centre2.x) / (m1 + m2)
+        y = (m1 * centre1.y + m2 * centre2.y) / (m1 + m2)
+        spread = m1 * m2 / (m1 + m2) * ((centre1.x - centre2.x) ** 2 + (centre1.y - centre2.y) ** 2)
+        return Block(
+            width=self.pedestal.width,
+            height=self.pedestal.height + self.statue.height,
+            mass=m1 + m2,
+            inertia=self.pedestal.centroidal_inertia + self.statue.centroidal_inertia + spread,
+            cg_height=y,
+            cg_offset=x,
+        )
+
+
+Body = Block | Stack
