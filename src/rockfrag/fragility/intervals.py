@@ -1,0 +1,285 @@
+"""Confidence intervals by resampling whole motions or events, never amplitudes of a motion.
+
+Three methods: the percentile and the BCa bootstrap (Efron, 1987, J. Am. Stat. Assoc. 82: 171-185)
+and the delete-one-group jackknife with Student's t. ``docs/validation-fragility.md`` shows how
+often each covers the truth for few and many groups; the automatic choice and its warnings follow
+from that table.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+from scipy import special, stats
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.newton import Link, fit_batch, separated
+from rockfrag.fragility.outcomes import Floats, Outcomes
+
+IntervalMethod = Literal["percentile", "bca", "jackknife"]
+WeightedFit = Callable[[Floats], Floats]
+"""Turns weights of the groups, shape (batch, groups), into (intercept, slope), shape (batch, 2)."""
+
+
+@dataclass(frozen=True)
+class Interval:
+    """Confidence limits of θ, β and the whole curve.
+
+    Attributes
+    ----------
+    theta, beta
+        Lower and upper limit; infinite where the data set none, NaN where there is no interval.
+    level
+        Two-sided confidence level, for example 0.90.
+    method
+        ``percentile``, ``bca`` or ``jackknife``, or ``none``.
+    groups
+        Number of independent groups that were resampled.
+    over
+        What a group is: ``motion`` or ``event``.
+    estimate
+        Intercept and slope of the fit that the interval belongs to.
+    replicates
+        Intercept and slope of each replicate, shape (replicates, 2).
+    link
+        ``probit`` or ``logit``.
+    warnings
+        What a reader must know before trusting the limits.
+    """
+
+    theta: tuple[float, float]
+    beta: tuple[float, float]
+    level: float
+    method: str
+    groups: int
+    over: str
+    estimate: tuple[float, float]
+    replicates: Floats
+    link: Link = "probit"
+    warnings: tuple[str, ...] = ()
+
+    def band(self, im: ArrayLike) -> tuple[Floats, Floats]:
+        """Pointwise limits of P(overturn | IM) at each ``im`` > 0, two arrays of shape (n,)."""
+        x = np.log(np.atleast_1d(np.asarray(im, dtype=np.float64)))
+        if self.method == "none":
+            return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
+        predictors = self.replicates[:, :1] + self.replicates[:, 1:] * x
+        centre = self.estimate[0] + self.estimate[1] * x
+        if self.method == "jackknife":
+            half = _student(self.level, self.groups) * _jackknife_error(predictors)
+            lower, upper = centre - half, centre + half
+        else:
+            tail = 0.5 - 0.5 * self.level
+            lower = _quantile(predictors, tail, -np.inf)
+            upper = _quantile(predictors, 1.0 - tail, np.inf)
+        function = special.ndtr if self.link == "probit" else special.expit
+        return np.asarray(function(lower)), np.asarray(function(upper))
+
+
+def verdict_fitter(
+    outcomes: Outcomes, labels: NDArray[np.object_], link: Link = "probit"
+) -> tuple[WeightedFit, int]:
+    """Make the function that refits a curve to reweighted groups of tests.
+
+    Tests at the same value are pooled, so that stripes cost little. Separated replicates are fitted
+    with the penalised likelihood, as the estimator itself would; replicates in which all tests
+    agree give an intercept of -∞ (all survive) or +∞ (all overturn) and a slope of NaN.
+    """
+    codes, names = pd.factorize(pd.Series(labels))
+    values, column = np.unique(outcomes.log_im, return_inverse=True)
+    fell = np.zeros((len(names), values.size))
+    total = np.zeros_like(fell)
+    np.add.at(fell, (codes, column), outcomes.overturned)
+    np.add.at(total, (codes, column), outcomes.trials)
+    design = np.column_stack([np.ones(values.size), values])
+
+    def fit(weights: Floats) -> Floats:
+        y, m = weights @ fell, weights @ total
+        apart = separated(values, y, m)
+        result = np.empty((len(weights), 2))
+        for chosen, penalised in ((apart, True), (~apart, False)):
+            if chosen.any():
+                batch = fit_batch(design, y[chosen], m[chosen], link=link, penalised=penalised)
+                result[chosen] = batch.coefficients
+        result[y.sum(axis=1) == 0, 0] = -np.inf
+        result[y.sum(axis=1) == m.sum(axis=1), 0] = np.inf
+        return result
+
+    return fit, len(names)
+
+
+def interval_over_motions(
+    outcomes: Outcomes,
+    *,
+    over: Literal["motion", "event"] = "motion",
+    method: IntervalMethod | None = None,
+    level: float = 0.90,
+    replicates: int = 1000,
+    seed: int = 0,
+    link: Link = "probit",
+) -> Interval:
+    """Confidence limits of a curve fitted to verdicts, by resampling whole motions or events.
+
+    Parameters
+    ----------
+    outcomes
+        The tests.
+    over
+        ``motion`` answers for other motions of the same events, ``event`` for other events.
+    method
+        None chooses by the number of groups, see :func:`resampled_interval`.
+    replicates, seed
+        Of the bootstrap; the jackknife needs neither.
+    """
+    labels = outcomes.motion if over == "motion" else outcomes.event
+    fit, groups = verdict_fitter(outcomes, labels, link)
+    return resampled_interval(
+        fit,
+        groups,
+        over=over,
+        method=method,
+        level=level,
+        replicates=replicates,
+        seed=seed,
+        link=link,
+    )
+
+
+def resampled_interval(
+    fit: WeightedFit,
+    groups: int,
+    *,
+    over: str = "motion",
+    method: IntervalMethod | None = None,
+    level: float = 0.90,
+    replicates: int = 1000,
+    seed: int = 0,
+    link: Link = "probit",
+) -> Interval:
+    """Confidence limits of θ and β from a function that refits reweighted groups."""
+    if not 0.0 < level < 1.0:
+        raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
+    estimate = fit(np.ones((1, groups)))[0]
+    usable = np.isfinite(estimate).all() and estimate[1] > 0
+    if groups < 2 or not usable:
+        reason = (
+            f"One {over} gives no interval for other {over}s."
+            if groups < 2
+            else "There is no curve, so there is no interval."
+        )
+        return _none(estimate, level, groups, over, link, (reason,))
+    chosen: IntervalMethod = method or "jackknife"
+    deleted = fit(1.0 - np.eye(groups))
+    if chosen == "jackknife":
+        theta, beta = _jackknife_limits(estimate, deleted, level, groups)
+        return Interval(
+            theta, beta, level, chosen, groups, over, _pair(estimate), deleted, link, ()
+        )
+    draws = np.random.default_rng(seed).multinomial(
+        groups, np.full(groups, 1.0 / groups), size=replicates
+    )
+    again = fit(draws.astype(np.float64))
+    limits = []
+    for k, of in enumerate((_log_theta, _beta)):
+        values, centre, left_out = of(again), of(estimate[None, :])[0], of(deleted)
+        tails = (0.5 - 0.5 * level, 0.5 + 0.5 * level)
+        if chosen == "bca":
+            tails = _bca_tails(values, float(centre), left_out, level)
+        pair = (
+            float(_quantile(values[:, None], tails[0], -np.inf if k == 0 else 0.0)[0]),
+            float(_quantile(values[:, None], tails[1], np.inf)[0]),
+        )
+        limits.append(pair)
+    theta = (float(np.exp(limits[0][0])), float(np.exp(limits[0][1])))
+    return Interval(theta, limits[1], level, chosen, groups, over, _pair(estimate), again, link, ())
+
+
+def _log_theta(coefficients: Floats) -> Floats:
+    """Return ln θ of each replicate; NaN where the curve does not rise."""
+    intercept, slope = coefficients[:, 0], coefficients[:, 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = np.where(slope > 0, -intercept / slope, np.nan)
+    return np.asarray(np.where(np.isinf(intercept), -intercept, value))
+
+
+def _beta(coefficients: Floats) -> Floats:
+    """Return β of each replicate; infinite where the curve does not rise, NaN where all agree."""
+    slope = coefficients[:, 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        value = np.where(slope > 0, 1.0 / slope, np.inf)
+    return np.asarray(np.where(np.isnan(slope), np.nan, value))
+
+
+def _quantile(values: Floats, share: float, unknown: float) -> Floats:
+    """Quantile along the first axis, with NaN counted on the unfavourable side."""
+    filled = np.where(np.isnan(values), unknown, values)
+    ordered = np.sort(filled, axis=0)
+    position = int(np.clip(np.floor(share * len(ordered)), 0, len(ordered) - 1))
+    if share > 0.5:
+        position = int(np.clip(np.ceil(share * len(ordered)) - 1, 0, len(ordered) - 1))
+    return np.asarray(ordered[position])
+
+
+def _bca_tails(
+    values: Floats, centre: float, left_out: Floats, level: float
+) -> tuple[float, float]:
+    """Shares of the bootstrap distribution that the BCa interval reads (Efron, 1987, eq. 3.2)."""
+    known = values[~np.isnan(values)]
+    below = (np.sum(known < centre) + 0.5 * np.sum(known == centre)) / max(known.size, 1)
+    bias = stats.norm.ppf(np.clip(below, 0.5 / values.size, 1.0 - 0.5 / values.size))
+    finite = left_out[np.isfinite(left_out)]
+    offset = finite.mean() - finite if finite.size else np.zeros(1)
+    spread = np.sum(offset**2) ** 1.5
+    acceleration = np.sum(offset**3) / (6.0 * spread) if spread > 0 else 0.0
+    tails = []
+    for side in (-1.0, 1.0):
+        z = bias + side * stats.norm.ppf(0.5 + 0.5 * level)
+        tails.append(float(stats.norm.cdf(bias + z / (1.0 - acceleration * z))))
+    return tails[0], tails[1]
+
+
+def _student(level: float, groups: int) -> float:
+    return float(stats.t.ppf(0.5 + 0.5 * level, groups - 1))
+
+
+def _jackknife_error(left_out: Floats) -> Floats:
+    """Return the standard error from delete-one-group values along the first axis (Tukey)."""
+    groups = len(left_out)
+    offset = left_out - left_out.mean(axis=0)
+    return np.asarray(np.sqrt((groups - 1) / groups * np.sum(offset**2, axis=0)))
+
+
+def _jackknife_limits(
+    estimate: Floats, deleted: Floats, level: float, groups: int
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    factor = _student(level, groups)
+    log_theta = float(_log_theta(estimate[None, :])[0])
+    half = factor * float(_jackknife_error(_log_theta(deleted)))
+    log_beta = float(np.log(_beta(estimate[None, :])[0]))
+    left_out = np.log(_beta(deleted))
+    # the jackknife also takes out the first-order bias of ln β, which few groups make too small
+    centre = groups * log_beta - (groups - 1) * float(left_out.mean())
+    half_beta = factor * float(_jackknife_error(left_out))
+    if not np.isfinite(half):
+        half = np.inf
+    if not (np.isfinite(centre) and np.isfinite(half_beta)):
+        return (np.exp(log_theta - half), np.exp(log_theta + half)), (0.0, np.inf)
+    return (
+        (float(np.exp(log_theta - half)), float(np.exp(log_theta + half))),
+        (float(np.exp(centre - half_beta)), float(np.exp(centre + half_beta))),
+    )
+
+
+def _pair(coefficients: Floats) -> tuple[float, float]:
+    return float(coefficients[0]), float(coefficients[1])
+
+
+def _none(
+    estimate: Floats, level: float, groups: int, over: str, link: Link, notes: tuple[str, ...]
+) -> Interval:
+    nan = (float("nan"), float("nan"))
+    empty = np.empty((0, 2))
+    return Interval(nan, nan, level, "none", groups, over, _pair(estimate), empty, link, notes)

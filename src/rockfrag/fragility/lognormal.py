@@ -1,0 +1,270 @@
+"""The fitted fragility curve, lognormal (probit) or log-logistic (logit), in one measure."""
+
+import warnings as python_warnings
+from dataclasses import dataclass
+
+import numpy as np
+import statsmodels.api as sm
+from numpy.typing import ArrayLike
+from scipy import special
+from statsmodels.tools.sm_exceptions import (
+    ConvergenceWarning,
+    PerfectSeparationError,
+    PerfectSeparationWarning,
+)
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.newton import Link, fit_batch, separated
+from rockfrag.fragility.outcomes import Floats, Outcomes
+
+
+@dataclass(frozen=True)
+class FragilityFit:
+    """A fragility curve P(overturn | IM) = F((ln IM - ln θ) / β) and how it was obtained.
+
+    F is the standard normal distribution (link ``probit``) or the standard logistic one
+    (``logit``).
+
+    Attributes
+    ----------
+    theta
+        Median of the intensity measure at overturning, in ``unit``; NaN where the data give none.
+    beta
+        Logarithmic standard deviation (probit) or logistic scale (logit); NaN likewise.
+    se_log_theta, se_beta
+        Standard errors by the delta method from the expected information. They take tests for
+        independent; where motions repeat, use an interval over motions instead.
+    covariance
+        Covariance of (ln θ, β), 2 × 2.
+    log_likelihood, aic
+        With binomial coefficients; the parameters counted are two.
+    n, n_overturned, n_motions
+        Tests, those that overturned, and different motions.
+    method
+        How it was fitted, in words.
+    im, unit
+        Intensity measure and its unit.
+    link
+        ``probit`` or ``logit``.
+    warnings
+        One sentence for each thing that a reader must know before using the curve.
+    """
+
+    theta: float
+    beta: float
+    se_log_theta: float
+    se_beta: float
+    covariance: tuple[tuple[float, float], tuple[float, float]]
+    log_likelihood: float
+    aic: float
+    n: int
+    n_overturned: int
+    n_motions: int
+    method: str
+    im: str = "IM"
+    unit: str = ""
+    link: Link = "probit"
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def se(self) -> tuple[float, float]:
+        """Standard errors of ln θ and of β."""
+        return self.se_log_theta, self.se_beta
+
+    @property
+    def coefficients(self) -> tuple[float, float]:
+        """Intercept and slope of the linear predictor in ln IM."""
+        return -np.log(self.theta) / self.beta, 1.0 / self.beta
+
+    def probability(self, im: ArrayLike) -> Floats:
+        """Probability of overturning at ``im`` [in ``unit``], same shape; 0 at an IM of 0."""
+        values = np.asarray(im, dtype=np.float64)
+        with np.errstate(divide="ignore"):
+            eta = (np.log(values) - np.log(self.theta)) / self.beta
+        return np.asarray(special.ndtr(eta) if self.link == "probit" else special.expit(eta))
+
+
+def curve_parameters(
+    coefficients: Floats, covariance: Floats
+) -> tuple[float, float, tuple[tuple[float, float], tuple[float, float]]]:
+    """Turn intercept and slope into θ = exp(-c0/c1), β = 1/c1 and the covariance of (ln θ, β)."""
+    c0, c1 = float(coefficients[0]), float(coefficients[1])
+    jacobian = np.array([[-1.0 / c1, c0 / c1**2], [0.0, -1.0 / c1**2]])
+    spread = jacobian @ covariance @ jacobian.T
+    pairs = (
+        (float(spread[0, 0]), float(spread[0, 1])),
+        (float(spread[1, 0]), float(spread[1, 1])),
+    )
+    return float(np.exp(-c0 / c1)), 1.0 / c1, pairs
+
+
+def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
+    """Fit a curve to verdicts by maximum likelihood (statsmodels GLM, binomial).
+
+    Where one value of the measure separates survival from overturning the likelihood has no maximum
+    (θ is only known to an interval, β tends to zero); the fit is then penalised (Firth, 1993) and
+    its ``method`` and ``warnings`` say so. Where all tests agree, θ and β are NaN and a warning
+    says what the data do tell. Where the probability does not rise with the measure there is no
+    curve either.
+    """
+    notes = _notes(outcomes)
+    if outcomes.n_overturned in (0, outcomes.n):
+        return _without_curve(
+            outcomes, link, "none: all tests agree", (*notes, _all_agree(outcomes))
+        )
+    if np.ptp(outcomes.log_im) == 0:
+        raise InputError(
+            f"all tests have the same {outcomes.name} of {outcomes.im[0]:g} {outcomes.unit}: a "
+            "curve needs at least two values of the intensity measure."
+        )
+    failures, trials = outcomes.overturned[None, :], outcomes.trials[None, :]
+    method = f"{link}, maximum likelihood (GLM)"
+    if separated(outcomes.log_im, failures, trials)[0]:
+        coefficients, information = _penalised(outcomes, link)
+        method = f"{link}, penalised likelihood (Firth)"
+        if coefficients[1] > 0:
+            notes = (*notes, _separation_note(outcomes))
+    else:
+        try:
+            coefficients, information = _statsmodels(outcomes, link)
+        except (PerfectSeparationError, PerfectSeparationWarning, ConvergenceWarning):
+            coefficients, information = _penalised(outcomes, link)
+            method = f"{link}, penalised likelihood (Firth)"
+            notes = (*notes, "The maximum of the likelihood is not finite; the fit is penalised.")
+    log_likelihood = _log_likelihood(outcomes, coefficients, link)
+    if coefficients[1] <= 0:
+        falling = (
+            f"The probability of overturning does not rise with {outcomes.name}; there is no "
+            "fragility curve in this measure."
+        )
+        return _without_curve(
+            outcomes, link, "none: probability does not rise", (*notes, falling), log_likelihood
+        )
+    theta, beta, spread = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
+    return FragilityFit(
+        theta,
+        beta,
+        float(np.sqrt(spread[0][0])),
+        float(np.sqrt(spread[1][1])),
+        spread,
+        log_likelihood,
+        4.0 - 2.0 * log_likelihood,
+        outcomes.n,
+        outcomes.n_overturned,
+        outcomes.n_motions,
+        method,
+        outcomes.name,
+        outcomes.unit,
+        link,
+        notes,
+    )
+
+
+def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
+    links = {"probit": sm.families.links.Probit, "logit": sm.families.links.Logit}
+    design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
+    counts = np.column_stack([outcomes.overturned, outcomes.trials - outcomes.overturned])
+    model = sm.GLM(counts, design, family=sm.families.Binomial(links[link]()))
+    with python_warnings.catch_warnings():
+        python_warnings.simplefilter("error", PerfectSeparationWarning)
+        python_warnings.simplefilter("error", ConvergenceWarning)
+        result = model.fit(tol=1e-13, maxiter=200)
+    return np.asarray(result.params), -np.asarray(model.hessian(result.params, observed=False))
+
+
+def _penalised(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
+    design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
+    fit = fit_batch(
+        design,
+        outcomes.overturned[None, :],
+        outcomes.trials[None, :],
+        link=link,
+        penalised=True,
+    )
+    return fit.coefficients[0], fit.information[0]
+
+
+def _log_likelihood(outcomes: Outcomes, coefficients: Floats, link: Link) -> float:
+    eta = coefficients[0] + coefficients[1] * outcomes.log_im
+    fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
+    if link == "probit":
+        terms = fell * special.log_ndtr(eta) + stood * special.log_ndtr(-eta)
+    else:
+        terms = -fell * np.logaddexp(0.0, -eta) - stood * np.logaddexp(0.0, eta)
+    ways = (
+        special.gammaln(outcomes.trials + 1)
+        - special.gammaln(fell + 1)
+        - special.gammaln(stood + 1)
+    )
+    return float((terms + ways).sum())
+
+
+def _notes(outcomes: Outcomes) -> tuple[str, ...]:
+    notes = []
+    if outcomes.n_motions == 1:
+        notes.append(
+            "All tests share one motion: the curve describes this motion and gives no interval for "
+            "others."
+        )
+    if outcomes.n_repeated:
+        notes.append(
+            f"{outcomes.n_repeated} of {outcomes.im.size} rows repeat the motion, value and "
+            "verdict of another row; they count as repetitions of the test."
+        )
+    return tuple(notes)
+
+
+def _separation_note(outcomes: Outcomes) -> str:
+    survived = outcomes.im[outcomes.trials > outcomes.overturned].max()
+    fell = outcomes.im[outcomes.overturned > 0].min()
+    return (
+        f"No test below {fell:g} {outcomes.unit} overturned and none above {survived:g} "
+        f"{outcomes.unit} survived: the data only place θ between these values and β may be any "
+        "small number; θ and β are penalised estimates."
+    )
+
+
+def _all_agree(outcomes: Outcomes) -> str:
+    # exact binomial bound when all of n independent motions agree (Clopper and Pearson, 1934)
+    bound = 1.0 - 0.1 ** (1.0 / outcomes.n_motions)
+    if outcomes.n_overturned == 0:
+        top = outcomes.im.max()
+        return (
+            f"None of {outcomes.n} tests overturned up to {outcomes.name} {top:g} {outcomes.unit}: "
+            f"with {outcomes.n_motions} independent motions P(overturn) there is below "
+            f"{bound:.3f} at 90 % confidence if all reached it; θ is above and not estimated."
+        )
+    least = outcomes.im.min()
+    return (
+        f"All {outcomes.n} tests overturned down to {outcomes.name} {least:g} {outcomes.unit}: "
+        f"with {outcomes.n_motions} independent motions P(overturn) there is above "
+        f"{1.0 - bound:.3f} at 90 % confidence if all were tried there; θ is below and not "
+        "estimated."
+    )
+
+
+def _without_curve(
+    outcomes: Outcomes,
+    link: Link,
+    method: str,
+    notes: tuple[str, ...],
+    log_likelihood: float = 0.0,
+) -> FragilityFit:
+    nan = float("nan")
+    return FragilityFit(
+        nan,
+        nan,
+        nan,
+        nan,
+        ((nan, nan), (nan, nan)),
+        log_likelihood,
+        4.0 - 2.0 * log_likelihood,
+        outcomes.n,
+        outcomes.n_overturned,
+        outcomes.n_motions,
+        method,
+        outcomes.name,
+        outcomes.unit,
+        link,
+        notes,
+    )

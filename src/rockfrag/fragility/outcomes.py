@@ -1,0 +1,234 @@
+"""The observations that every fragility estimator starts from, checked once at the door."""
+
+import re
+from collections.abc import Hashable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+
+Floats = NDArray[np.float64]
+"""An array of floating-point numbers."""
+
+_UNITS = {
+    "g": "g",
+    "cm_s": "cm/s",
+    "m_s": "m/s",
+    "m_s2": "m/s²",
+    "cm": "cm",
+    "m": "m",
+    "s": "s",
+    "1_s": "1/s",
+    "hz": "Hz",
+}
+_SUFFIX = re.compile(r"^(?P<name>.+?)_(?P<unit>g|cm_s|m_s2|m_s|cm|m|1_s|s|hz)$")
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """Overturned or not, at known values of one intensity measure.
+
+    Attributes
+    ----------
+    im
+        Intensity measure of each row, > 0, shape (n,).
+    overturned
+        Number of tests of the row that overturned, shape (n,).
+    trials
+        Number of tests of the row, shape (n,); 1 for single tests.
+    motion
+        Label of the motion, shape (n,): rows of one motion are not independent.
+    event
+        Label of the earthquake, shape (n,): motions of one event may share an effect. The motion's
+        label where no event is known.
+    name, unit
+        The intensity measure as the field writes it, for example ``PGA`` and ``g``.
+    """
+
+    im: Floats
+    overturned: Floats
+    trials: Floats
+    motion: NDArray[np.object_]
+    event: NDArray[np.object_]
+    name: str = "IM"
+    unit: str = ""
+
+    @property
+    def log_im(self) -> Floats:
+        """Natural logarithm of the intensity measure, shape (n,)."""
+        return np.asarray(np.log(self.im))
+
+    @property
+    def n(self) -> int:
+        """Number of tests."""
+        return int(self.trials.sum())
+
+    @property
+    def n_overturned(self) -> int:
+        """Number of tests that overturned."""
+        return int(self.overturned.sum())
+
+    @property
+    def n_motions(self) -> int:
+        """Number of different motions."""
+        return len(pd.unique(pd.Series(self.motion)))
+
+    @property
+    def n_events(self) -> int:
+        """Number of different events."""
+        return len(pd.unique(pd.Series(self.event)))
+
+    @property
+    def n_repeated(self) -> int:
+        """Number of rows that repeat the motion, the value and the verdict of an earlier row."""
+        rows = pd.DataFrame({"m": self.motion, "x": self.im, "y": self.overturned / self.trials})
+        return int(rows.duplicated().sum())
+
+
+def name_and_unit(column: str) -> tuple[str, str]:
+    """Split a column name: ``pga_g`` into ``("PGA", "g")``, ``pgv_cm_s`` into ``("PGV", "cm/s")``.
+
+    A name without a known unit is returned whole, in capitals, with an empty unit.
+    """
+    found = _SUFFIX.match(column)
+    if found is None:
+        return column.replace("_", " ").upper(), ""
+    name = found["name"]
+    if name in {"amplitude", "pga", "input"}:
+        return "PGA", _UNITS[found["unit"]]
+    return name.replace("_", " ").upper(), _UNITS[found["unit"]]
+
+
+def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+    """Return a column as finite numbers, shape (n,).
+
+    Raises
+    ------
+    InputError
+        If the column is absent or a value is missing or no number; the row counts from 1.
+    """
+    if column not in table:
+        known = ", ".join(map(str, table.columns))
+        raise InputError(
+            f"{source}: there is no column {column!r}; name one of the columns {known}."
+        )
+    values = pd.to_numeric(table[column], errors="coerce").to_numpy(dtype=np.float64)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise InputError(
+            f"{source}, row {bad[0] + 1}, column {column!r}: {table[column].iloc[bad[0]]!r} is "
+            f"not a finite number; correct it or leave the row out."
+        )
+    return values
+
+
+def positive(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+    """Return a column as numbers above zero, shape (n,), because they enter by their logarithm.
+
+    Raises
+    ------
+    InputError
+        As :func:`numbers`, and where a value is zero or less.
+    """
+    values = numbers(table, column, source)
+    bad = np.flatnonzero(values <= 0)
+    if bad.size:
+        raise InputError(
+            f"{source}, row {bad[0] + 1}, column {column!r}: an intensity measure must be above "
+            f"zero to have a logarithm, got {values[bad[0]]:g}; leave such tests out."
+        )
+    return values
+
+
+def verdicts(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+    """Return a column of yes/no verdicts as 0 and 1, shape (n,).
+
+    Raises
+    ------
+    InputError
+        If a value is neither 0/1 nor false/true.
+    """
+    values = numbers(table, column, source)
+    bad = np.flatnonzero((values != 0) & (values != 1))
+    if bad.size:
+        raise InputError(
+            f"{source}, row {bad[0] + 1}, column {column!r}: overturned must be 0 or 1, got "
+            f"{values[bad[0]]:g}; give counts of several tests with a column of trials."
+        )
+    return values
+
+
+def _labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.object_]:
+    if column is None:
+        return np.array([f"row {row + 1}" for row in range(len(table))], dtype=object)
+    if column not in table:
+        raise InputError(
+            f"{source}: there is no column {column!r}; correct the name of the column."
+        )
+    values = table[column]
+    missing = np.flatnonzero(values.isna())
+    if missing.size:
+        raise InputError(
+            f"{source}, row {missing[0] + 1}, column {column!r}: the label is missing; fill it in."
+        )
+    labels: list[Hashable] = list(values)
+    return np.array(labels, dtype=object)
+
+
+def outcomes_from_table(
+    table: pd.DataFrame,
+    im: str,
+    *,
+    overturned: str = "overturned",
+    trials: str | None = None,
+    motion: str | None = "motion",
+    event: str | None = None,
+    source: str = "table",
+) -> Outcomes:
+    """Read verdicts and one intensity measure out of a table.
+
+    Parameters
+    ----------
+    table
+        One row per test, or per group of equal tests when ``trials`` names a column of counts.
+    im
+        Column of the intensity measure; its unit is read from the name (``pga_g``, ``pgv_cm_s``).
+    overturned
+        Column of verdicts (0/1, false/true), or of counts when ``trials`` is given.
+    trials
+        Column with the number of tests of each row.
+    motion, event
+        Columns with the labels of motion and earthquake; None where every row is a motion (event)
+        of its own.
+    source
+        What to call the table in an error message, for example its file name.
+
+    Raises
+    ------
+    InputError
+        If the table is empty, a column is absent, a value is missing or not finite, an intensity
+        measure is not above zero, a verdict is not 0 or 1, or counts are outside 0 … trials.
+    """
+    if len(table) == 0:
+        raise InputError(f"{source}: there is no row; give at least one test.")
+    values = positive(table, im, source)
+    if trials is None:
+        counts = np.ones(len(table))
+        failed = verdicts(table, overturned, source)
+    else:
+        counts = numbers(table, trials, source)
+        failed = numbers(table, overturned, source)
+        bad = np.flatnonzero((failed < 0) | (failed > counts) | (counts <= 0))
+        if bad.size:
+            row = bad[0]
+            raise InputError(
+                f"{source}, row {row + 1}, column {overturned!r}: {failed[row]:g} overturned of "
+                f"{counts[row]:g} tests is not a share between 0 and 1; correct the counts."
+            )
+    motions = _labels(table, motion, source)
+    events = motions if event is None else _labels(table, event, source)
+    name, unit = name_and_unit(im)
+    return Outcomes(values, failed, counts, motions, events, name, unit)

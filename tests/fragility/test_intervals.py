@@ -1,0 +1,84 @@
+"""Confidence limits by resampling whole motions."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.fragility.intervals import interval_over_motions, verdict_fitter
+from rockfrag.fragility.lognormal import fit_lognormal
+from rockfrag.fragility.outcomes import outcomes_from_table
+
+LEVELS = np.exp(np.arange(np.log(0.1), np.log(1.2), 0.1))
+
+
+def swept_motions(n, seed=0, theta=0.35, beta=0.4):
+    """Verdicts of n motions at common levels, each with one lognormal capacity."""
+    capacity = np.exp(np.random.default_rng(seed).normal(np.log(theta), beta, n))
+    rows = [
+        {"motion": f"m{k}", "amplitude_g": level, "overturned": level > capacity[k]}
+        for k in range(n)
+        for level in LEVELS
+    ]
+    return outcomes_from_table(pd.DataFrame(rows), "amplitude_g")
+
+
+def test_the_refit_with_unit_weights_is_the_estimator():
+    data = swept_motions(12)
+    fit, groups = verdict_fitter(data, data.motion)
+    assert groups == 12
+    assert fit(np.ones((1, 12)))[0] == pytest.approx(fit_lognormal(data).coefficients, abs=1e-6)
+
+
+def test_leaving_a_motion_out_by_its_weight_equals_leaving_its_rows_out():
+    data = swept_motions(5)
+    fit, _ = verdict_fitter(data, data.motion)
+    kept = data.motion != "m2"
+    table = pd.DataFrame(
+        {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
+    )[kept]
+    alone = fit_lognormal(outcomes_from_table(table, "amplitude_g"))
+    weights = np.array([[1.0, 1.0, 0.0, 1.0, 1.0]])
+    assert fit(weights)[0] == pytest.approx(alone.coefficients, abs=1e-6)
+
+
+@pytest.mark.parametrize("method", ["percentile", "bca", "jackknife"])
+def test_limits_enclose_the_estimate_and_narrow_with_more_motions(method):
+    widths = []
+    for n in (10, 60):
+        data = swept_motions(n, seed=4)
+        fit = fit_lognormal(data)
+        interval = interval_over_motions(data, method=method, replicates=300)
+        assert interval.theta[0] < fit.theta < interval.theta[1]
+        assert interval.beta[0] < interval.beta[1]
+        lower, upper = interval.band([0.2, 0.35, 0.6])
+        assert (lower < fit.probability([0.2, 0.35, 0.6])).all()
+        assert (upper > fit.probability([0.2, 0.35, 0.6])).all()
+        widths.append(np.log(interval.theta[1] / interval.theta[0]))
+    assert widths[1] < widths[0]
+
+
+def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
+    # every test of every motion ten times over tells nothing new about other motions
+    once = swept_motions(8, seed=5)
+    table = pd.DataFrame(
+        {"amplitude_g": once.im, "overturned": once.overturned, "motion": once.motion}
+    )
+    often = outcomes_from_table(pd.concat([table] * 10, ignore_index=True), "amplitude_g")
+    first = interval_over_motions(once, method="percentile", seed=2)
+    second = interval_over_motions(often, method="percentile", seed=2)
+    assert second.theta == pytest.approx(first.theta, rel=1e-6)
+    assert fit_lognormal(often).se_log_theta < 0.4 * fit_lognormal(once).se_log_theta
+
+
+def test_the_same_seed_gives_the_same_limits():
+    data = swept_motions(9)
+    first = interval_over_motions(data, method="bca", seed=7, replicates=200)
+    second = interval_over_motions(data, method="bca", seed=7, replicates=200)
+    assert (first.theta, first.beta) == (second.theta, second.beta)
+
+
+def test_one_motion_gives_no_interval_and_says_so():
+    interval = interval_over_motions(swept_motions(1))
+    assert interval.method == "none"
+    assert np.isnan(interval.theta[0])
+    assert "One motion" in interval.warnings[0]

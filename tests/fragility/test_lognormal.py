@@ -1,0 +1,156 @@
+"""A lognormal fragility curve from verdicts."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import statsmodels.api as sm
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.lognormal import fit_lognormal
+from rockfrag.fragility.newton import fit_batch
+from rockfrag.fragility.outcomes import name_and_unit, outcomes_from_table
+
+STRIPES = pd.DataFrame(
+    {
+        "pga_g": [0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0],
+        "overturned": [0, 0, 0, 4, 6, 13, 12, 16],
+        "trials": 40,
+    }
+)
+
+
+def verdicts_of(im, verdicts, motions=None):
+    table = pd.DataFrame({"pga_g": im, "overturned": verdicts})
+    table["motion"] = motions if motions is not None else range(len(table))
+    return outcomes_from_table(table, "pga_g")
+
+
+def random_cloud(n, theta, beta, seed):
+    rng = np.random.default_rng(seed)
+    im = np.exp(rng.normal(np.log(theta), 0.8, n))
+    return verdicts_of(im, np.log(im) > rng.normal(np.log(theta), beta, n))
+
+
+def test_published_stripes_give_their_maximum_likelihood_estimate():
+    fit = fit_lognormal(outcomes_from_table(STRIPES, "pga_g", trials="trials", motion=None))
+    assert fit.theta == pytest.approx(1.076116, abs=1e-5)
+    assert fit.beta == pytest.approx(0.429237, abs=1e-5)
+    assert fit.log_likelihood == pytest.approx(-10.797705, abs=1e-5)
+    assert fit.se == pytest.approx((0.07097, 0.08210), abs=1e-5)
+    assert (fit.n, fit.n_overturned, fit.im, fit.unit) == (320, 51, "PGA", "g")
+    assert fit.probability(fit.theta) == pytest.approx(0.5)
+    assert fit.probability(0.0) == 0.0
+
+
+def test_a_large_cloud_returns_the_parameters_that_made_it():
+    fit = fit_lognormal(random_cloud(20_000, 0.35, 0.4, seed=1))
+    assert np.log(fit.theta / 0.35) == pytest.approx(0.0, abs=4 * fit.se_log_theta)
+    assert fit.beta == pytest.approx(0.4, abs=4 * fit.se_beta)
+    assert fit.se_log_theta < 0.01
+
+
+def test_logit_and_probit_agree_on_the_median():
+    cloud = random_cloud(5_000, 0.35, 0.4, seed=2)
+    probit, logit = fit_lognormal(cloud), fit_lognormal(cloud, link="logit")
+    assert logit.theta == pytest.approx(probit.theta, rel=0.02)
+    # sd of the logistic distribution is π/√3; the tails differ, so only nearly
+    assert logit.beta * np.pi / np.sqrt(3) == pytest.approx(probit.beta, rel=0.15)
+
+
+@pytest.mark.parametrize("link", ["probit", "logit"])
+def test_the_fast_batch_equals_statsmodels(link):
+    rng = np.random.default_rng(3)
+    x = rng.normal(size=(60, 2))
+    design = np.column_stack([np.ones(60), x])
+    trials = rng.integers(0, 4, size=(5, 60)).astype(float)
+    failures = rng.binomial(trials.astype(int), 0.2 + 0.6 * (x[:, 0] > 0)).astype(float)
+    batch = fit_batch(design, failures, trials, link=link)
+    names = {"probit": sm.families.links.Probit, "logit": sm.families.links.Logit}
+    for k in range(5):
+        used = trials[k] > 0
+        counts = np.column_stack([failures[k], trials[k] - failures[k]])[used]
+        model = sm.GLM(counts, design[used], family=sm.families.Binomial(names[link]()))
+        result = model.fit(tol=1e-13)
+        assert batch.converged[k]
+        assert batch.coefficients[k] == pytest.approx(result.params, abs=1e-7)
+        hessian = -model.hessian(result.params, observed=False)
+        assert batch.information[k] == pytest.approx(hessian, rel=1e-5, abs=1e-9)
+
+
+def test_penalised_logit_of_one_proportion_adds_half_a_failure_and_half_a_survival():
+    # Firth (1993): with a logit link and a constant the penalised estimate is (y + 1/2) / (n + 1)
+    fit = fit_batch(
+        np.ones((1, 1)),
+        np.array([[0.5], [3.0]]),
+        np.array([[7.0]] * 2),
+        link="logit",
+        penalised=True,
+    )
+    expected = np.array([(0.5 + 0.5) / 8, 3.5 / 8])
+    assert 1 / (1 + np.exp(-fit.coefficients[:, 0])) == pytest.approx(expected, abs=1e-9)
+
+
+def test_separated_verdicts_give_a_penalised_estimate_inside_the_gap_and_say_so():
+    fit = fit_lognormal(verdicts_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], [0, 0, 0, 1, 1, 1]))
+    assert "penalised" in fit.method
+    assert 0.3 < fit.theta < 0.5
+    assert fit.beta > 0.02  # not the silent 4e-4 of an unpenalised fit
+    assert any("0.3" in note and "0.5" in note for note in fit.warnings)
+
+
+def test_tests_that_all_survive_or_all_overturn_give_a_bound_and_no_curve():
+    survived = fit_lognormal(verdicts_of([0.1, 0.2, 0.3], [0, 0, 0]))
+    assert np.isnan(survived.theta) and "θ is above" in survived.warnings[0]
+    fell = fit_lognormal(verdicts_of([0.1, 0.2, 0.3], [1, 1, 1]))
+    assert np.isnan(fell.theta) and "θ is below" in fell.warnings[0]
+
+
+def test_a_probability_that_falls_with_the_measure_gives_no_curve():
+    for verdicts in ([1, 1, 0, 1, 0, 0], [1, 1, 1, 0, 0, 0]):
+        fit = fit_lognormal(verdicts_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], verdicts))
+        assert np.isnan(fit.beta)
+        assert "does not rise" in fit.method
+
+
+def test_one_motion_and_repeated_rows_are_stated():
+    fit = fit_lognormal(verdicts_of([0.1, 0.2, 0.3, 0.2, 0.1], [0, 1, 1, 0, 0], ["a"] * 5))
+    assert any("one motion" in note for note in fit.warnings)
+    assert any("1 of 5 rows repeat" in note for note in fit.warnings)
+
+
+@pytest.mark.parametrize(
+    ("column", "row", "value", "words"),
+    [
+        ("pga_g", 2, np.nan, "row 3, column 'pga_g'"),
+        ("pga_g", 1, 0.0, "above zero"),
+        ("pga_g", 1, -0.2, "above zero"),
+        ("overturned", 0, 0.4, "must be 0 or 1"),
+        ("overturned", 0, 2, "must be 0 or 1"),
+        ("motion", 3, None, "label is missing"),
+    ],
+)
+def test_a_bad_value_is_named_with_its_row_and_column(column, row, value, words):
+    table = pd.DataFrame(
+        {"pga_g": [0.1, 0.2, 0.3, 0.4], "overturned": [0, 1, 0, 1], "motion": list("abcd")}
+    ).astype({"overturned": float})
+    table.loc[row, column] = value
+    with pytest.raises(InputError, match=words):
+        outcomes_from_table(table, "pga_g")
+
+
+def test_counts_outside_zero_to_trials_and_empty_tables_are_refused():
+    with pytest.raises(InputError, match="share between 0 and 1"):
+        outcomes_from_table(STRIPES.assign(overturned=41), "pga_g", trials="trials", motion=None)
+    with pytest.raises(InputError, match="no row"):
+        outcomes_from_table(STRIPES.iloc[:0], "pga_g", trials="trials")
+    with pytest.raises(InputError, match="no column 'pgv_cm_s'"):
+        outcomes_from_table(STRIPES, "pgv_cm_s", trials="trials", motion=None)
+    with pytest.raises(InputError, match="at least two values"):
+        fit_lognormal(verdicts_of([0.3, 0.3], [0, 1]))
+
+
+def test_units_are_read_from_column_names():
+    assert name_and_unit("pga_g") == ("PGA", "g")
+    assert name_and_unit("amplitude_g") == ("PGA", "g")
+    assert name_and_unit("pgv_cm_s") == ("PGV", "cm/s")
+    assert name_and_unit("slenderness") == ("SLENDERNESS", "")
