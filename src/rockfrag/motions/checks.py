@@ -1,0 +1,47 @@
+"""Checks of the numbers that users give to steps, pulses and measures."""
+
+import math
+from numbers import Real
+from typing import Any
+
+from rockfrag.errors import InputError
+
+
+def number(owner: str, name: str, value: Any, unit: str = "") -> float:
+    """Return ``value`` as a float if it is a finite number.
+
+    Raises
+    ------
+    InputError
+        If it is anything else, a truth value or a text that looks like a number included.
+    """
+    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+        raise InputError(f"{owner}: {name} must be a finite number{_of(unit)}, got {value!r}.")
+    return float(value)
+
+
+def positive(owner: str, name: str, value: Any, unit: str = "") -> float:
+    """Return ``value`` as a float if it is a positive finite number; InputError otherwise."""
+    if number(owner, name, value, unit) <= 0:
+        raise InputError(f"{owner}: {name} must be a positive number{_of(unit)}, got {value!r}.")
+    return float(value)
+
+
+def not_negative(owner: str, name: str, value: Any, unit: str = "") -> float:
+    """Return ``value`` as a float if it is zero or a positive finite number; InputError otherwise."""
+    if number(owner, name, value, unit) < 0:
+        raise InputError(f"{owner}: {name} must not be negative, got {value!r}{_of(unit)}.")
+    return float(value)
+
+
+def whole(owner: str, name: str, value: Any, least: int, most: int) -> int:
+    """Return ``value`` as an int if it is a whole number from ``least`` to ``most``."""
+    if number(owner, name, value) != int(value) or not least <= value <= most:
+        raise InputError(
+            f"{owner}: {name} must be a whole number from {least} to {most}, got {value!r}."
+        )
+    return int(value)
+
+
+def _of(unit: str) -> str:
+    return f" of {unit}" if unit else ""

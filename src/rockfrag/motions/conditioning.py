@@ -1,0 +1,130 @@
+"""Steps that mend the ends and the zero line of a record: demean, baseline, taper, zero pads.
+
+Each takes a motion and returns the motion it becomes, with the step and its parameters in the
+provenance.  Velocity and displacement are never stored: they always follow from the acceleration by
+exact integration, so the three are consistent after any step.
+"""
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from scipy.signal.windows import tukey
+
+from rockfrag.errors import InputError
+from rockfrag.motions.checks import not_negative, positive, whole
+from rockfrag.motions.integration import integrate
+from rockfrag.records.motion import Motion
+
+
+def demean(motion: Motion) -> Motion:
+    """Subtract the mean of the acceleration."""
+    mean = float(motion.acceleration.mean())
+    return motion.after("demean", motion.acceleration - mean, removed_m_s2=mean)
+
+
+def baseline(motion: Motion, order: int = 1) -> Motion:
+    """Subtract the polynomial in time that fits the acceleration best in the sense of least squares.
+
+    Parameters
+    ----------
+    order
+        Order of the polynomial, 0 (the mean) to 10; 1 is the straight line of "simple baseline
+        correction".
+
+    Raises
+    ------
+    InputError
+        If the order is not such a number or the motion has no more samples than the polynomial has
+        coefficients.
+    """
+    order = whole("step baseline", "order", order, 0, 10)
+    _enough_samples("baseline", motion, order + 2)
+    fit = Polynomial.fit(motion.time, motion.acceleration, order)
+    return motion.after("baseline", motion.acceleration - fit(motion.time), order=order)
+
+
+def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
+    """Subtract the second derivative of a polynomial fitted to the displacement.
+
+    The polynomial has no constant and no linear term, so that displacement and velocity still start
+    from zero; order 6 is the rule of the PEER ground motion database (Ancheta et al. 2013, PEER Report
+    2013/03, section 3.2.2).
+
+    Parameters
+    ----------
+    order
+        Order of the polynomial, 2 to 10.
+
+    Raises
+    ------
+    InputError
+        If the order is not such a number or the motion has too few samples.
+    """
+    order = whole("step displacement_baseline", "order", order, 2, 10)
+    _enough_samples("displacement_baseline", motion, order + 2)
+    _, displacement = integrate(motion.acceleration, motion.dt)
+    # in units of the length of the record, so that high powers stay near one
+    length = motion.time[-1]
+    x = motion.time / length
+    powers = np.arange(2, order + 1)
+    coefficients = np.linalg.lstsq(x[:, None] ** powers, displacement, rcond=None)[0]
+    trend = x[:, None] ** (powers - 2) @ (coefficients * powers * (powers - 1)) / length**2
+    return motion.after("displacement_baseline", motion.acceleration - trend, order=order)
+
+
+def taper(motion: Motion, duration_s: float) -> Motion:
+    """Bring both ends to zero with half a cosine bell (Tukey window; SciPy).
+
+    Parameters
+    ----------
+    duration_s
+        Length of the bell at each end [s], at most half of the motion.
+
+    Raises
+    ------
+    InputError
+        If the length is not positive or more than half of the motion.
+    """
+    duration_s = positive("step taper", "duration_s", duration_s, "seconds")
+    length = motion.time[-1]
+    if 2 * duration_s > length:
+        raise InputError(
+            f"step taper: duration_s of {duration_s} at each end does not fit into the {length:g} s "
+            f"of motion {motion.name!r}; give at most half of it."
+        )
+    window = tukey(motion.acceleration.size, alpha=2 * duration_s / length)
+    return motion.after("taper", motion.acceleration * window, duration_s=duration_s)
+
+
+def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
+    """Put zeros before and after the acceleration.
+
+    An acausal filter needs room for its transients: 1.5 × order / corner seconds in all (Converse &
+    Brady 1992, USGS Open-File Report 92-296A), and displacements stay right only while that room is
+    kept (Boore 2005, Bull. Seism. Soc. Am. 95(2), 745-750).
+
+    Parameters
+    ----------
+    before_s, after_s
+        Length of the zeros at either end [s], rounded to whole samples, at most an hour.
+
+    Raises
+    ------
+    InputError
+        If a length is negative or more than an hour.
+    """
+    counts = []
+    for name, seconds in (("before_s", before_s), ("after_s", after_s)):
+        if not_negative("step pad", name, seconds, "seconds") > 3600:
+            raise InputError(f"step pad: {name} must be at most 3600 seconds, got {seconds!r}.")
+        counts.append(round(seconds / motion.dt))
+    return motion.after(
+        "pad", np.pad(motion.acceleration, counts), before_s=before_s, after_s=after_s
+    )
+
+
+def _enough_samples(step: str, motion: Motion, least: int) -> None:
+    if motion.acceleration.size < least:
+        raise InputError(
+            f"step {step}: motion {motion.name!r} has {motion.acceleration.size} sample(s) and "
+            f"{least} are needed; use a lower order or a longer motion."
+        )

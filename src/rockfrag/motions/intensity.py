@@ -1,0 +1,200 @@
+"""Intensity measures of one component, in SI units, each with its definition and source.
+
+Acceleration is linear between samples, and every integral below is the exact one of that function: values
+differ slightly from those of programs that apply the trapezoidal rule to a², |a| or the velocity.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.motions.checks import not_negative, positive
+from rockfrag.motions.integration import peak_displacement, peak_velocity
+from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
+from rockfrag.records.motion import Motion
+from rockfrag.units import STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
+
+
+def pga(motion: Motion) -> float:
+    """Peak absolute acceleration [m/s²]."""
+    return motion.pga
+
+
+def pgv(motion: Motion) -> float:
+    """Peak absolute velocity from rest [m/s], between samples too; thesis Table 3.3."""
+    return peak_velocity(motion.acceleration, motion.dt)
+
+
+def pgd(motion: Motion) -> float:
+    """Peak absolute displacement from rest [m], between samples too; thesis Table 3.3."""
+    return peak_displacement(motion.acceleration, motion.dt)
+
+
+def pgv_over_pga(motion: Motion) -> float:
+    """PGV/PGA [s]; NaN for a motion of zeros."""
+    return pgv(motion) / pga(motion) if pga(motion) > 0 else math.nan
+
+
+def cumulative_arias(motion: Motion) -> Floats:
+    """Arias intensity up to each sample, π/(2g) ∫₀ᵗ a² dt [m/s], shape (n,)."""
+    a0, a1 = motion.acceleration[:-1], motion.acceleration[1:]
+    parts = (a0**2 + a0 * a1 + a1**2) * (motion.dt / 3)
+    return np.concatenate([[0.0], np.cumsum(parts)]) * (math.pi / (2 * STANDARD_GRAVITY))
+
+
+def arias(motion: Motion) -> float:
+    """Arias intensity π/(2g) ∫ a² dt [m/s] (Arias 1970, in Seismic Design for Nuclear Power Plants, MIT)."""
+    return float(cumulative_arias(motion)[-1])
+
+
+def cav(motion: Motion) -> float:
+    """Cumulative absolute velocity ∫ |a| dt [m/s] (EPRI 1988, report NP-5930)."""
+    a0, a1 = motion.acceleration[:-1], motion.acceleration[1:]
+    parts = np.abs(a0 + a1) / 2
+    # a line that crosses zero leaves two triangles
+    np.divide(a0**2 + a1**2, 2 * np.abs(a1 - a0), out=parts, where=a0 * a1 < 0)
+    return float(parts.sum() * motion.dt)
+
+
+def arias_times(motion: Motion, lower: float, upper: float) -> tuple[float, float]:
+    """Times at which two fractions of the Arias intensity are reached [s].
+
+    The cumulative intensity is read linearly between samples.  Both are NaN for a motion of zeros.
+
+    Parameters
+    ----------
+    lower, upper
+        Fractions, 0 ≤ lower < upper ≤ 1.
+    """
+    history = cumulative_arias(motion)
+    if history[-1] <= 0:
+        return math.nan, math.nan
+    times = [float(np.interp(f * history[-1], history, motion.time)) for f in (lower, upper)]
+    return times[0], times[1]
+
+
+def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> float:
+    """Significant duration [s]: from ``lower`` to ``upper`` of the Arias intensity; NaN if that is zero.
+
+    D5-95 by Trifunac & Brady (1975, Bull. Seism. Soc. Am. 65(3), 581-626), D5-75 by Somerville et al.
+    (1997, Seism. Res. Lett. 68(1), 199-222).
+    """
+    start, end = arias_times(motion, lower, upper)
+    return end - start
+
+
+def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
+    """First and last time at which |a| reaches ``threshold`` [m/s²] [s]; NaN where it never does.
+
+    Bolt (1973, 5th World Conference on Earthquake Engineering); at samples.
+    """
+    above = np.flatnonzero(np.abs(motion.acceleration) >= threshold)
+    if above.size == 0:
+        return math.nan, math.nan
+    return float(above[0] * motion.dt), float(above[-1] * motion.dt)
+
+
+def mean_period(motion: Motion) -> float:
+    """Mean period Tm = Σ C²/f / Σ C² over 0.25 ≤ f ≤ 20 Hz [s]; NaN where there is no such content.
+
+    C are Fourier amplitudes (Rathje, Abrahamson & Bray 1998, J. Geotech. Geoenviron. Eng. 124(2),
+    150-159).  Zeros are added so that frequencies are at most 0.05 Hz apart, as Rathje et al. (2004,
+    Earthquake Spectra 20(1), 119-144) require.
+    """
+    frequency, amplitude = fourier_amplitude(motion, math.ceil(1 / (0.05 * motion.dt)))
+    band = (frequency >= 0.25) & (frequency <= 20.0)
+    power = amplitude[band] ** 2
+    total = float(power.sum())
+    return float((power / frequency[band]).sum() / total) if total > 0 else math.nan
+
+
+PREDOMINANT_PERIODS = np.geomspace(0.02, 10.0, 541)
+"""Periods searched for the predominant one [s]: 200 in a decade, 1.2 % apart."""
+
+
+def predominant_period(motion: Motion) -> float:
+    """Predominant period Tp [s]: the period of the largest 5 % damped PSA; NaN for a motion of zeros.
+
+    Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
+    """
+    spectrum = response_spectrum(motion, PREDOMINANT_PERIODS).pseudo_acceleration
+    best = int(np.argmax(spectrum))
+    return float(PREDOMINANT_PERIODS[best]) if spectrum[best] > 0 else math.nan
+
+
+def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) -> float:
+    """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for."""
+    return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
+
+
+def spectral_velocity(motion: Motion, period: float, damping: float = 0.05) -> float:
+    """Spectral velocity Sv(T), peak relative velocity [m/s]."""
+    return float(response_spectrum(motion, [period], damping).velocity[0])
+
+
+def spectral_displacement(motion: Motion, period: float, damping: float = 0.05) -> float:
+    """Spectral displacement Sd(T), peak relative displacement [m]."""
+    return float(response_spectrum(motion, [period], damping).displacement[0])
+
+
+HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
+"""Periods of the Housner intensity [s]."""
+
+
+def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
+    """Housner (spectrum) intensity ∫ PSV(T, ζ) dT from 0.1 to 2.5 s [m].
+
+    Housner (1952, Symposium on Earthquake and Blast Effects on Structures, UCLA); by the trapezoidal rule
+    on steps of 0.01 s.  Housner left the damping open (he used 0 and 20 %); 5 % is today's custom.
+    """
+    spectrum = response_spectrum(motion, HOUSNER_PERIODS, damping)
+    return float(np.trapezoid(spectrum.pseudo_velocity, HOUSNER_PERIODS))
+
+
+def uplift_ratio(motion: Motion, alpha: float) -> float:
+    """Peak acceleration over that which starts rocking, a/(g tan α) [-]; thesis eq. 2.1.
+
+    Parameters
+    ----------
+    alpha
+        Critical angle of the block, atan(b/h) [rad].
+    """
+    alpha = positive("uplift_ratio", "alpha", alpha, "radians")
+    return pga(motion) / (STANDARD_GRAVITY * math.tan(alpha))
+
+
+def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
+    """Dimensionless velocity p PGV/(g tan α) [-].
+
+    It decides over large or quickly shaken blocks (Ishiyama 1982, Earthquake Eng. Struct. Dyn. 10,
+    635-650; Dimitrakopoulos & Paraskeva 2015, Earthquake Eng. Struct. Dyn. 44, 2013-2033).
+
+    Parameters
+    ----------
+    alpha
+        Critical angle of the block [rad].
+    p
+        Frequency parameter of the block [1/s]; thesis eq. 2.16.
+    """
+    alpha = positive("velocity_ratio", "alpha", alpha, "radians")
+    p = not_negative("velocity_ratio", "p", p, "1/s")
+    return p * pgv(motion) / (STANDARD_GRAVITY * math.tan(alpha))
+
+
+def frequency_ratio(pulse_period: float, p: float) -> float:
+    """Pulse frequency over frequency parameter, ωp/p = 2π/(Tp p) [-].
+
+    Zhang & Makris (2001, J. Eng. Mech. 127(5), 473-483).
+
+    Parameters
+    ----------
+    pulse_period
+        Period of the strongest pulse [s]; NaN gives NaN.
+    p
+        Frequency parameter of the block [1/s].
+    """
+    p = positive("frequency_ratio", "p", p, "1/s")
+    return 2 * math.pi / (pulse_period * p)

@@ -1,0 +1,100 @@
+"""Steps by name, as a configuration lists them."""
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+from rockfrag.errors import InputError
+from rockfrag.motions import conditioning, filtering, scaling, selection
+from rockfrag.records.motion import Motion
+
+STEPS: Mapping[str, Callable[..., Motion]] = MappingProxyType(
+    {
+        step.__name__: step
+        for step in (
+            conditioning.demean,
+            conditioning.baseline,
+            conditioning.displacement_baseline,
+            conditioning.taper,
+            conditioning.pad,
+            filtering.highpass,
+            filtering.lowpass,
+            filtering.bandpass,
+            filtering.resample,
+            filtering.interpolate,
+            selection.strong_part,
+            selection.bracketed_part,
+            selection.trim,
+            scaling.scale,
+            scaling.scale_to_pga,
+            scaling.scale_to_pgv,
+            scaling.scale_to_sa,
+            scaling.scale_to_arias,
+            scaling.compress_time,
+        )
+    }
+)
+"""Every step that :func:`process` knows, by its name."""
+
+
+def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
+    """Take a motion through steps in the order given; no steps leave it as it is.
+
+    Parameters
+    ----------
+    motion
+        What to process.
+    steps
+        Each a mapping with the ``step``'s name and its parameters, such as
+        ``{"step": "highpass", "corner_hz": 0.1, "order": 4}``.
+
+    Returns
+    -------
+    The processed motion; each step and its parameters are appended to its provenance.
+
+    Raises
+    ------
+    InputError
+        If a step or a parameter is not known, one is missing, or a value does not fit the motion.
+    """
+    # a misspelt last step is reported before the first one has cost anything
+    checked = [_checked(number, entry) for number, entry in enumerate(steps, start=1)]
+    for function, parameters in checked:
+        motion = function(motion, **parameters)
+    return motion
+
+
+def check_steps(steps: Sequence[Mapping[str, Any]]) -> None:
+    """Raise InputError if :func:`process` would not know a step or one of its parameters."""
+    for number, entry in enumerate(steps, start=1):
+        _checked(number, entry)
+
+
+def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motion], dict[str, Any]]:
+    if not isinstance(entry, Mapping) or "step" not in entry:
+        raise InputError(
+            f"processing, entry {number}: {entry!r} is not a mapping with a key 'step'."
+        )
+    name = entry["step"]
+    if name not in STEPS:
+        raise InputError(
+            f"processing, entry {number}: there is no step {name!r}; known are {', '.join(STEPS)}."
+        )
+    parameters = {key: value for key, value in entry.items() if key != "step"}
+    # the first parameter is the motion itself
+    known = dict(list(inspect.signature(STEPS[name]).parameters.items())[1:])
+    unknown = [key for key in parameters if key not in known]
+    if unknown:
+        raise InputError(
+            f"processing, entry {number}: step {name} has no parameter {unknown[0]!r}; "
+            f"known are {', '.join(known) or 'none'}."
+        )
+    missing = [
+        key
+        for key, p in known.items()
+        if p.default is inspect.Parameter.empty and key not in parameters
+    ]
+    if missing:
+        raise InputError(f"processing, entry {number}: step {name} needs {', '.join(missing)}.")
+    return STEPS[name], parameters

@@ -1,0 +1,80 @@
+"""Steps that scale a motion: its amplitude to a measure, its time by a similitude factor."""
+
+from rockfrag.errors import InputError
+from rockfrag.motions.checks import not_negative, positive
+from rockfrag.motions.intensity import arias, pga, pgv, spectral_acceleration
+from rockfrag.records.motion import Motion
+from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+
+
+def scale(motion: Motion, factor: float) -> Motion:
+    """Multiply the acceleration by ``factor``, a positive number."""
+    factor = positive("step scale", "factor", factor)
+    return motion.after("scale", motion.acceleration * factor, factor=factor)
+
+
+def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
+    """Scale to a peak acceleration [g]."""
+    target = positive("step scale_to_pga", "pga_g", pga_g, "g")
+    factor = _factor("scale_to_pga", motion, target * STANDARD_GRAVITY, pga(motion))
+    return motion.after("scale_to_pga", motion.acceleration * factor, pga_g=target, factor=factor)
+
+
+def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
+    """Scale to a peak velocity [cm/s], between samples too."""
+    target = positive("step scale_to_pgv", "pgv_cm_s", pgv_cm_s, "cm/s")
+    factor = _factor("scale_to_pgv", motion, target / CENTIMETRES_PER_METRE, pgv(motion))
+    return motion.after(
+        "scale_to_pgv", motion.acceleration * factor, pgv_cm_s=target, factor=factor
+    )
+
+
+def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0.05) -> Motion:
+    """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-]."""
+    target = positive("step scale_to_sa", "sa_g", sa_g, "g")
+    period_s = positive("step scale_to_sa", "period_s", period_s, "seconds")
+    damping = not_negative("step scale_to_sa", "damping", damping)
+    actual = spectral_acceleration(motion, period_s, damping)
+    factor = _factor("scale_to_sa", motion, target * STANDARD_GRAVITY, actual)
+    return motion.after(
+        "scale_to_sa",
+        motion.acceleration * factor,
+        sa_g=target,
+        period_s=period_s,
+        damping=damping,
+        factor=factor,
+    )
+
+
+def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
+    """Scale to an Arias intensity [m/s]."""
+    target = positive("step scale_to_arias", "arias_m_s", arias_m_s, "m/s")
+    factor = _factor("scale_to_arias", motion, target, arias(motion)) ** 0.5
+    return motion.after(
+        "scale_to_arias", motion.acceleration * factor, arias_m_s=target, factor=factor
+    )
+
+
+def compress_time(motion: Motion, factor: float) -> Motion:
+    """Divide all times by a similitude factor, with the acceleration unchanged.
+
+    A model at length scale 1 : λ under the same gravity needs the factor √λ; velocities are divided by
+    √λ and displacements by λ (similitude of Froude; Harris & Sabnis 1999, Structural Modeling and
+    Experimental Techniques, 2nd ed.).  A factor below one stretches time.
+
+    Parameters
+    ----------
+    factor
+        Time of the prototype over time of the model [-], positive.
+    """
+    factor = positive("step compress_time", "factor", factor)
+    return motion.after("compress_time", motion.acceleration, dt=motion.dt / factor, factor=factor)
+
+
+def _factor(step: str, motion: Motion, target: float, actual: float) -> float:
+    if actual <= 0:
+        raise InputError(
+            f"step {step}: motion {motion.name!r} is zero throughout and cannot be scaled; "
+            "leave it out."
+        )
+    return target / actual
