@@ -1,0 +1,63 @@
+"""Motions of the floors of a building: what stands on them feels these."""
+
+from collections.abc import Sequence
+
+from rockfrag.building.model import ShearBuilding
+from rockfrag.building.response import BuildingResponse, respond_elastically
+from rockfrag.records.motion import Motion
+
+
+def floor_motions(
+    building: ShearBuilding, motion: Motion, floors: Sequence[str] | None = None
+) -> list[Motion]:
+    """Absolute accelerations of labelled floors under a ground motion.
+
+    Parameters
+    ----------
+    building
+        Building; with a masonry law it responds hysteretically, else elastically.
+    motion
+        Ground acceleration, of n samples.
+    floors
+        Labels defined by the building, such as ``GF``, ``F3``, ``F5``; all of them if not given.
+
+    Returns
+    -------
+    One motion a floor, of n samples, named ``<motion>_<floor>`` and with ``floor``, ``level`` and
+    ``ground_motion`` in its metadata. Level 0 is the ground motion itself.
+
+    Raises
+    ------
+    InputError
+        If a floor is not defined.
+    """
+    labels = list(building.floors) if floors is None else list(floors)
+    levels = [building.level(label) for label in labels]
+    response = respond(building, motion)
+    return [
+        _floor_motion(building, motion, response, label, level)
+        for label, level in zip(labels, levels, strict=True)
+    ]
+
+
+def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
+    """Respond hysteretically if the building has a masonry law, else elastically."""
+    return respond_elastically(building, motion)
+
+
+def _floor_motion(
+    building: ShearBuilding, motion: Motion, response: BuildingResponse, label: str, level: int
+) -> Motion:
+    moved = motion.after(
+        "floor_motion",
+        response.acceleration[level],
+        building=building.name,
+        model="elastic" if building.masonry is None else "hysteretic",
+        floor=label,
+        level=level,
+        largest_drift=float(response.peak_drift.max()),
+    )
+    metadata = {**motion.metadata, "floor": label, "level": level, "ground_motion": motion.name}
+    return Motion(
+        moved.acceleration, moved.dt, f"{motion.name}_{label}", metadata, moved.provenance
+    )

@@ -1,0 +1,68 @@
+"""What an unreinforced masonry storey can carry, and how far it can drift.
+
+The envelope has four corners, the same on both sides: cracking, where the elastic stiffness ends;
+yield, where the storey carries its shear strength; the shear limit, up to which it keeps that
+strength; and the rocking limit, from which on only a residue is left. The drift limits are those of
+EN 1998-3 for walls governed by shear (0.4 %) and by rocking (0.8 %); the yield drift is 0.1 %.
+"""
+
+import math
+from dataclasses import dataclass, fields
+
+from rockfrag.errors import InputError
+
+
+@dataclass(frozen=True)
+class MasonryLaw:
+    """Degrading, pinching law of a masonry storey, calibrated by drift limits.
+
+    Attributes
+    ----------
+    base_shear
+        Shear strength of the ground storey over the weight of the building [-].
+    cracking
+        Shear at which the elastic stiffness ends, over the shear strength [-].
+    yield_drift, shear_drift, rocking_drift
+        Drift over storey height at yield, at the shear limit and at the rocking limit [-].
+    residual
+        Shear left beyond the rocking limit, over the shear strength [-].
+    pinch_force, pinch_drift
+        Point through which a storey reloads: share of the force and of the drift on the way to the
+        largest drift reached before [-]; 1 and 1 is no pinching.
+    damage_ductility, damage_energy
+        Growth of the drift that reloading aims for, per unit of ductility and of energy over the
+        energy of the elastic and cracked branch [-]; it lowers the force of repeated cycles.
+    unloading
+        Exponent by which the unloading stiffness falls with ductility [-].
+    """
+
+    base_shear: float = 0.12
+    cracking: float = 0.5
+    yield_drift: float = 0.001
+    shear_drift: float = 0.004
+    rocking_drift: float = 0.008
+    residual: float = 0.4
+    pinch_force: float = 0.4
+    pinch_drift: float = 0.6
+    damage_ductility: float = 0.0
+    damage_energy: float = 0.01
+    unloading: float = 0.3
+
+    def __post_init__(self) -> None:
+        for one in fields(self):
+            value = float(getattr(self, one.name))
+            if not (math.isfinite(value) and value >= 0):
+                raise InputError(f"masonry: {one.name} must be zero or more, got {value}.")
+            object.__setattr__(self, one.name, value)
+        for share in ("cracking", "residual", "pinch_force", "pinch_drift", "unloading"):
+            if getattr(self, share) > 1:
+                raise InputError(
+                    f"masonry: {share} is a share and at most 1, got {getattr(self, share)}."
+                )
+        if not (self.base_shear > 0 and self.cracking > 0):
+            raise InputError("masonry: base_shear and cracking must be greater than zero.")
+        if not 0 < self.yield_drift < self.shear_drift < self.rocking_drift:
+            raise InputError(
+                "masonry: drifts must rise from yield_drift over shear_drift to rocking_drift, got "
+                f"{self.yield_drift}, {self.shear_drift}, {self.rocking_drift}."
+            )

@@ -1,0 +1,217 @@
+"""A building as a chain of floor masses and storey springs, and what it assumes."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.building.masonry import MasonryLaw
+from rockfrag.errors import InputError
+
+Floats = NDArray[np.float64]
+
+MOST_STOREYS = 100
+"""More storeys than this are a slip of the keyboard and not a masonry building."""
+
+
+def _check_ratio(ratio: float) -> None:
+    if not (math.isfinite(ratio) and 0 <= ratio < 1):
+        raise InputError(
+            f"damping: ratio must be a fraction of critical from 0 up to 1, got {ratio}."
+        )
+
+
+@dataclass(frozen=True)
+class ModalDamping:
+    """The same fraction of critical damping in every mode.
+
+    Attributes
+    ----------
+    ratio
+        Fraction of critical damping [-], from 0 up to, not including, 1.
+    """
+
+    ratio: float = 0.05
+
+    def __post_init__(self) -> None:
+        _check_ratio(self.ratio)
+
+
+@dataclass(frozen=True)
+class RayleighDamping:
+    """Damping proportional to mass and stiffness, with a given ratio in two of the modes.
+
+    Attributes
+    ----------
+    ratio
+        Fraction of critical damping in both modes [-], from 0 up to, not including, 1.
+    modes
+        Numbers of the two modes, counted from 1; a building of one storey uses its only mode, with
+        damping proportional to the mass.
+    """
+
+    ratio: float = 0.05
+    modes: tuple[int, int] = (1, 2)
+
+    def __post_init__(self) -> None:
+        _check_ratio(self.ratio)
+        first, second = self.modes
+        if not 1 <= first < second:
+            raise InputError(
+                f"Rayleigh damping: modes must be two rising numbers from 1, got {self.modes}."
+            )
+
+
+Damping = ModalDamping | RayleighDamping
+
+
+@dataclass(frozen=True)
+class ShearBuilding:
+    """Floors that only shift sideways, from the first above ground to the top.
+
+    Attributes
+    ----------
+    masses
+        Mass of each floor [kg], shape (storeys,).
+    heights
+        Height of each storey [m], shape (storeys,).
+    stiffnesses
+        Lateral stiffness of each storey [N/m], shape (storeys,).
+    damping
+        Modal or Rayleigh damping, by the elastic modes.
+    floors
+        Label of each floor of interest and its level, 0 for the ground, ``storeys`` for the top.
+    masonry
+        Storey law of the hysteretic model; ``None`` for a building that stays elastic.
+    name
+        Short name for messages and provenance.
+
+    Raises
+    ------
+    InputError
+        If a mass, height or stiffness is not positive, their numbers differ, there are no storeys
+        or more than ``MOST_STOREYS``, or a floor does not exist.
+    """
+
+    masses: tuple[float, ...]
+    heights: tuple[float, ...]
+    stiffnesses: tuple[float, ...]
+    damping: Damping = ModalDamping()
+    floors: Mapping[str, int] = field(default_factory=lambda: {"GF": 0})
+    masonry: MasonryLaw | None = None
+    name: str = "building"
+
+    def __post_init__(self) -> None:
+        for what, unit in (("masses", "kg"), ("heights", "m"), ("stiffnesses", "N/m")):
+            values = tuple(float(value) for value in getattr(self, what))
+            check_positive(self.name, what, unit, values)
+            object.__setattr__(self, what, values)
+        if not len(self.masses) == len(self.heights) == len(self.stiffnesses):
+            raise InputError(
+                f"{self.name}: masses ({len(self.masses)}), heights ({len(self.heights)}) and "
+                f"stiffnesses ({len(self.stiffnesses)}) must be equally many, one of each a storey."
+            )
+        for label in self.floors:
+            self.level(label)
+        if isinstance(self.damping, RayleighDamping) and self.damping.modes[1] > max(
+            self.storeys, 2
+        ):
+            raise InputError(
+                f"{self.name}: Rayleigh damping names mode {self.damping.modes[1]}, but "
+                f"{self.storeys} storeys have only {self.storeys} modes."
+            )
+
+    @property
+    def storeys(self) -> int:
+        """Number of storeys."""
+        return len(self.masses)
+
+    @property
+    def mass(self) -> float:
+        """Total mass above ground [kg]."""
+        return sum(self.masses)
+
+    def level(self, floor: str) -> int:
+        """Level of a labelled floor, 0 for the ground.
+
+        Raises
+        ------
+        InputError
+            If there is no such label, or the building has no such level.
+        """
+        if floor not in self.floors:
+            known = ", ".join(self.floors)
+            raise InputError(f"{self.name}: floor {floor!r} is not defined; known are {known}.")
+        level = self.floors[floor]
+        if isinstance(level, bool) or not isinstance(level, int) or not 0 <= level <= self.storeys:
+            raise InputError(
+                f"{self.name}: floor {floor!r} is level {level!r}, but levels run from 0, the "
+                f"ground, to {self.storeys}, the top."
+            )
+        return level
+
+    def mass_matrix(self) -> Floats:
+        """Mass matrix [kg], shape (storeys, storeys)."""
+        return np.diag(self.masses)
+
+    def stiffness_matrix(self) -> Floats:
+        """Elastic stiffness matrix [N/m], shape (storeys, storeys)."""
+        return chain_matrix(self.stiffnesses)
+
+
+def chain_matrix(stiffnesses: Sequence[float]) -> Floats:
+    """Stiffness matrix of springs in a row from the ground up [N/m], shape (storeys, storeys)."""
+    k = np.asarray(stiffnesses, dtype=np.float64)
+    above = np.append(k[1:], 0.0)
+    return np.diag(k + above) - np.diag(k[1:], 1) - np.diag(k[1:], -1)
+
+
+def stiffnesses_for_period(
+    masses: Sequence[float], heights: Sequence[float], first_period: float
+) -> tuple[float, ...]:
+    """Storey stiffnesses proportional to 1/height that give the first period.
+
+    Walls of the same section in every storey have the stiffness G A / h.
+
+    Parameters
+    ----------
+    masses
+        Mass of each floor [kg].
+    heights
+        Height of each storey [m].
+    first_period
+        Wanted period of the first mode [s].
+
+    Returns
+    -------
+    Stiffness of each storey [N/m].
+
+    Raises
+    ------
+    InputError
+        If the period, a mass or a height is not positive.
+    """
+    check_positive("building", "first_period", "s", [first_period])
+    check_positive("building", "masses", "kg", masses)
+    check_positive("building", "heights", "m", heights)
+    shape = 1 / np.asarray(heights, dtype=np.float64)
+    root = 1 / np.sqrt(np.asarray(masses, dtype=np.float64))
+    eigenvalues = np.linalg.eigvalsh(root[:, None] * chain_matrix(tuple(shape)) * root)
+    scale = (2 * math.pi / first_period) ** 2 / eigenvalues[0]
+    return tuple(float(value) for value in scale * shape)
+
+
+def check_positive(owner: str, what: str, unit: str, values: Sequence[float]) -> None:
+    """Raise an InputError unless there are one to ``MOST_STOREYS`` values, each positive."""
+    if not 1 <= len(values) <= MOST_STOREYS:
+        raise InputError(
+            f"{owner}: {what} has {len(values)} entries, but a building has 1 to {MOST_STOREYS} "
+            "storeys."
+        )
+    for number, value in enumerate(values, start=1):
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(
+                f"{owner}: {what} must be positive numbers of {unit}, entry {number} is {value}."
+            )

@@ -1,0 +1,64 @@
+"""Histories of a building under a ground motion, and the elastic ones solved exactly."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.building.model import ShearBuilding
+from rockfrag.building.modes import find_modes
+from rockfrag.motions.spectra import oscillator_response
+from rockfrag.records.motion import Motion
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BuildingResponse:
+    """Histories at the samples of the ground motion.
+
+    Attributes
+    ----------
+    time
+        Time [s], shape (n,).
+    acceleration
+        Absolute acceleration of the ground and of every floor [m/s²], shape (storeys + 1, n).
+    drift
+        Drift of every storey over its height [-], shape (storeys, n).
+    """
+
+    time: Floats
+    acceleration: Floats
+    drift: Floats
+
+    @property
+    def peak_drift(self) -> Floats:
+        """Largest drift over height of every storey [-], shape (storeys,)."""
+        return np.asarray(np.abs(self.drift).max(axis=1))
+
+
+def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResponse:
+    """Superpose the modes, each exact for a ground acceleration linear between samples.
+
+    Parameters
+    ----------
+    building
+        Building; its masonry law is not used.
+    motion
+        Ground acceleration of n samples.
+    """
+    modes = find_modes(building)
+    displacement = np.zeros((building.storeys, motion.acceleration.size))
+    acceleration = np.zeros_like(displacement)
+    for period, damping, share in zip(
+        modes.period, modes.damping, (modes.participation * modes.shape).T, strict=True
+    ):
+        u, _, total = oscillator_response(motion, float(period), float(damping))
+        displacement += np.outer(share, u)
+        # the shares of all modes sum to one at a floor, so the total accelerations superpose too
+        acceleration += np.outer(share, total)
+    return BuildingResponse(
+        time=motion.time,
+        acceleration=np.vstack([motion.acceleration, acceleration]),
+        drift=np.diff(displacement, axis=0, prepend=0.0) / np.array(building.heights)[:, None],
+    )

@@ -1,0 +1,141 @@
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from rockfrag.building.floors import floor_motions
+from rockfrag.building.model import ModalDamping, RayleighDamping, ShearBuilding
+from rockfrag.building.model import stiffnesses_for_period as for_period
+from rockfrag.building.modes import damping_matrix, find_modes
+from rockfrag.building.response import respond_elastically
+from rockfrag.motions.spectra import oscillator_response
+from rockfrag.records.motion import Motion
+
+MASSES = (350e3,) * 5 + (245e3,)
+HEIGHTS = (4.5,) + (3.8,) * 5
+FLOORS = {"GF": 0, "F3": 3, "F5": 5}
+
+AMPLIFICATION = {
+    0.35: {
+        "Friuli": ("2.04", "2.70"),
+        "Kobe": ("2.35", "3.15"),
+        "Loma_Prieta": ("1.63", "1.98"),
+        "Northridge": ("2.29", "3.05"),
+    },
+    0.60: {
+        "Friuli": ("0.97", "1.44"),
+        "Kobe": ("1.45", "1.77"),
+        "Loma_Prieta": ("1.90", "1.76"),
+        "Northridge": ("1.30", "1.91"),
+    },
+}
+
+
+def reference(period=0.35, damping=None):
+    return ShearBuilding(
+        masses=MASSES,
+        heights=HEIGHTS,
+        stiffnesses=for_period(MASSES, HEIGHTS, period),
+        damping=damping or ModalDamping(0.05),
+        floors=FLOORS,
+    )
+
+
+def noise(n=400, dt=0.01, seed=3):
+    return Motion(np.random.default_rng(seed).normal(size=n), dt, "noise")
+
+
+def record(shared, name):
+    time, acceleration = np.loadtxt(shared / "records" / f"{name}.dat", skiprows=5).T
+    return Motion(9.81 * acceleration, round(time[1] - time[0], 6), name)
+
+
+def test_reference_building_has_the_published_periods_and_stiffnesses():
+    building = reference()
+    period = find_modes(building).period
+    assert [f"{value:.5f}" for value in period[:3]] == ["0.35000", "0.11880", "0.07409"]
+    assert [f"{value:.3e}" for value in building.stiffnesses[:2]] == ["1.580e+09", "1.871e+09"]
+    assert building.stiffnesses[1:] == (building.stiffnesses[1],) * 5
+
+
+@pytest.mark.parametrize("name", ["Friuli", "Kobe", "Loma_Prieta", "Northridge"])
+@pytest.mark.parametrize("period", [0.35, 0.60])
+def test_reference_building_amplifies_the_four_records_as_published(shared, period, name):
+    ground, third, fifth = floor_motions(reference(period), record(shared, name))
+    ratios = tuple(f"{floor.pga / ground.pga:.2f}" for floor in (third, fifth))
+    assert ratios == AMPLIFICATION[period][name]
+
+
+@pytest.mark.parametrize("damping", [ModalDamping(0.05), RayleighDamping(0.08, (1, 3))])
+def test_modal_superposition_equals_the_matrix_exponential(damping):
+    building, motion = reference(0.6, damping), noise()
+    n = building.storeys
+    mass, stiffness = building.mass_matrix(), building.stiffness_matrix()
+    if isinstance(damping, RayleighDamping):
+        w1, w3 = find_modes(building).frequency[[0, 2]]
+        factor = 2 * damping.ratio / (w1 + w3)
+        viscous = factor * w1 * w3 * mass + factor * stiffness
+    else:
+        # C = 2 ζ M (M⁻¹K)^½ has the ratio ζ in every mode
+        values, vectors = np.linalg.eig(np.linalg.solve(mass, stiffness))
+        root = vectors @ np.diag(np.sqrt(values)) @ np.linalg.inv(vectors)
+        viscous = 2 * damping.ratio * mass @ root
+    system = np.zeros((2 * n + 2, 2 * n + 2))
+    system[:n, n : 2 * n] = np.eye(n)
+    system[n : 2 * n, :n] = -np.linalg.solve(mass, stiffness)
+    system[n : 2 * n, n : 2 * n] = -np.linalg.solve(mass, viscous)
+    system[n : 2 * n, 2 * n] = -1
+    system[2 * n, 2 * n + 1] = 1
+    step = expm(system * motion.dt)[: 2 * n]
+    state = np.zeros((2 * n, motion.acceleration.size))
+    slopes = np.diff(motion.acceleration) / motion.dt
+    for i, slope in enumerate(slopes):
+        state[:, i + 1] = step @ [*state[:, i], motion.acceleration[i], slope]
+    total = system[n : 2 * n, : 2 * n] @ state
+    found = respond_elastically(building, motion)
+    scale = np.abs(total).max()
+    assert np.abs(found.acceleration[1:] - total).max() < 1e-9 * scale
+    drift = np.diff(state[:n], axis=0, prepend=0) / np.array(HEIGHTS)[:, None]
+    assert np.abs(found.drift - drift).max() < 1e-9 * np.abs(drift).max()
+
+
+def test_damping_matrix_gives_every_mode_its_ratio():
+    building = reference(damping=RayleighDamping(0.07, (1, 2)))
+    modes = find_modes(building)
+    viscous = modes.shape.T @ damping_matrix(building, modes) @ modes.shape
+    modal_mass = np.diag(modes.shape.T @ building.mass_matrix() @ modes.shape)
+    assert np.allclose(
+        np.diag(viscous) / modal_mass, 2 * modes.damping * modes.frequency, rtol=1e-9
+    )
+    assert np.abs(viscous - np.diag(np.diag(viscous))).max() < 1e-9 * np.abs(viscous).max()
+    assert modes.damping[:2] == pytest.approx([0.07, 0.07])
+
+
+def test_modes_take_up_the_whole_mass_and_every_floor_moves_with_the_ground():
+    modes = find_modes(reference())
+    assert modes.mass_share.sum() == pytest.approx(1, rel=1e-12)
+    assert modes.shape @ modes.participation == pytest.approx(np.ones(6), rel=1e-12)
+
+
+def test_one_storey_is_an_oscillator():
+    motion = noise()
+    building = ShearBuilding((2e5,), (4.0,), for_period((2e5,), (4.0,), 0.4), ModalDamping(0.03))
+    displacement, _, total = oscillator_response(motion, 0.4, 0.03)
+    found = respond_elastically(building, motion)
+    assert found.acceleration[1] == pytest.approx(total, rel=1e-12, abs=1e-12)
+    assert found.drift[0] == pytest.approx(displacement / 4.0, rel=1e-12, abs=1e-15)
+
+
+def test_a_rigid_building_passes_the_ground_motion_unchanged():
+    t = np.arange(500) * 0.01
+    motion = Motion(3 * np.sin(2 * np.pi * t) * np.sin(np.pi * t / 5) ** 2, 0.01)
+    for floor in floor_motions(reference(period=1e-4), motion):
+        assert np.abs(floor.acceleration - motion.acceleration).max() < 1e-3 * motion.pga
+
+
+def test_floor_motions_say_where_they_come_from():
+    third = floor_motions(reference(), noise(), ["F3"])[0]
+    assert third.name == "noise_F3"
+    assert third.metadata["floor"] == "F3"
+    assert third.metadata["ground_motion"] == "noise"
+    assert third.provenance[-1]["step"] == "floor_motion"
+    assert third.provenance[-1]["model"] == "elastic"

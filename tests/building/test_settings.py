@@ -1,0 +1,86 @@
+import copy
+from pathlib import Path
+
+import pytest
+import yaml
+
+from rockfrag.building.modes import find_modes
+from rockfrag.building.settings import make_building, read_building
+from rockfrag.errors import InputError
+
+CONFIG = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
+
+
+@pytest.fixture
+def settings():
+    return copy.deepcopy(yaml.safe_load(CONFIG.read_text(encoding="utf-8")))
+
+
+def test_the_reference_building_is_what_the_configuration_holds():
+    building = read_building(CONFIG)
+    assert find_modes(building).period[0] == pytest.approx(0.35, rel=1e-12)
+    assert (building.level("F3"), building.level("F5")) == (3, 5)
+    assert building.masonry is None
+
+
+def test_stiffnesses_can_be_given_instead_of_a_period(settings):
+    del settings["first_period_s"]
+    settings["storey_stiffnesses_N_m"] = [1e9] * 6
+    assert make_building(settings).stiffnesses == (1e9,) * 6
+
+
+def replace(key, value):
+    return lambda settings: settings.update({key: value})
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (replace("masses_kg", [350000.0] * 5 + [0]), "masses_kg .* entry 6 is 0"),
+        (replace("masses_kg", [350000.0] * 5), "6 entries and masses_kg 5"),
+        (replace("storey_heights_m", [4.0] * 10_000), "10000 entries, but a building has 1 to 100"),
+        (replace("storey_heights_m", []), "0 entries"),
+        (replace("masses_kg", ["350e3"] * 6), "must be a number"),
+        (replace("first_period_s", -0.3), "first_period_s .* -0.3"),
+        (replace("first_period_s", float("nan")), "first_period_s .* nan"),
+        (replace("storey_stiffnesses_N_m", [1e9] * 6), "not both"),
+        (replace("floors", {"F9": 9}), "'F9' is level 9, but levels run from 0"),
+        (replace("floors", {"F3": 3.5}), "'F3' is level 3.5"),
+        (replace("damping", {"kind": "modal", "ratio": 5}), "ratio must be a fraction"),
+        (replace("damping", {"kind": "caughey"}), "kind must be modal"),
+        (replace("damping", {"kind": "rayleigh", "modes": [1, 9]}), "names mode 9"),
+        (replace("model", "plastic"), "elastic or hysteretic"),
+        (replace("storeys", 6), "unknown key 'storeys'"),
+        (replace("masonry", {"base_shear": 0}), "greater than zero"),
+        (replace("masonry", {"shear_drift": 0.0001}), "drifts must rise"),
+    ],
+)
+def test_unphysical_buildings_are_refused_in_one_sentence(settings, change, message):
+    change(settings)
+    with pytest.raises(InputError, match=message) as refused:
+        make_building(settings, "building.yaml")
+    text = str(refused.value)
+    assert text.startswith("building.yaml: ")
+    assert text.endswith(".")
+    assert "\n" not in text
+
+
+def test_negative_stiffness_is_refused(settings):
+    del settings["first_period_s"]
+    settings["storey_stiffnesses_N_m"] = [1e9] * 5 + [-1e9]
+    with pytest.raises(InputError, match="entry 6 is -1000000000"):
+        make_building(settings)
+
+
+def test_a_floor_that_does_not_exist_is_refused(settings):
+    with pytest.raises(InputError, match="floor 'F7' is not defined"):
+        make_building(settings).level("F7")
+
+
+def test_a_missing_file_and_broken_yaml_are_refused(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        read_building(tmp_path / "absent.yaml")
+    broken = tmp_path / "broken.yaml"
+    broken.write_text("masses_kg: [1, 2\nfloors: {", encoding="utf-8")
+    with pytest.raises(InputError, match="not YAML"):
+        read_building(broken)
