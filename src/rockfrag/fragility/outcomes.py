@@ -161,7 +161,14 @@ def verdicts(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
     return values
 
 
-def _labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.object_]:
+def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.object_]:
+    """Return a column of labels, shape (n,); one label per row where ``column`` is None.
+
+    Raises
+    ------
+    InputError
+        If the column is absent or a label is missing.
+    """
     if column is None:
         return np.array([f"row {row + 1}" for row in range(len(table))], dtype=object)
     if column not in table:
@@ -228,7 +235,7 @@ def outcomes_from_table(
                 f"{source}, row {row + 1}, column {overturned!r}: {failed[row]:g} overturned of "
                 f"{counts[row]:g} tests is not a share between 0 and 1; correct the counts."
             )
-    motions = _labels(table, motion, source)
-    events = motions if event is None else _labels(table, event, source)
+    motions = labels(table, motion, source)
+    events = motions if event is None else labels(table, event, source)
     name, unit = name_and_unit(im)
     return Outcomes(values, failed, counts, motions, events, name, unit)

@@ -1,0 +1,318 @@
+"""Lognormal capacity from amplitudes known to an interval or only from below.
+
+A step protocol brackets the overturning amplitude of a test between the last step survived and the
+first that overturned; at the shaker's limit it is only known to be larger. The likelihood is
+concave in (-ln θ/β, 1/β) (Burridge, 1981, J. R. Stat. Soc. B 43: 41-45), which Newton's method
+uses here.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import special
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.intervals import Interval, IntervalMethod, WeightedFit, resampled_interval
+from rockfrag.fragility.lognormal import FragilityFit, curve_parameters
+from rockfrag.fragility.outcomes import Floats, labels, name_and_unit, numbers
+
+_LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
+
+
+@dataclass(frozen=True)
+class Brackets:
+    """Overturning amplitudes known to lie between two bounds.
+
+    Attributes
+    ----------
+    lower, upper
+        Bounds in ``unit``, shape (n,): lower 0 means overturned at the first step, upper infinite
+        means never overturned (right-censored), equal bounds an amplitude known exactly.
+    motion, event
+        Labels, shape (n,).
+    name, unit
+        The intensity measure.
+    """
+
+    lower: Floats
+    upper: Floats
+    motion: NDArray[np.object_]
+    event: NDArray[np.object_]
+    name: str = "PGA"
+    unit: str = "g"
+
+    @property
+    def n_overturned(self) -> int:
+        """Number of tests that ended by overturning."""
+        return int(np.isfinite(self.upper).sum())
+
+
+def brackets_from_table(
+    table: pd.DataFrame,
+    *,
+    lower: str = "lower_g",
+    upper: str = "upper_g",
+    motion: str | None = "motion",
+    event: str | None = None,
+    source: str = "table",
+) -> Brackets:
+    """Read the bounds of the overturning amplitude out of a table of tests, one row per test.
+
+    A missing upper bound means right-censored.
+
+    Raises
+    ------
+    InputError
+        If the table is empty, a column is absent, a lower bound is missing or negative, or a pair
+        of bounds is not in order.
+    """
+    if len(table) == 0:
+        raise InputError(f"{source}: there is no row; give at least one test.")
+    low = numbers(table, lower, source)
+    if upper not in table:
+        raise InputError(f"{source}: there is no column {upper!r}; correct the name of the column.")
+    high = pd.to_numeric(table[upper], errors="coerce").to_numpy(dtype=np.float64)
+    high = np.where(np.isnan(high), np.inf, high)
+    bad = np.flatnonzero((low < 0) | (high <= 0) | (high < low) | ((low == 0) & np.isinf(high)))
+    if bad.size:
+        row = bad[0]
+        raise InputError(
+            f"{source}, row {row + 1}, columns {lower!r} and {upper!r}: {low[row]:g} to "
+            f"{high[row]:g} is no bracket of an amplitude; give 0 ≤ lower ≤ upper and leave upper "
+            "empty if it never overturned."
+        )
+    motions = labels(table, motion, source)
+    events = motions if event is None else labels(table, event, source)
+    return Brackets(low, high, motions, events, *name_and_unit(upper.replace("upper", "pga")))
+
+
+def fit_brackets(brackets: Brackets) -> FragilityFit:
+    """Fit θ and β to bracketed amplitudes by maximum likelihood.
+
+    Where one amplitude lies inside every bracket the likelihood grows without end as β tends to
+    zero; then θ is the middle of the common bracket and β its logarithmic width / √12, and the fit
+    says so. Where no test overturned there is no curve, only a bound.
+    """
+    low, high = _logs(brackets)
+    n, fell = low.size, brackets.n_overturned
+    motions = len(pd.unique(pd.Series(brackets.motion)))
+    notes: tuple[str, ...] = ()
+    nan = float("nan")
+    unknown = ((nan, nan), (nan, nan))
+
+    def result(
+        theta: float,
+        beta: float,
+        spread: tuple[tuple[float, float], tuple[float, float]],
+        log_likelihood: float,
+        method: str,
+    ) -> FragilityFit:
+        return FragilityFit(
+            theta,
+            beta,
+            float(np.sqrt(spread[0][0])),
+            float(np.sqrt(spread[1][1])),
+            spread,
+            log_likelihood,
+            4.0 - 2.0 * log_likelihood,
+            n,
+            fell,
+            motions,
+            method,
+            brackets.name,
+            brackets.unit,
+            "probit",
+            notes,
+        )
+
+    if motions == 1:
+        notes = ("All tests share one motion: the curve describes this motion only.",)
+    if fell == 0:
+        top = brackets.lower.min()
+        notes = (
+            *notes,
+            f"None of {n} tests overturned; every one survived {top:g} {brackets.unit}: θ is "
+            "above and not estimated.",
+        )
+        return result(nan, nan, unknown, 0.0, "none: all tests survived")
+    weights = np.ones((1, n))
+    coefficients, information, log_likelihood = _fit_weighted(low, high, weights)
+    theta, beta, spread = curve_parameters(coefficients[0], _inverse(information[0]))
+    if _share_a_point(low, high, weights)[0]:
+        notes = (
+            *notes,
+            f"All brackets share the amplitudes from {brackets.lower.max():g} to "
+            f"{brackets.upper.min():g} {brackets.unit}: β is not resolved by the steps; θ is the "
+            "middle of that range and β its width / √12.",
+        )
+        return result(theta, beta, unknown, nan, "interval estimate (brackets overlap)")
+    method = "lognormal, interval- and right-censored maximum likelihood"
+    return result(theta, beta, spread, float(log_likelihood[0]), method)
+
+
+def bracket_fitter(
+    brackets: Brackets, over: Literal["motion", "event"] = "motion"
+) -> tuple[WeightedFit, int]:
+    """Make the function that refits θ and β to reweighted motions or events."""
+    groups = brackets.motion if over == "motion" else brackets.event
+    codes, names = pd.factorize(pd.Series(groups))
+    low, high = _logs(brackets)
+
+    def fit(weights: Floats) -> Floats:
+        return _fit_weighted(low, high, weights[:, codes])[0]
+
+    return fit, len(names)
+
+
+def bracket_interval(
+    brackets: Brackets,
+    *,
+    over: Literal["motion", "event"] = "motion",
+    method: IntervalMethod | None = None,
+    level: float = 0.90,
+    replicates: int = 1000,
+    seed: int = 0,
+) -> Interval:
+    """Confidence limits of a curve fitted to brackets, by resampling whole motions or events."""
+    fit, groups = bracket_fitter(brackets, over)
+    return resampled_interval(
+        fit, groups, over=over, method=method, level=level, replicates=replicates, seed=seed
+    )
+
+
+def _logs(brackets: Brackets) -> tuple[Floats, Floats]:
+    with np.errstate(divide="ignore"):
+        return np.log(brackets.lower), np.log(brackets.upper)
+
+
+def _share_a_point(low: Floats, high: Floats, weights: Floats) -> NDArray[np.bool_]:
+    used = weights > 0
+    largest = np.where(used, low, -np.inf).max(axis=1)
+    smallest = np.where(used, high, np.inf).min(axis=1)
+    return np.asarray(largest <= smallest)
+
+
+def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
+    """Fit (intercept, slope) for each row of weights, shape (batch, n)."""
+    batch = len(weights)
+    coefficients = np.full((batch, 2), np.nan)
+    information = np.full((batch, 2, 2), np.nan)
+    log_likelihood = np.full(batch, np.nan)
+    overlap = _share_a_point(low, high, weights)
+    if overlap.any():
+        coefficients[overlap] = _common_bracket(low, high, weights[overlap])
+    rest = np.flatnonzero(~overlap)
+    if rest.size:
+        found = _newton(low, high, weights[rest])
+        coefficients[rest], information[rest], log_likelihood[rest] = found
+    return coefficients, information, log_likelihood
+
+
+def _common_bracket(low: Floats, high: Floats, weights: Floats) -> Floats:
+    """Return middle and width / √12 of the amplitudes that all brackets share."""
+    used = weights > 0
+    left = np.where(used, low, -np.inf).max(axis=1)
+    right = np.where(used, high, np.inf).min(axis=1)
+    closed = np.isfinite(left) & np.isfinite(right)
+    # equal amplitudes share a bracket of no width; 1e-6 keeps 1/β a number
+    with np.errstate(invalid="ignore"):
+        beta = np.maximum((right - left) / np.sqrt(12.0), 1e-6)
+        middle = 0.5 * (left + right)
+    result = np.column_stack([-middle / beta, 1.0 / beta])
+    result[~closed] = np.nan
+    result[np.isinf(right), 0] = -np.inf
+    result[np.isinf(left), 0] = np.inf
+    return np.asarray(result)
+
+
+def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
+    finite_low, finite_high = np.isfinite(low), np.isfinite(high)
+    middle = np.where(finite_low & finite_high, 0.5 * (low + high), np.where(finite_low, low, high))
+    total = weights.sum(axis=1)
+    mean = weights @ middle / total
+    spread = np.sqrt((weights * (middle - mean[:, None]) ** 2).sum(axis=1) / total)
+    slope = 1.0 / np.maximum(spread, 0.05)
+    coefficients = np.column_stack([-mean * slope, slope])
+    value, score, hessian = _likelihood(low, high, weights, coefficients)
+    active = np.arange(len(weights))
+    for _ in range(200):
+        step = np.einsum("bij,bj->bi", np.linalg.pinv(-hessian[active]), score[active])
+        size = np.ones(active.size)
+        waiting = np.arange(active.size)
+        for _ in range(40):
+            trial = coefficients[active[waiting]] + size[waiting, None] * step[waiting]
+            positive = trial[:, 1] > 0
+            trial[:, 1] = np.where(positive, trial[:, 1], 1e-3)
+            new = _likelihood(low, high, weights[active[waiting]], trial)
+            better = positive & (new[0] >= value[active[waiting]] - 1e-12)
+            done = active[waiting[better]]
+            coefficients[done] = trial[better]
+            value[done], score[done], hessian[done] = (part[better] for part in new)
+            waiting = waiting[~better]
+            size[waiting] *= 0.5
+            if waiting.size == 0:
+                break
+        moved = np.abs(size[:, None] * step).max(axis=1) / np.abs(coefficients[active]).max(axis=1)
+        active = active[moved > 1e-10]
+        if active.size == 0:
+            break
+    return coefficients, -hessian, value
+
+
+def _likelihood(
+    low: Floats, high: Floats, weights: Floats, coefficients: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Return log-likelihood, score and Hessian in (intercept, slope), for each row of weights."""
+    c0, c1 = coefficients[:, :1], coefficients[:, 1:]
+    x_low, x_high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 0.0)
+    z_low = np.where(np.isneginf(low), -np.inf, c0 + c1 * x_low)
+    z_high = np.where(np.isposinf(high), np.inf, c0 + c1 * x_high)
+    exact = low == high
+    log_share = _log_difference(z_low, z_high)
+    ratio_low = np.exp(-0.5 * z_low**2 - _LOG_ROOT_TWO_PI - log_share)
+    ratio_high = np.exp(-0.5 * z_high**2 - _LOG_ROOT_TWO_PI - log_share)
+    bend_low = np.where(np.isinf(z_low), 0.0, z_low) * ratio_low
+    bend_high = np.where(np.isinf(z_high), 0.0, z_high) * ratio_high
+    at = np.where(exact, z_low, 0.0)  # finite where it is read
+    g0 = np.where(exact, -at, ratio_high - ratio_low)
+    g1 = np.where(exact, -at * x_low + 1.0 / c1, ratio_high * x_high - ratio_low * x_low)
+    h00 = np.where(exact, -1.0, bend_low - bend_high - g0**2)
+    h01 = np.where(exact, -x_low, bend_low * x_low - bend_high * x_high - g0 * g1)
+    h11 = np.where(
+        exact,
+        -(x_low**2) - 1.0 / c1**2,
+        bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
+    )
+    # the density of ln IM, so that equal bounds and narrow brackets rank models alike
+    terms = np.where(exact, np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI, log_share)
+    value = (weights * terms).sum(axis=1)
+    score = np.stack([(weights * g0).sum(axis=1), (weights * g1).sum(axis=1)], axis=1)
+    cross = (weights * h01).sum(axis=1)
+    hessian = np.stack(
+        [
+            np.stack([(weights * h00).sum(axis=1), cross], axis=1),
+            np.stack([cross, (weights * h11).sum(axis=1)], axis=1),
+        ],
+        axis=1,
+    )
+    return value, score, hessian
+
+
+def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
+    """Return ln(Φ(z_high) - Φ(z_low)) without loss of digits; 0 where the bounds are equal."""
+    with np.errstate(invalid="ignore"):
+        flip = z_low + z_high > 0
+    lower, upper = np.where(flip, -z_high, z_low), np.where(flip, -z_low, z_high)
+    log_upper, log_lower = special.log_ndtr(upper), special.log_ndtr(lower)
+    same = lower == upper
+    gap = np.where(same | np.isneginf(log_lower), -np.inf, log_lower - np.where(same, 0, log_upper))
+    return np.asarray(np.where(same, 0.0, log_upper + np.log1p(-np.exp(gap))))
+
+
+def _inverse(information: Floats) -> Floats:
+    if not np.isfinite(information).all():
+        return np.full((2, 2), np.nan)
+    return np.asarray(np.linalg.pinv(information, hermitian=True))
