@@ -1,0 +1,5 @@
+"""Studies: what is to be computed, read from a configuration file and checked before anything runs."""
+
+from rockfrag.studies.study import Study, load_study, study_from
+
+__all__ = ["Study", "load_study", "study_from"]

@@ -1,0 +1,177 @@
+"""A study: its configuration file read, checked, and turned into what the stages need."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rockfrag.building.settings import read_building
+from rockfrag.errors import InputError
+from rockfrag.motions.processing import check_steps
+from rockfrag.rocking.bodies import Block
+from rockfrag.studies.amplitudes import Amplitudes
+from rockfrag.studies.configurations import Configuration, read_configurations, read_specimens
+from rockfrag.studies.validation import check_schema, read_schema
+from rockfrag.studies.yaml_file import read_yaml
+
+PRINTED_TABLES = ("table_3_1.csv", "table_3_3.csv", "table_4_1.csv")
+"""Files in the folder ``printed`` of a study that is compared with the thesis."""
+
+
+@dataclass(frozen=True)
+class FragilitySettings:
+    """How fragility is estimated: measures, bootstrap samples over motions, level of intervals."""
+
+    measures: tuple[str, ...]
+    bootstrap: int
+    confidence: float
+
+
+@dataclass(frozen=True)
+class PedestalSettings:
+    """How the pedestal's effect is estimated; a change within ±``equivalence_percent`` is none."""
+
+    bootstrap: int
+    confidence: float
+    equivalence_percent: float
+
+
+@dataclass(frozen=True)
+class Study:
+    """Everything that a study's configuration says, checked.
+
+    Attributes
+    ----------
+    name, title, seed
+        Folder under ``results/``, heading of the report, seed of every random number.
+    source
+        The configuration file.
+    catalogue
+        Path of the table of motions.
+    motions
+        Names of the motions used, or None for all of the catalogue.
+    processing
+        Steps that each record goes through, in order.
+    building
+        Path of the building whose floors are shaken too, or None for ground motions alone.
+    specimens
+        Blocks by name.
+    configurations
+        What is tested, in order.
+    amplitudes
+        Peaks of the input motion.
+    protocol_step_percent
+        By how much the laboratory raises the amplitude from one run to the next [%].
+    fragility, pedestal
+        Settings of the statistics.
+    printed
+        Folder of printed tables to compare with, or None.
+    """
+
+    name: str
+    title: str
+    seed: int
+    source: Path
+    catalogue: Path
+    motions: tuple[str, ...] | None
+    processing: tuple[Mapping[str, Any], ...]
+    building: Path | None
+    specimens_file: Path
+    configurations_file: Path
+    specimens: Mapping[str, Block]
+    configurations: tuple[Configuration, ...]
+    amplitudes: Amplitudes
+    protocol_step_percent: float
+    fragility: FragilitySettings
+    pedestal: PedestalSettings
+    printed: Path | None
+
+    def configuration(self, slug: str) -> Configuration:
+        """Return the configuration whose file name is ``slug``."""
+        return next(one for one in self.configurations if one.slug == slug)
+
+
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study's configuration file and everything small that it names, and check them all.
+
+    Raises
+    ------
+    InputError
+        One sentence with the file, the key or row, what was expected and what was found.
+    """
+    return study_from(read_yaml(path), path)
+
+
+def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
+    """Make a study of a configuration that was read from ``path``; see :func:`load_study`."""
+    source = Path(path)
+    check_schema(content, read_schema("study.schema.json"), str(source))
+    bodies, motions = content["bodies"], content["motions"]
+    specimens_file = _file(source, "bodies.specimens", bodies["specimens"])
+    configurations_file = _file(source, "bodies.configurations", bodies["configurations"])
+    specimens = read_specimens(specimens_file)
+    known = read_configurations(configurations_file, specimens)
+    processing = tuple(motions.get("processing", ()))
+    building = content.get("building")
+    try:
+        check_steps(processing)
+        amplitudes = Amplitudes(**content["amplitudes"])
+    except InputError as error:
+        raise InputError(f"{source}: {error}") from error
+    building_file = None if building is None else _file(source, "building", building)
+    if building_file is not None:
+        read_building(building_file)
+    return Study(
+        name=content["study"],
+        title=content["title"],
+        seed=content["seed"],
+        source=source,
+        catalogue=_file(source, "motions.catalogue", motions["catalogue"]),
+        motions=tuple(motions["use"]) if "use" in motions else None,
+        processing=processing,
+        building=building_file,
+        specimens_file=specimens_file,
+        configurations_file=configurations_file,
+        specimens=specimens,
+        configurations=_chosen(source, known, bodies.get("use")),
+        amplitudes=amplitudes,
+        protocol_step_percent=float(content["protocol"]["step_percent"]),
+        fragility=FragilitySettings(
+            measures=tuple(content["fragility"]["measures"]),
+            bootstrap=content["fragility"]["bootstrap"],
+            confidence=content["fragility"]["confidence"],
+        ),
+        pedestal=PedestalSettings(**content["pedestal"]),
+        printed=_printed(source, content.get("printed")),
+    )
+
+
+def _file(source: Path, key: str, name: str) -> Path:
+    path = Path(os.path.normpath(source.parent / name))
+    if not path.is_file():
+        raise InputError(f"{source}: key {key}: expected an existing file, found no {path}.")
+    return path
+
+
+def _printed(source: Path, name: str | None) -> Path | None:
+    if name is None:
+        return None
+    for table in PRINTED_TABLES:
+        _file(source, "printed", os.path.join(name, table))
+    return Path(os.path.normpath(source.parent / name))
+
+
+def _chosen(
+    source: Path, known: Sequence[Configuration], names: Sequence[str] | None
+) -> tuple[Configuration, ...]:
+    if names is None:
+        return tuple(known)
+    by_name = {one.name: one for one in known}
+    for i, name in enumerate(names):
+        if name not in by_name:
+            raise InputError(
+                f"{source}: key bodies.use[{i}]: expected one of the configurations "
+                f"{', '.join(by_name)}, found {name}."
+            )
+    return tuple(by_name[name] for name in names)
