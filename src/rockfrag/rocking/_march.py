@@ -1,0 +1,555 @@
+"""Marching one body through one acceleration history, event by event.
+
+Between events the rotations follow their series; an event (a contact closes, a contact's force criterion
+fails) is located on the series and handled before the march goes on.  Every step size, root and decision
+depends on this one case alone.
+"""
+
+import math
+
+import numpy as np
+
+from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._mechanics import (
+    FIXED,
+    accelerations,
+    coupling,
+    equations,
+    first_moment1,
+    first_moment2,
+    ground_hold,
+    impact,
+    inertia1,
+    inertia2,
+    interface_hold,
+    kinetic_energy,
+    potential_energy,
+    settle,
+)
+from rockfrag.rocking._series import ORDER, closing_time, lowest_point, slope, value
+from rockfrag.rocking._step import GAP, ROWS, TH1, TH2, series
+
+# Entries of the summary of a march.
+(
+    FALLEN,  # 0 none, 1 pedestal (or both as one), 2 statue or lone block
+    FALL_TIME,  # [s], NaN if none
+    PEAK1,  # max |θ1| [rad]
+    PEAK2,
+    SPEED1,  # max |θ1'| [rad/s]
+    SPEED2,
+    RATIO1,  # max θ/θcritical of the pedestal (with what stands on it)
+    RATIO2,
+    IMPACTS,
+    GRAZINGS,  # contacts that closed or nearly closed without speed
+    CLOSEST,  # least distance to an unstable equilibrium, in units of (θc, p θc)
+    CLOSURES,  # chatters closed
+    FORCED,  # contacts closed because a step had too many events
+    WORK,  # work of the ground acceleration on the moving body [J]
+    REST_TIME,  # time from which it rests for good [s], NaN if it does not
+    N_EVENTS,
+) = range(16)
+SUMMARY = 16
+
+# Columns of the history: state after each sample.
+HISTORY = 9  # θ1, ω1, θ2, ω2, c1, c2, θ1'', θ2'', work so far
+# Columns of the events.
+EVENT = 14  # time, kind, c1, c2, n1, n2, ω1⁻, ω2⁻, ω1⁺, ω2⁺, θ1, θ2, kinetic energy before, after
+OPENING, CLOSING, CHATTER = 0.0, 1.0, 2.0
+
+HALF_TURN = 0.5 * math.pi
+GRAZING_SPEED = 1e-3
+"""Relative speed [rad/s] below which a contact grazes."""
+MAX_EVENTS_PER_STEP = 200
+
+
+@kernel
+def _balance(p, c1, c2):
+    """Critical angle and frequency of the pedestal with what stands on it, on pole c1."""
+    s2 = c2 if c2 != 0 else 1
+    if c2 == 0:
+        v1x, v1y = first_moment1(p, c1, s2)
+        v2x, v2y = first_moment2(p, s2)
+        e, _ = coupling(p, c1, s2)
+        vx, vy = v1x + v2x, v1y + v2y
+        inertia = inertia1(p, c1, s2) + 2.0 * e + inertia2(p, s2)
+    else:
+        vx, vy = first_moment1(p, c1, s2)
+        inertia = inertia1(p, c1, s2)
+    return math.atan2(-c1 * vx, vy), vx, vy, inertia
+
+
+@kernel
+def barrier(p):
+    """Least energy [J] that could overturn the body at rest without help from the ground."""
+    least = math.inf
+    for s2 in (1, -1):
+        vx, vy = first_moment2(p, s2)
+        least = min(least, math.hypot(vx, vy) - vy)
+        if p[FIXED] == 0.0:
+            for s1 in (1, -1):
+                vx, vy = first_moment1(p, s1, s2)
+                least = min(least, math.hypot(vx, vy) - vy)
+                wx, wy = first_moment2(p, s2)
+                vx, vy = vx + wx, vy + wy
+                least = min(least, math.hypot(vx, vy) - vy)
+    return least * p[20]
+
+
+@kernel
+def rest_interval(p):
+    """Ground accelerations [m/s²] between which the body at rest stays at rest.
+
+    Every criterion of rest is linear in the acceleration (thesis eq. 2.21-2.25).
+    """
+    low = -math.inf
+    high = math.inf
+    for which in (1, 2):
+        if which == 1 and p[FIXED] > 0.0:
+            continue
+        for s in (1, -1):
+            still, pushed = _rest_moment(p, which, s, 0.0), _rest_moment(p, which, s, 1.0)
+            limit = still / (still - pushed)
+            if still > pushed:
+                high = min(high, limit)
+            else:
+                low = max(low, limit)
+    return low, high
+
+
+@kernel
+def _rest_moment(p, which, s, a):
+    """Contact moment s τ(s) of the ground (1) or the interface (2) at rest under acceleration a."""
+    _, _, _, f1, f2 = equations(p, s if which == 1 else 1, s if which == 2 else 1, 0, 0, 0, 0, a)
+    return s * (f1 + f2) if which == 1 else s * f2
+
+
+@kernel
+def _hold(p, which, c1, c2, q, tau, h, a):
+    """Least contact moment at τ: of the ground (which = 1) or the interface (2)."""
+    t1 = value(q[TH1], tau)
+    t2 = value(q[TH2], tau)
+    w1 = slope(q[TH1], tau) / h
+    w2 = slope(q[TH2], tau) / h
+    alpha1, alpha2 = accelerations(p, c1, c2, t1, w1, t2, w2, a)
+    if which == 1:
+        least, _ = ground_hold(p, c2, t1, t2, w2, a, alpha2)
+    else:
+        least, _ = interface_hold(p, c1, t1, w1, t2, w2, a, alpha1)
+    return least
+
+
+@kernel
+def _failing_time(p, which, c1, c2, q, end, h, a0, ramp):
+    """Find when a closed contact's criterion first fails in [0, end]; 2.0 if it holds."""
+    at_start = _hold(p, which, c1, c2, q, 0.0, h, a0)
+    at_end = _hold(p, which, c1, c2, q, end, h, a0 + ramp * end)
+    high = end
+    if at_end >= 0.0:
+        # a parabola through the middle shows a dip between the ends
+        middle = _hold(p, which, c1, c2, q, 0.5 * end, h, a0 + 0.5 * ramp * end)
+        curve = 2.0 * (at_start + at_end - 2.0 * middle)
+        if curve <= 0.0:
+            return 2.0
+        vertex = -(4.0 * middle - 3.0 * at_start - at_end) / (2.0 * curve)
+        if not 0.0 < vertex < 1.0:
+            return 2.0
+        high = vertex * end
+        if _hold(p, which, c1, c2, q, high, h, a0 + ramp * high) >= 0.0:
+            return 2.0
+    low = 0.0
+    if at_start < 0.0:
+        return 0.0
+    while high - low > 1e-13:
+        tau = 0.5 * (low + high)
+        if _hold(p, which, c1, c2, q, tau, h, a0 + ramp * tau) >= 0.0:
+            low = tau
+        else:
+            high = tau
+    return high
+
+
+@kernel
+def _restoring(p, c2, a):
+    """Angular acceleration that brings pattern 4 back, at θ2 = 0."""
+    _, alpha2 = accelerations(p, 0, c2, 0.0, 0.0, 0.0, 0.0, a)
+    return -c2 * alpha2
+
+
+@kernel
+def _chatter_dies(p, c2, omega, e_back, k, tau, dt, acceleration, scale):
+    """Whether the impacts that follow a launch at speed ω are over before anything else can happen.
+
+    The upper (or lone) block has left for pole c2.  With restoring accelerations of at least D and D' on
+    the two poles, flights last at most 2 ω / D and speeds fall by e at each impact, so the sum is
+    2 ω (1/D + e/D') / (1 - e e').  If the ground stays below the threshold of motion that long, the
+    block comes to rest whatever happens in between.
+    """
+    if omega * omega > 2e-3 * _restoring(p, c2, 0.0):
+        return False
+    _, _, _, w = impact(p, 0, c2, False, True, 0.0, 0.0, 0.0, -float(c2))
+    e_next = abs(w)
+    least_here = math.inf
+    least_there = math.inf
+    n = acceleration.size
+    for ahead in range(32):
+        i = k + ahead
+        a_next = acceleration[i + 1] * scale if i + 1 < n else 0.0
+        if ahead == 0:
+            a_now = acceleration[i] * scale if i < n else 0.0
+            a_now += tau * (a_next - a_now)
+            least_here = _restoring(p, c2, a_now)
+            least_there = _restoring(p, -c2, a_now)
+        least_here = min(least_here, _restoring(p, c2, a_next))
+        least_there = min(least_there, _restoring(p, -c2, a_next))
+        if least_here <= 0.0 or least_there <= 0.0:
+            return False
+        # one part in fifty for the softening of D within a flight of at most 1e-3 rad
+        if omega * omega > 2e-3 * least_here:
+            return False
+        time = 2.0 * omega * (1.0 / least_here + e_next / least_there)
+        time *= 1.02 / max(1e-12, 1.0 - e_next * e_back)
+        if time <= (ahead + 1 - tau) * dt:
+            return _pedestal_holds(p, k, ahead, acceleration, scale)
+    return False
+
+
+@kernel
+def _pedestal_holds(p, k, ahead, acceleration, scale):
+    """Whether the stack as one body stays put from sample k to k + ahead + 1."""
+    if p[FIXED] > 0.0:
+        return True
+    n = acceleration.size
+    for i in range(k, k + ahead + 2):
+        a = acceleration[i] * scale if i < n else 0.0
+        hold, _ = ground_hold(p, 0, 0.0, 0.0, 0.0, a, 0.0)
+        if hold <= 0.0:
+            return False
+    return True
+
+
+@kernel
+def march(
+    p, acceleration, dt, scale, substeps, free_samples, initial, closing_speed,
+    history, events, q, summary,
+):  # fmt: skip
+    """March one body through ``scale × acceleration`` and, after it, free rocking.
+
+    Parameters
+    ----------
+    p : parameter array of the body
+    acceleration : samples [m/s²]; zero after the last
+    dt : sampling interval [s]
+    substeps : steps per sample
+    free_samples : samples that the march goes on after the last one at most
+    initial : θ1, ω1, θ2, ω2 at the first sample
+    closing_speed : separation speed after an impact [rad/s] below which a contact stays closed
+    history : (samples, HISTORY) or (0, HISTORY) to keep none; filled until the march ends
+    events : (capacity, EVENT)
+    q : (ROWS, ORDER + 1) scratch
+    summary : (SUMMARY,)
+
+    Returns
+    -------
+    Number of samples done, the first included.
+    """
+    summary[:] = 0.0
+    summary[FALL_TIME] = math.nan
+    summary[REST_TIME] = 0.0
+    summary[CLOSEST] = math.inf
+    keep = history.shape[0] > 0
+    n = acceleration.size
+    theta1, omega1, theta2, omega2 = initial[0], initial[1], initial[2], initial[3]
+    # the initial contacts: those with an angle are open
+    c1 = 0
+    c2 = 0
+    if theta1 != 0.0:
+        c1 = 1 if theta1 > 0.0 else -1
+    elif omega1 != 0.0:
+        c1 = 1 if omega1 > 0.0 else -1
+    if theta2 != theta1:
+        c2 = 1 if theta2 > theta1 else -1
+    elif omega2 != omega1:
+        c2 = 1 if omega2 > omega1 else -1
+    c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, acceleration[0] * scale)
+    least_energy = barrier(p)
+    rest_low, rest_high = rest_interval(p)
+
+    if keep:
+        alpha1, alpha2 = accelerations(
+            p, c1, c2, theta1, omega1, theta2, omega2, acceleration[0] * scale
+        )
+        row = history[0]
+        row[0], row[1], row[2], row[3] = theta1, omega1, theta2, omega2
+        row[4], row[5], row[6], row[7] = c1, c2, alpha1, alpha2
+    summary[PEAK1] = abs(theta1)
+    summary[PEAK2] = abs(theta2)
+    summary[SPEED1] = abs(omega1)
+    summary[SPEED2] = abs(omega2)
+
+    h = dt / substeps
+    done = 1
+    for k in range(n - 1 + free_samples):
+        free = k >= n - 1
+        if free and not keep:
+            # nothing drives it any more and energy cannot grow
+            energy = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
+            energy += potential_energy(p, c1, c2, theta1, theta2)
+            if energy < least_energy:
+                upright = abs(theta1) < HALF_TURN and abs(theta2) < HALF_TURN
+                if upright and _inside(p, c1, c2, theta1, theta2):
+                    break
+        left = acceleration[k] * scale if k < n else 0.0
+        right = acceleration[k + 1] * scale if k + 1 < n else 0.0
+        if c1 == 0 and c2 == 0 and not keep and k + 1 < n:
+            if rest_low < left < rest_high and rest_low < right < rest_high:
+                continue
+        n_events = 0
+        for sub in range(substeps):
+            a0 = left + (right - left) * (sub / substeps)
+            ramp = (right - left) / substeps
+            tau = 0.0
+            while tau < 1.0:
+                remaining = 1.0 - tau
+                now = a0 + ramp * tau
+                series(
+                    p, c1, c2, theta1, omega1, theta2, omega2,
+                    h * remaining, now, ramp * remaining, q,
+                )  # fmt: skip
+                hr = h * remaining
+                # the earliest event on (0, 1] of the rest of this step
+                when = 2.0
+                fails = 0
+                closes1 = False
+                closes2 = False
+                if c1 != 0:
+                    for i in range(ORDER + 1):
+                        q[GAP, i] = c1 * q[TH1, i]
+                    when = closing_time(q[GAP], 1.0)
+                    closes1 = when <= 1.0
+                if c2 != 0:
+                    for i in range(ORDER + 1):
+                        q[GAP, i] = c2 * (q[TH2, i] - q[TH1, i])
+                    time = closing_time(q[GAP], min(1.0, when))
+                    if time < when:
+                        closes1 = False
+                        closes2 = True
+                        when = time
+                    elif closes1 and value(q[GAP], when) < 1e-13:
+                        closes2 = True
+                end = min(1.0, when)
+                if c1 == 0 and p[FIXED] == 0.0:
+                    time = _failing_time(p, 1, c1, c2, q, end, hr, now, ramp * remaining)
+                    if time < when:
+                        when = time
+                        fails = 1
+                        closes1 = False
+                        closes2 = False
+                        end = min(end, time)
+                if c2 == 0:
+                    time = _failing_time(p, 2, c1, c2, q, end, hr, now, ramp * remaining)
+                    if time < when:
+                        when = time
+                        fails = 2
+                        closes1 = False
+                        closes2 = False
+                at = min(1.0, when)
+                moving = c1 != 0 or c2 != 0
+                if keep and moving:
+                    summary[WORK] += _work(p, c1, c2, q, at, hr, now, ramp * remaining)
+                t1 = value(q[TH1], at)
+                t2 = value(q[TH2], at)
+                w1 = slope(q[TH1], at) / hr
+                w2 = slope(q[TH2], at) / hr
+                if moving:
+                    _track(p, c1, c2, q, at, t1, w1, t2, w2, hr, summary)
+                theta1, omega1, theta2, omega2 = t1, w1, t2, w2
+                if c1 == 0:
+                    theta1 = 0.0
+                    omega1 = 0.0
+                if c2 == 0:
+                    theta2 = theta1
+                    omega2 = omega1
+                tau += at * remaining
+                if when > 1.0:
+                    break
+                n_events += 1
+                clock = (k + (sub + tau) / substeps) * dt
+                now = a0 + ramp * tau
+                was1, was2, old1, old2 = c1, c2, omega1, omega2
+                energy = 0.0
+                if keep:
+                    energy = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
+                if fails != 0:
+                    c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, now)
+                    if was1 == c1 and was2 == c2 and at == 0.0:
+                        # rounding at a threshold: let it pass to the next instant
+                        if fails == 1:
+                            _, corner = ground_hold(p, c2, theta1, theta2, omega2, now, 0.0)
+                            c1 = corner
+                        else:
+                            _, corner = interface_hold(
+                                p, c1, theta1, omega1, theta2, omega2, now, 0.0
+                            )
+                            c2 = corner
+                    kind = OPENING
+                else:
+                    kind = CLOSING
+                    if closes1:
+                        theta1 = 0.0
+                    if closes2:
+                        theta2 = theta1
+                    if closes1 and c2 == 0:
+                        theta2 = theta1
+                    speed = abs(omega1) if closes1 else abs(omega2 - omega1)
+                    if speed < GRAZING_SPEED:
+                        summary[GRAZINGS] += 1.0
+                    summary[IMPACTS] += 1.0
+                    c1, c2, omega1, omega2 = impact(
+                        p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2
+                    )
+                    # too slow to matter, or too many: the contact stays closed
+                    forced = n_events > MAX_EVENTS_PER_STEP
+                    limit = math.inf if forced else closing_speed
+                    slow1 = closes1 and c1 != 0 and abs(omega1) < limit
+                    slow2 = closes2 and c2 != 0 and abs(omega2 - omega1) < limit
+                    if slow1:
+                        c1 = 0
+                        omega1 = 0.0
+                        if c2 == 0:
+                            omega2 = 0.0
+                    if slow2:
+                        c2 = 0
+                        omega2 = omega1
+                    if slow1 or slow2:
+                        summary[FORCED if forced else CLOSURES] += 1.0
+                        kind = CHATTER
+                    elif c1 == 0 and was1 == 0 and c2 == -was2:
+                        omega = abs(omega2)
+                        e = omega / max(1e-300, abs(old2))
+                        if e < 1.0 and _chatter_dies(
+                            p, c2, omega, e, k, (sub + tau) / substeps, dt, acceleration, scale
+                        ):
+                            drop = 0.5 * omega * omega / _restoring(p, c2, now)
+                            summary[PEAK2] = max(summary[PEAK2], drop)
+                            c2 = 0
+                            omega2 = 0.0
+                            summary[CLOSURES] += 1.0
+                            kind = CHATTER
+                    if not forced:
+                        c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, now)
+                count = int(summary[N_EVENTS])
+                if count < events.shape[0]:
+                    row = events[count]
+                    row[0], row[1] = clock, kind
+                    row[2], row[3], row[4], row[5] = was1, was2, c1, c2
+                    row[6], row[7], row[8], row[9] = old1, old2, omega1, omega2
+                    row[10], row[11] = theta1, theta2
+                    row[12] = energy
+                    if keep:
+                        row[13] = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
+                summary[N_EVENTS] = count + 1.0
+                if c1 == 0 and c2 == 0:
+                    summary[REST_TIME] = clock
+                else:
+                    summary[REST_TIME] = math.nan
+                if n_events > MAX_EVENTS_PER_STEP + 20:
+                    break
+        done = k + 2
+        if keep:
+            alpha1, alpha2 = accelerations(p, c1, c2, theta1, omega1, theta2, omega2, right)
+            row = history[done - 1]
+            row[0], row[1], row[2], row[3] = theta1, omega1, theta2, omega2
+            row[4], row[5], row[6], row[7] = c1, c2, alpha1, alpha2
+            row[8] = summary[WORK]
+        lying1 = abs(theta1) >= HALF_TURN
+        lying2 = abs(theta2) >= HALF_TURN or abs(theta2 - theta1) >= HALF_TURN
+        if lying1 or lying2:
+            summary[FALLEN] = 1.0 if lying1 and p[FIXED] == 0.0 else 2.0
+            summary[FALL_TIME] = (done - 1) * dt
+            break
+        if free and c1 == 0 and c2 == 0:
+            break
+    return done
+
+
+@kernel
+def _inside(p, c1, c2, theta1, theta2):
+    """Whether no block is beyond the angle at which it balances."""
+    if c2 != 0:
+        vx, vy = first_moment2(p, c2)
+        if c2 * theta2 >= math.atan2(-c2 * vx, vy):
+            return False
+    if c1 != 0:
+        critical, _, _, _ = _balance(p, c1, c2)
+        if c1 * theta1 >= critical:
+            return False
+    return True
+
+
+@kernel
+def _track(p, c1, c2, q, at, t1, w1, t2, w2, h, summary):
+    """Update peaks and the closest approach to an unstable equilibrium after a step."""
+    summary[PEAK1] = max(summary[PEAK1], abs(t1))
+    summary[PEAK2] = max(summary[PEAK2], abs(t2))
+    summary[SPEED1] = max(summary[SPEED1], abs(w1))
+    summary[SPEED2] = max(summary[SPEED2], abs(w2))
+    # a peak between samples: the rate changes sign
+    if q[TH2, 1] * w2 < 0.0:
+        tau = q[TH2, 1] / (q[TH2, 1] - w2 * h) * at
+        summary[PEAK2] = max(summary[PEAK2], abs(value(q[TH2], tau)))
+    if q[TH1, 1] * w1 < 0.0:
+        tau = q[TH1, 1] / (q[TH1, 1] - w1 * h) * at
+        summary[PEAK1] = max(summary[PEAK1], abs(value(q[TH1], tau)))
+    g = p[20]
+    if c2 != 0:
+        vx, vy = first_moment2(p, c2)
+        critical = math.atan2(-c2 * vx, vy)
+        frequency2 = g * math.hypot(vx, vy) / inertia2(p, c2)
+        away = (critical - c2 * t2) / critical
+        speed = w2 / critical
+        summary[CLOSEST] = min(
+            summary[CLOSEST], math.sqrt(away * away + speed * speed / frequency2)
+        )
+        summary[RATIO2] = max(summary[RATIO2], c2 * t2 / critical)
+    if c1 != 0:
+        critical, vx, vy, inertia = _balance(p, c1, c2)
+        frequency2 = g * math.hypot(vx, vy) / inertia
+        away = (critical - c1 * t1) / critical
+        speed = w1 / critical
+        summary[CLOSEST] = min(
+            summary[CLOSEST], math.sqrt(away * away + speed * speed / frequency2)
+        )
+        summary[RATIO1] = max(summary[RATIO1], c1 * t1 / critical)
+
+
+@kernel
+def _work(p, c1, c2, q, end, h, a0, ramp):
+    """Work of the ground acceleration, -∫ a (m1 x1' + m2 x2') dt, over (0, end] of a step [J]."""
+    s1 = c1 if c1 != 0 else 1
+    s2 = c2 if c2 != 0 else 1
+    v1x, v1y = first_moment1(p, s1, s2)
+    v2x, v2y = first_moment2(p, s2)
+    # Gauss-Legendre, six points: exact to order 11
+    nodes = (0.2386191860831969, 0.6612093864662645, 0.9324695142031521)
+    weights = (0.4679139345726910, 0.3607615730481386, 0.1713244923791704)
+    total = 0.0
+    for i in range(3):
+        for sign in (-1.0, 1.0):
+            tau = 0.5 * end * (1.0 + sign * nodes[i])
+            t1 = value(q[TH1], tau)
+            t2 = value(q[TH2], tau)
+            w1 = slope(q[TH1], tau)
+            w2 = slope(q[TH2], tau)
+            if p[19] > 0.0:
+                rate = v1y * w1 + v2y * w2
+            else:
+                rate = w1 * (v1y * math.cos(t1) - v1x * math.sin(t1))
+                rate += w2 * (v2y * math.cos(t2) - v2x * math.sin(t2))
+            total -= weights[i] * (a0 + ramp * tau) * rate
+    return 0.5 * end * total
+
+
+@kernel
+def scratch():
+    """Scratch array of a march."""
+    return np.zeros((ROWS, ORDER + 1))

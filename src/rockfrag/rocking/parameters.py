@@ -1,0 +1,124 @@
+"""From a body and its restitution to the array of numbers that the kernels read."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import _mechanics as km
+from rockfrag.rocking.bodies import Block, Body, Stack, Vector
+
+Restitution = float | Sequence[float | None] | None
+"""Measured ratio of angular velocities after and before an impact: one number for a lone block, a pair
+(ground, interface) for a stack; None conserves momentum at the new pole."""
+
+
+def impulse_position(block: Block, restitution: float, new_pole: int) -> float:
+    """Where the impulse of a closing base acts, if the lone block comes off with ``restitution``.
+
+    The angular momentum about the point of the impulse is conserved; conserving it about the new pole
+    (position 1) gives :meth:`Block.momentum_restitution`, about the middle of the base (position 0) of
+    a symmetric block gives 1.
+
+    Parameters
+    ----------
+    restitution
+        ω⁺ / ω⁻ of the lone block on a rigid base [-].
+    new_pole
+        The corner that comes down, +1 or -1.
+
+    Returns
+    -------
+    Position σ of the impulse in half widths from the middle towards the new pole [-].
+    """
+    centre, b, m = block.centre, block.b, block.mass
+    inertia = block.centroidal_inertia
+    old = centre.minus(Vector(-new_pole * b, 0.0))
+    new = centre.minus(Vector(new_pole * b, 0.0))
+
+    def product(arm: Vector) -> float:
+        return inertia + m * (centre.x * arm.x + centre.y * arm.y)
+
+    return (product(old) - restitution * product(new)) / (
+        m * new_pole * b * (old.x - restitution * new.x)
+    )
+
+
+def _checked(restitution: float | None, interface: str) -> float | None:
+    if restitution is None:
+        return None
+    value = float(restitution)
+    if not (math.isfinite(value) and 0.0 <= value <= 1.0):
+        raise InputError(
+            f"restitution of the {interface}: {restitution} would not lose energy or is no number; "
+            "give a ratio of angular velocities from 0 to at most 1, or None to conserve momentum."
+        )
+    return value
+
+
+def _pair(body: Body, restitution: Restitution) -> tuple[float | None, float | None]:
+    """Split what the user gave into (ground, interface) of the kernels' two blocks."""
+    if restitution is None:
+        return None, None
+    if isinstance(body, Block):
+        if not isinstance(restitution, (int, float, np.floating)):
+            raise InputError("restitution: a lone block takes one number, not a pair.")
+        return None, _checked(float(restitution), "block")
+    if isinstance(restitution, (int, float, np.floating)) or len(restitution) != 2:
+        raise InputError("restitution: a stack takes a pair (ground, interface), each may be None.")
+    return _checked(restitution[0], "ground"), _checked(restitution[1], "interface")
+
+
+def body_parameters(
+    body: Body, restitution: Restitution = None, linear: bool = False, g: float = 9.81
+) -> NDArray[np.float64]:
+    """Return the parameter array of a body, shape (PARAMETERS,).
+
+    Parameters
+    ----------
+    linear
+        Use the linearised equations: eq. 2.9 for a lone block, eq. 2.60-2.65 for a stack.
+    g
+        Acceleration of gravity [m/s²].
+
+    Raises
+    ------
+    InputError
+        If the restitution does not fit the body or would add energy, or ``g`` is not positive.
+    """
+    if not (math.isfinite(g) and g > 0):
+        raise InputError(f"g must be a positive acceleration [m/s²], got {g}.")
+    if not isinstance(body, (Block, Stack)):
+        raise InputError(f"a body is a Block or a Stack, not {type(body).__name__}.")
+    ground, interface = _pair(body, restitution)
+    p = np.zeros(km.PARAMETERS)
+    p[[km.ETA1R, km.ETA1L, km.ETA2R, km.ETA2L]] = 1.0
+    p[km.GRAVITY] = g
+    if isinstance(body, Block):
+        statue, centre = body, body.centre
+        # a support that cannot move; its numbers never matter
+        p[[km.M1, km.I1, km.B1]] = 1.0
+        p[km.EX] = 1.0
+        p[km.FIXED] = 1.0
+        p[km.LINEAR] = 2.0 if linear else 0.0
+    else:
+        statue, pedestal = body.statue, body.pedestal
+        p[[km.M1, km.I1, km.B1]] = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
+        p[[km.C1X, km.C1Y]] = pedestal.centre
+        right, left = body.interface_pole(+1), body.interface_pole(-1)
+        along = right.minus(left)
+        p[[km.TX, km.TY]] = (right.x + left.x) / 2, (right.y + left.y) / 2
+        p[[km.EX, km.EY]] = along.x / statue.width, along.y / statue.width
+        centre = statue.centre.turned(pedestal.lean)
+        p[km.LINEAR] = 1.0 if linear else 0.0
+        if ground is not None:
+            p[km.ETA1R] = impulse_position(pedestal, ground, +1)
+            p[km.ETA1L] = impulse_position(pedestal, ground, -1)
+    p[[km.M2, km.I2, km.B2]] = statue.mass, statue.centroidal_inertia, statue.b
+    p[[km.C2X, km.C2Y]] = centre
+    if interface is not None:
+        p[km.ETA2R] = impulse_position(statue, interface, +1)
+        p[km.ETA2L] = impulse_position(statue, interface, -1)
+    return p

@@ -1,0 +1,406 @@
+"""Mechanics of the reference integrator: motion, persistence and impact, written to be read.
+
+Everything follows from the velocity fields of the blocks (``docs/derivation.md``).  With r1, d and r2
+the vectors pole of block 1 → its centre, pole of block 1 → pole of block 2, pole of block 2 → its
+centre, the centres move with
+
+    v1 = ω1 ⊥r1,   v2 = ω1 ⊥d + ω2 ⊥r2,   ⊥(x, y) = (y, -x)   (clockwise)
+
+and mass matrix, forces and impact maps are kinetic-metric products of such fields.  A lone block is
+the upper block of a stack whose lower block cannot move.
+
+A *contact state* is a pair (c1, c2), ground and interface: +1 or -1 where the contact rocks on its
+right or left pole, 0 where it is full.  A *place* is a point of a base as a fraction of its half
+width, so the poles are the places +1 and -1.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rockfrag.errors import InputError
+from rockfrag.rocking.bodies import Block, Body, Vector
+
+State = tuple[int, int]
+Pair = tuple[float, float]
+
+# a speed below this fraction of the largest one counts as none when an impact is judged [-]
+NEGLIGIBLE_SPEED = 1e-13
+
+
+def _dot(u: Vector, v: Vector) -> float:
+    return u.x * v.x + u.y * v.y
+
+
+@dataclass(frozen=True)
+class _Affine:
+    """A vector that depends linearly on the places of the two poles."""
+
+    middle: Vector
+    along_ground: Vector
+    along_interface: Vector
+
+    def at(self, ground: float, interface: float) -> Vector:
+        return Vector(
+            self.middle.x + ground * self.along_ground.x + interface * self.along_interface.x,
+            self.middle.y + ground * self.along_ground.y + interface * self.along_interface.y,
+        )
+
+
+_NOWHERE = Vector(0.0, 0.0)
+
+
+def _affine(corner: dict[tuple[int, int], Vector]) -> _Affine:
+    """Read the dependence off three of the four pairs of poles."""
+
+    def half(u: Vector, v: Vector) -> Vector:
+        return Vector((u.x - v.x) / 2, (u.y - v.y) / 2)
+
+    along_ground = half(corner[1, 1], corner[-1, 1])
+    along_interface = half(corner[1, 1], corner[1, -1])
+    middle = corner[1, 1].minus(along_ground).minus(along_interface)
+    return _Affine(middle, along_ground, along_interface)
+
+
+class Model:
+    """Two blocks (or one) with their poles; angles in [rad], SI units throughout.
+
+    Parameters
+    ----------
+    body
+        A block or a stack.
+    g
+        Gravity [m/s²].
+    restitution
+        None, a number for a block, or a pair (ground, interface) for a stack; see
+        :func:`rockfrag.rocking.reference.simulate_reference`.
+    """
+
+    def __init__(self, body: Body, g: float, restitution: object = None) -> None:
+        self.g = g
+        self.alone = isinstance(body, Block)
+        if isinstance(body, Block):
+            blocks = (None, body)
+            self.m1, self.i1, self.b1 = 0.0, 0.0, 1.0
+            self._r1 = self._d = _Affine(_NOWHERE, _NOWHERE, _NOWHERE)
+            arms = {(s, t): body.arm(t) for s in (1, -1) for t in (1, -1)}
+        else:
+            blocks = (body.pedestal, body.statue)
+            pedestal = body.pedestal
+            self.m1, self.i1, self.b1 = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
+            pairs = [(s, t) for s in (1, -1) for t in (1, -1)]
+            self._r1 = _affine({(s, t): pedestal.arm(s) for s, t in pairs})
+            self._d = _affine({(s, t): body.reach(s, t) for s, t in pairs})
+            arms = {(s, t): body.statue_arm(t) for s, t in pairs}
+        upper = body if isinstance(body, Block) else body.statue
+        self.m2, self.i2, self.b2 = upper.mass, upper.centroidal_inertia, upper.b
+        self._r2 = _affine(arms)
+        self.frequency = max(upper.frequency(s, g) for s in (1, -1))
+        self._blocks = blocks
+        self._restitution = _checked_restitution(body, restitution)
+
+    # ---------------------------------------------------------------- motion
+
+    def fields(self, places: Pair, theta: Pair) -> tuple[Vector, Vector, Vector]:
+        """Vectors r1, d and r2 in the turned position for poles at these places [m]."""
+        r1 = self._r1.at(*places).turned(theta[0])
+        d = self._d.at(*places).turned(theta[0])
+        r2 = self._r2.at(*places).turned(theta[1])
+        return r1, d, r2
+
+    def terms(
+        self, poles: State, theta: Pair, omega: Pair, a: float
+    ) -> tuple[float, float, float, float, float]:
+        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (thesis eq. 2.43, 2.51, 2.55, 2.58)."""
+        r1, d, r2 = self.fields(poles, theta)
+        # acceleration of the centres where both θ'' are zero, with gravity as if the ground rose
+        x1, y1 = a - omega[0] ** 2 * r1.x, self.g - omega[0] ** 2 * r1.y
+        x2 = a - omega[0] ** 2 * d.x - omega[1] ** 2 * r2.x
+        y2 = self.g - omega[0] ** 2 * d.y - omega[1] ** 2 * r2.y
+        f1 = self.m1 * (r1.y * x1 - r1.x * y1) + self.m2 * (d.y * x2 - d.x * y2)
+        f2 = self.m2 * (r2.y * x2 - r2.x * y2)
+        m11 = self.i1 + self.m1 * _dot(r1, r1) + self.m2 * _dot(d, d)
+        m22 = self.i2 + self.m2 * _dot(r2, r2)
+        return m11, self.m2 * _dot(d, r2), m22, f1, f2
+
+    def accelerations(self, state: State, theta: Pair, omega: Pair, a: float) -> Pair:
+        """Angular accelerations in this contact state [rad/s²]."""
+        c1, c2 = state
+        if c1 == 0 and c2 == 0:
+            return 0.0, 0.0
+        m11, m12, m22, f1, f2 = self.terms((c1 or 1, c2 or 1), theta, omega, a)
+        if c1 == 0:
+            return 0.0, -f2 / m22
+        if c2 == 0:
+            q = -(f1 + f2) / (m11 + 2 * m12 + m22)
+            return q, q
+        det = m11 * m22 - m12 * m12
+        return (m12 * f2 - m22 * f1) / det, (m12 * f1 - m11 * f2) / det
+
+    def kinetic_energy(self, state: State, theta: Pair, omega: Pair) -> float:
+        """Kinetic energy relative to the ground [J]."""
+        m11, m12, m22, _, _ = self.terms((state[0] or 1, state[1] or 1), theta, omega, 0.0)
+        return (m11 * omega[0] ** 2 + 2 * m12 * omega[0] * omega[1] + m22 * omega[1] ** 2) / 2
+
+    def potential_energy(self, state: State, theta: Pair) -> float:
+        """Weight times height of the centres above the ground as it lies [J]."""
+        r1, d, r2 = self.fields((state[0] or 1, state[1] or 1), theta)
+        return self.g * (self.m1 * r1.y + self.m2 * (d.y + r2.y))
+
+    # ----------------------------------------------------------- persistence
+
+    def margins(
+        self, state: State, theta: Pair, omega: Pair, a: float
+    ) -> dict[tuple[int, int], float]:
+        """How firmly each full contact presses about each corner, {(contact, pole): margin} [-].
+
+        The contact moment s τ(s), over weight times half width; below zero the contact would have
+        to pull and opens about that pole.
+        """
+        c1, c2 = state
+        q1, q2 = self.accelerations(state, theta, omega, a)
+        found = {}
+        if c2 == 0:
+            for s in (1, -1):
+                _, m12, m22, _, f2 = self.terms((c1 or 1, s), theta, omega, a)
+                found[2, s] = s * (m12 * q1 + m22 * q2 + f2) / (self.m2 * self.g * self.b2)
+        if c1 == 0 and not self.alone:
+            for s in (1, -1):
+                m11, m12, m22, f1, f2 = self.terms((s, c2 or 1), theta, omega, a)
+                moment = m11 * q1 + m12 * q2 + f1
+                if c2 == 0:
+                    moment += m12 * q1 + m22 * q2 + f2
+                found[1, s] = s * moment / ((self.m1 + self.m2) * self.g * self.b1)
+        return found
+
+    def options(self, state: State, closed: tuple[bool, bool], closing: State) -> Iterator[State]:
+        """List the states that the contacts allow, open before stuck, the ground first.
+
+        ``closed`` says which contacts are full or just closing, ``closing`` holds the old pole of
+        each contact that just closes (0 if it does not): it does not rebound on it.
+        """
+        choices = []
+        for contact in (0, 1):
+            if contact == 0 and self.alone:
+                choices.append([0])
+            elif not closed[contact]:
+                choices.append([state[contact]])
+            elif closing[contact]:
+                choices.append([-closing[contact], 0])
+            else:
+                choices.append([1, -1, 0])
+        for c1, c2 in itertools.product(*choices):  # noqa: UP028 - mypy needs the pair spelled out
+            yield c1, c2
+
+    def settled(self, state: State, theta: Pair, omega: Pair, a: float) -> State:
+        """Open every full contact that cannot persist; several may open at once."""
+        if all(margin >= 0 for margin in self.margins(state, theta, omega, a).values()):
+            return state
+        closed = (state[0] == 0, state[1] == 0)
+        for candidate in self.options(state, closed, (0, 0)):
+            if candidate == state:
+                continue
+            q1, q2 = self.accelerations(candidate, theta, omega, a)
+            apart = (candidate[0] * q1, candidate[1] * (q2 - q1))
+            opens = all(apart[i] > 0 for i in (0, 1) if closed[i] and candidate[i] != 0)
+            if opens and all(
+                margin >= 0 for margin in self.margins(candidate, theta, omega, a).values()
+            ):
+                return candidate
+        if min(self.margins(state, theta, omega, a).values()) > -1e-9:
+            return state
+        raise ArithmeticError(f"no contact state is consistent at {state}, {theta}, {omega}, {a}")
+
+    # ---------------------------------------------------------------- impact
+
+    def products(
+        self, test: Pair, field: State, theta: Pair
+    ) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Kinetic-metric products of the fields about ``test`` with those about ``field``."""
+        r1t, dt, r2t = self.fields(test, theta)
+        r1, d, r2 = self.fields(field, theta)
+        return (
+            (self.i1 + self.m1 * _dot(r1t, r1) + self.m2 * _dot(dt, d), self.m2 * _dot(dt, r2)),
+            (self.m2 * _dot(r2t, d), self.i2 + self.m2 * _dot(r2t, r2)),
+        )
+
+    def impulses(
+        self, test: Pair, new: State, old: State, theta: Pair, after: Pair, before: Pair
+    ) -> Pair:
+        """Generalised impulses about ``test``: momenta after less momenta before."""
+        late = self.products(test, (new[0] or 1, new[1] or 1), theta)
+        early = self.products(test, (old[0] or 1, old[1] or 1), theta)
+        j1, j2 = (
+            late[i][0] * after[0]
+            + late[i][1] * after[1]
+            - early[i][0] * before[0]
+            - early[i][1] * before[1]
+            for i in (0, 1)
+        )
+        return j1, j2
+
+    def projected(self, test: Pair, new: State, old: State, theta: Pair, before: Pair) -> Pair:
+        """Velocities after an impact without impulse about ``test``; full contacts share theirs."""
+        c1, c2 = new
+        if c1 == 0 and c2 == 0:
+            return 0.0, 0.0
+        left = self.products(test, (c1 or 1, c2 or 1), theta)
+        momenta = self.impulses(test, new, old, theta, (0.0, 0.0), before)
+        p1, p2 = -momenta[0], -momenta[1]
+        if c1 == 0:
+            return 0.0, p2 / left[1][1]
+        if c2 == 0:
+            q = (p1 + p2) / sum(left[0] + left[1])
+            return q, q
+        det = left[0][0] * left[1][1] - left[0][1] * left[1][0]
+        return (
+            (p1 * left[1][1] - p2 * left[0][1]) / det,
+            (p2 * left[0][0] - p1 * left[1][0]) / det,
+        )
+
+    def velocities_after(
+        self, new: State, old: State, closing: State, theta: Pair, before: Pair
+    ) -> tuple[Pair, Pair]:
+        """Velocities after an impact that ends in ``new``, and the places the impulses act at.
+
+        The measured restitution of a closing contact moves its impulse away from the new pole;
+        where that would create energy the impulse acts at the pole after all.
+        """
+        poles = (float(new[0] or 1), float(new[1] or 1))
+        places = tuple(
+            self._impulse_place(i, closing[i]) if closing[i] and new[i] else poles[i]
+            for i in (0, 1)
+        )
+        if places != poles:
+            after = self.projected((places[0], places[1]), new, old, theta, before)
+            energy = self.kinetic_energy(old, theta, before)
+            if self.kinetic_energy(new, theta, after) <= energy * (1 + 1e-12):
+                return after, (places[0], places[1])
+        return self.projected(poles, new, old, theta, before), poles
+
+    def impact(self, old: State, closing: State, theta: Pair, before: Pair) -> tuple[State, Pair]:
+        """Contact state and angular velocities after an impact (thesis eq. 2.76 to 2.86, mended).
+
+        ``closing`` holds the old pole of each contact that closes, 0 for the others.
+        """
+        admissible = self.admissible_impacts(old, closing, theta, before)
+        outcome = next(admissible, None)
+        if outcome is None:
+            raise ArithmeticError(f"no impact is admissible at {old}, {closing}, {theta}, {before}")
+        return outcome
+
+    def admissible_impacts(
+        self, old: State, closing: State, theta: Pair, before: Pair
+    ) -> Iterator[tuple[State, Pair]]:
+        """List every outcome of an impact that separates and presses as it must."""
+        closed = (old[0] == 0 or closing[0] != 0, old[1] == 0 or closing[1] != 0)
+        speed = NEGLIGIBLE_SPEED * max(abs(before[0]), abs(before[1]))
+        for new in self.options(old, closed, closing):
+            after, places = self.velocities_after(new, old, closing, theta, before)
+            apart = (new[0] * after[0], new[1] * (after[1] - after[0]))
+            separates = all(apart[i] > speed for i in (0, 1) if closed[i] and new[i] != 0)
+            if separates and self._presses(new, old, places, theta, after, before):
+                yield new, after
+
+    def _presses(
+        self, new: State, old: State, places: Pair, theta: Pair, after: Pair, before: Pair
+    ) -> bool:
+        """Whether the impulses push at every contact that is full after the impact."""
+        slack = -NEGLIGIBLE_SPEED * math.hypot(*before)
+        for s in (1, -1):
+            if new[1] == 0:
+                j2 = self.impulses((places[0], s), new, old, theta, after, before)[1]
+                if s * j2 < slack * (self.i2 + self.m2 * self.b2**2):
+                    return False
+            if new[0] == 0 and not self.alone:
+                j1, j2 = self.impulses((s, places[1]), new, old, theta, after, before)
+                moment = j1 + j2 if new[1] == 0 else j1
+                if s * moment < slack * (self.i1 + self.m1 * self.b1**2):
+                    return False
+        return True
+
+    def _impulse_place(self, contact: int, old_pole: int) -> float:
+        """Where the impulse of a closing contact acts, as a fraction of the half width."""
+        value, block = self._restitution[contact], self._blocks[contact]
+        if value is None or block is None:
+            return float(-old_pole)
+        return impulse_place(block, old_pole, value)
+
+
+class LinearModel(Model):
+    """The linearised equations: 2.9 for a lone block, 2.60 to 2.65 (mended) for a stack.
+
+    Masses and impact maps are those of the standing blocks, sin θ = θ, cos θ = 1, and products of
+    angles and velocities are dropped.
+    """
+
+    def __init__(self, body: Body, g: float, restitution: object = None) -> None:
+        super().__init__(body, g, restitution)
+        self._lone = body if isinstance(body, Block) else None
+
+    def fields(self, places: Pair, theta: Pair) -> tuple[Vector, Vector, Vector]:
+        """Vectors r1, d and r2 of the standing blocks [m]."""
+        return super().fields(places, (0.0, 0.0))
+
+    def terms(
+        self, poles: State, theta: Pair, omega: Pair, a: float
+    ) -> tuple[float, float, float, float, float]:
+        """Return M11, M12, M22, f1, f2 of the linearised equations."""
+        r1, d, r2 = self.fields(poles, theta)
+        m11 = self.i1 + self.m1 * _dot(r1, r1) + self.m2 * _dot(d, d)
+        m12, m22 = self.m2 * _dot(d, r2), self.i2 + self.m2 * _dot(r2, r2)
+        if self._lone is not None:
+            # 2.9 goes one step further: sin θc = θc and cos θc = 1
+            radius = self._lone.radius(poles[1])
+            r2 = Vector(-poles[1] * self._lone.critical_angle(poles[1]) * radius, radius)
+        moment1 = Vector(self.m1 * r1.x + self.m2 * d.x, self.m1 * r1.y + self.m2 * d.y)
+        f1 = moment1.y * a - self.g * (moment1.x + moment1.y * theta[0])
+        f2 = self.m2 * (r2.y * a - self.g * (r2.x + r2.y * theta[1]))
+        return m11, m12, m22, f1, f2
+
+
+def impulse_place(block: Block, old_pole: int, value: float) -> float:
+    """Place of an impulse that leaves a lone block with ω⁺ = value · ω⁻, over the half width [-].
+
+    Conservation of angular momentum about a point x of the base, I + m (C - x)·(C - pole), before
+    about the old pole and after about the other; x is that other pole where momentum is conserved.
+    """
+    centre = block.centre
+    k = block.centroidal_inertia / block.mass + centre.y**2
+    lever = k * (1 - value) / (old_pole * block.b * (1 + value) - centre.x * (1 - value))
+    return (centre.x - lever) / block.b
+
+
+def largest_restitution(block: Block) -> float:
+    """Largest ratio of angular velocities that does not create energy on either pole [-]."""
+    right, left = block.pole_inertia(1), block.pole_inertia(-1)
+    return math.sqrt(min(right, left) / max(right, left))
+
+
+def _checked_restitution(body: Body, restitution: object) -> tuple[float | None, float | None]:
+    if restitution is None:
+        return None, None
+    if isinstance(body, Block):
+        return None, _checked_value("restitution", body, restitution)
+    if not (isinstance(restitution, tuple | list) and len(restitution) == 2):
+        raise InputError(
+            f"restitution: a stack needs a pair (ground, interface), got {restitution!r}."
+        )
+    ground, interface = restitution
+    return (
+        _checked_value("restitution[0] (ground)", body.pedestal, ground),
+        _checked_value("restitution[1] (interface)", body.statue, interface),
+    )
+
+
+def _checked_value(name: str, block: Block, value: object) -> float | None:
+    if value is None:
+        return None
+    largest = largest_restitution(block)
+    if isinstance(value, int | float) and 0 <= value <= largest * (1 + 1e-12):
+        return float(value)
+    raise InputError(
+        f"{name}: a ratio of angular velocities must lie between 0 and {largest:.6g}, above which "
+        f"an impact would create energy, got {value!r}."
+    )

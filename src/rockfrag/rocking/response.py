@@ -1,0 +1,103 @@
+"""What a simulation returns."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.rocking.bodies import Body
+
+PATTERNS = {
+    (0, 0): "rest",
+    (1, 1): "1a",
+    (-1, -1): "1b",
+    (1, -1): "2a",
+    (-1, 1): "2b",
+    (1, 0): "3a",
+    (-1, 0): "3b",
+    (0, 1): "4a",
+    (0, -1): "4b",
+}
+"""Names of thesis Fig. 2.3 for the contact states (ground, interface)."""
+
+
+@dataclass(frozen=True)
+class Response:
+    """Response of one body to one motion.
+
+    Columns are (block,) for a lone block and (pedestal, statue) for a stack.
+
+    Attributes
+    ----------
+    body
+        The body that was simulated.
+    time
+        Times of the samples [s], shape (n,); the motion and the free rocking after it.
+    ground_acceleration
+        Acceleration of the ground at these times [m/s²], shape (n,).
+    theta, omega, alpha
+        Rotations [rad], angular velocities [rad/s] and accelerations [rad/s²], shape (n, blocks).
+    state
+        Contact states +1, -1 (rocking on the right, left pole) or 0 (full contact), shape (n, blocks).
+    events
+        One row per opening, impact or closed chatter: ``time`` [s], ``kind``, ``from``, ``to`` (patterns),
+        ``omega_before``, ``omega_after`` [rad/s] (tuples), ``energy_before``, ``energy_after`` (kinetic) [J].
+    overturned
+        Whether a block fell.
+    overturned_body
+        ``"block"``, ``"pedestal"``, ``"statue"``, or ``""``.
+    overturning_time
+        When it lay down [s], NaN if it did not.
+    energy
+        Table over time [J]: ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_ground``
+        and ``lost_interface`` (in impacts so far), and ``residual``, which is zero but for rounding.
+    normal_force, friction_force
+        Forces of each interface on the block above it [N], shape (n, blocks).
+    impacts, grazings
+        Numbers of impacts, and of contacts that met with less than 1e-3 rad/s.
+    closest_approach
+        Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
+        p times it for the velocity); a small number means that the verdict was close to flipping.
+    """
+
+    body: Body
+    time: NDArray[np.float64]
+    ground_acceleration: NDArray[np.float64]
+    theta: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    alpha: NDArray[np.float64]
+    state: NDArray[np.int64]
+    events: pd.DataFrame
+    overturned: bool
+    overturned_body: str
+    overturning_time: float
+    energy: pd.DataFrame
+    normal_force: NDArray[np.float64]
+    friction_force: NDArray[np.float64]
+    impacts: int
+    grazings: int
+    closest_approach: float
+
+    @property
+    def pattern(self) -> NDArray[np.str_]:
+        """Pattern of rocking at each sample ("rest", "4a", …), shape (n,)."""
+        state = self.state
+        if state.shape[1] == 1:
+            state = np.column_stack([np.zeros(len(state), dtype=int), state])
+        return np.array([PATTERNS[int(one), int(two)] for one, two in state])
+
+    @property
+    def least_normal_force(self) -> NDArray[np.float64]:
+        """Least normal force at each interface [N], shape (blocks,); ≤ 0: the block would have jumped."""
+        return np.asarray(self.normal_force.min(axis=0))
+
+    @property
+    def friction_demand(self) -> NDArray[np.float64]:
+        """Largest |T| / N that the model silently assumes at each interface [-], shape (blocks,).
+
+        Infinite where the normal force was not positive.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.abs(self.friction_force) / self.normal_force
+        return np.asarray(np.where(self.normal_force > 0, ratio, np.inf).max(axis=0))

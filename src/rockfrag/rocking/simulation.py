@@ -1,0 +1,279 @@
+"""One body, one motion, everything about the response."""
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import _march as kmarch
+from rockfrag.rocking import _mechanics as km
+from rockfrag.rocking.bodies import Block, Body
+from rockfrag.rocking.forces import contact_forces
+from rockfrag.rocking.parameters import Restitution, body_parameters
+from rockfrag.rocking.response import PATTERNS, Response
+from rockfrag.units import STANDARD_GRAVITY
+
+STEP = 0.1
+"""Largest p h of a step: frequency parameter of the faster block times step."""
+
+CLOSING_SPEED = 1e-6
+"""Separation speed after an impact [rad/s] below which a contact stays closed."""
+
+FREE_TIME = 60.0
+"""Free rocking after the motion is followed for at most this long, in units of 1/p."""
+
+MOST_SAMPLES = 20_000_000
+
+WEAK_MOTION = 0.05
+"""A peak acceleration [m/s²] below this was probably given in g."""
+
+
+def checked_acceleration(
+    acceleration: ArrayLike, dt: float, name: str = "acceleration"
+) -> NDArray[np.float64]:
+    """Return the samples as a float array [m/s²], or say in one sentence why they cannot be used.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two samples, one is not finite, or ``dt`` is not positive.
+    """
+    try:
+        values = np.ascontiguousarray(acceleration, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"{name}: expected numbers [m/s²], got {type(acceleration).__name__}."
+        ) from error
+    if values.ndim != 1:
+        raise InputError(f"{name}: expected shape (n,), got {values.shape}.")
+    if values.size < 2:
+        raise InputError(f"{name}: a motion needs at least two samples, got {values.size}.")
+    if values.size > MOST_SAMPLES:
+        raise InputError(f"{name}: {values.size} samples are more than the {MOST_SAMPLES} allowed.")
+    if not np.isfinite(values).all():
+        first = int(np.flatnonzero(~np.isfinite(values))[0])
+        raise InputError(f"{name}: sample {first} is not a finite number.")
+    if np.abs(values).max() > 1e4:
+        raise InputError(
+            f"{name}: a peak of {np.abs(values).max():.3g} m/s² is beyond any earthquake; check the unit."
+        )
+    if (
+        isinstance(dt, bool)
+        or not isinstance(dt, (int, float, np.number))
+        or not (math.isfinite(dt) and dt > 0)
+    ):
+        raise InputError(f"dt: expected a positive number of seconds, got {dt!r}.")
+    return values
+
+
+def warn_if_weak(values: NDArray[np.float64]) -> None:
+    """Warn if the motion looks as if it were given in g."""
+    peak = float(np.abs(values).max())
+    if 0 < peak < WEAK_MOTION:
+        warnings.warn(
+            f"the peak acceleration is {peak:.3g} m/s²; if the motion is in g, multiply it by 9.81",
+            UserWarning,
+            stacklevel=3,
+        )
+
+
+def fastest_frequency(body: Body, g: float) -> float:
+    """Largest frequency parameter p of the body's blocks [1/s]."""
+    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.statue)
+    return max(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
+
+
+def slowest_frequency(body: Body, g: float) -> float:
+    """Smallest frequency parameter p of the ways in which the body rocks [1/s]."""
+    blocks = (body,) if isinstance(body, Block) else (body.statue, body.glued())
+    return min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
+
+
+def step_count(body: Body, dt: float, g: float, step: float) -> int:
+    """Steps per sample so that p h does not exceed ``step``."""
+    steps = math.ceil(fastest_frequency(body, g) * dt / step - 1e-9)
+    if steps > 10_000:
+        raise InputError(
+            f"dt: {dt} s is too long for a block of p = {fastest_frequency(body, g):.3g} 1/s."
+        )
+    return max(1, steps)
+
+
+def _initial(body: Body, value: float | Sequence[float] | None, name: str) -> list[float]:
+    blocks = 1 if isinstance(body, Block) else 2
+    if value is None:
+        return [0.0, 0.0]
+    values = [float(v) for v in np.atleast_1d(np.asarray(value, dtype=float))]
+    if len(values) != blocks or not all(math.isfinite(v) for v in values):
+        raise InputError(f"{name}: expected {blocks} finite number(s), got {value!r}.")
+    if name == "theta0" and any(abs(v) >= math.pi / 2 for v in values):
+        raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
+    return [0.0, *values] if blocks == 1 else values
+
+
+def simulate(
+    body: Body,
+    acceleration: ArrayLike,
+    dt: float,
+    *,
+    theta0: float | Sequence[float] | None = None,
+    omega0: float | Sequence[float] | None = None,
+    restitution: Restitution = None,
+    linear: bool = False,
+    g: float = STANDARD_GRAVITY,
+) -> Response:
+    """Simulate the rocking of a block, or of a statue on its pedestal, under a horizontal motion.
+
+    Parameters
+    ----------
+    body
+        A :class:`Block` or a :class:`Stack`.
+    acceleration
+        Acceleration of the ground or floor [m/s²], shape (n,), linear between samples, n ≥ 2.
+    dt
+        Sampling interval [s].
+    theta0, omega0
+        Rotations [rad] and angular velocities [rad/s] at the start: a number, or (pedestal, statue).
+    restitution
+        Measured ratio of angular velocities of an impact: a number, or (ground, interface); None, the
+        default, conserves momentum (thesis eq. 2.14, 2.76-2.86).
+    linear
+        Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
+    g
+        Acceleration of gravity [m/s²].
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used; the message says which and why.
+    """
+    values = checked_acceleration(acceleration, dt)
+    warn_if_weak(values)
+    p = body_parameters(body, restitution, linear, g)
+    first, second = _initial(body, theta0, "theta0"), _initial(body, omega0, "omega0")
+    initial = np.array([first[0], second[0], first[1], second[1]])
+    free = math.ceil(FREE_TIME / slowest_frequency(body, g) / dt)
+    history = np.zeros((values.size + free, kmarch.HISTORY))
+    summary = np.zeros(kmarch.SUMMARY)
+    capacity = 4096
+    while True:
+        events = np.zeros((capacity, kmarch.EVENT))
+        done = kmarch.march(
+            p, values, float(dt), 1.0, step_count(body, dt, g, STEP), free, initial,
+            CLOSING_SPEED, history, events, kmarch.scratch(), summary,
+        )  # fmt: skip
+        count = int(summary[kmarch.N_EVENTS])
+        if count <= capacity:
+            break
+        capacity = count
+    return _response(body, p, values, dt, history[:done], events[:count], summary, g)
+
+
+def _response(
+    body: Body,
+    p: NDArray[np.float64],
+    values: NDArray[np.float64],
+    dt: float,
+    history: NDArray[np.float64],
+    events: NDArray[np.float64],
+    summary: NDArray[np.float64],
+    g: float,
+) -> Response:
+    n = len(history)
+    blocks = [1] if isinstance(body, Block) else [0, 1]
+    theta = history[:, [0, 2]][:, blocks]
+    omega = history[:, [1, 3]][:, blocks]
+    alpha = history[:, [6, 7]][:, blocks]
+    state = history[:, [4, 5]][:, blocks].astype(np.int64)
+    ground = np.zeros(n)
+    ground[: min(n, values.size)] = values[:n]
+    normal, friction = contact_forces(body, ground, state, theta, omega, alpha, g)
+    time = np.arange(n) * dt
+    table = _event_table(events, blocks)
+    fallen = int(summary[kmarch.FALLEN])
+    return Response(
+        body=body,
+        time=time,
+        ground_acceleration=ground,
+        theta=theta,
+        omega=omega,
+        alpha=alpha,
+        state=state,
+        events=table,
+        overturned=fallen > 0,
+        overturned_body=("", "pedestal", "block" if isinstance(body, Block) else "statue")[fallen],
+        overturning_time=float(summary[kmarch.FALL_TIME]),
+        energy=_energy_table(p, time, history, events),
+        normal_force=normal,
+        friction_force=friction,
+        impacts=int(summary[kmarch.IMPACTS]),
+        grazings=int(summary[kmarch.GRAZINGS]),
+        closest_approach=float(summary[kmarch.CLOSEST]),
+    )
+
+
+def _event_table(events: NDArray[np.float64], blocks: list[int]) -> pd.DataFrame:
+    kinds = {kmarch.OPENING: "opening", kmarch.CLOSING: "impact", kmarch.CHATTER: "chatter"}
+    rows: list[dict[str, Any]] = [
+        {
+            "time": row[0],
+            "kind": kinds[row[1]],
+            "from": PATTERNS[int(row[2]), int(row[3])],
+            "to": PATTERNS[int(row[4]), int(row[5])],
+            "omega_before": tuple(row[[6, 7]][blocks].tolist()),
+            "omega_after": tuple(row[[8, 9]][blocks].tolist()),
+            "theta": tuple(row[[10, 11]][blocks].tolist()),
+            "energy_before": row[12],
+            "energy_after": row[13],
+        }
+        for row in events
+    ]
+    columns = [
+        "time", "kind", "from", "to", "omega_before", "omega_after", "theta",
+        "energy_before", "energy_after",
+    ]  # fmt: skip
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _energy_table(
+    p: NDArray[np.float64],
+    time: NDArray[np.float64],
+    history: NDArray[np.float64],
+    events: NDArray[np.float64],
+) -> pd.DataFrame:
+    """Ledger of energy by cause over time [J]."""
+    kinetic = np.empty(len(history))
+    potential = np.empty(len(history))
+    for i, row in enumerate(history):
+        c1, c2 = int(row[4]), int(row[5])
+        kinetic[i] = km.kinetic_energy(p, c1, c2, row[0], row[1], row[2], row[3])
+        potential[i] = km.potential_energy(p, c1, c2, row[0], row[2])
+    # an impact closes the ground if the pedestal's contact changed, the interface otherwise
+    by_ground = (events[:, 2] != 0) & (events[:, 2] != events[:, 4])
+    loss = np.where(events[:, 1] == kmarch.OPENING, 0.0, events[:, 12] - events[:, 13])
+    at = np.searchsorted(time, events[:, 0] - 1e-12 * max(1.0, time[-1]))
+
+    def so_far(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        total = np.zeros(len(time) + 1)
+        np.add.at(total, at, values)
+        return np.cumsum(total)[: len(time)]
+
+    lost_ground, lost_interface = so_far(loss * by_ground), so_far(loss * ~by_ground)
+    work = history[:, 8]
+    start = kinetic[0] + potential[0]
+    return pd.DataFrame(
+        {
+            "time": time,
+            "kinetic": kinetic,
+            "potential": potential,
+            "input": work,
+            "lost_ground": lost_ground,
+            "lost_interface": lost_interface,
+            "residual": kinetic + potential + lost_ground + lost_interface - work - start,
+        }
+    )
