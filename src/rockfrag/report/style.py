@@ -1,11 +1,12 @@
-"""How every figure of a report looks, and how it is written so that two runs give the same bytes."""
+"""How every figure of a report looks, and how it is written to the same bytes in every run."""
 
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from types import MappingProxyType
+from typing import Any
 
 import matplotlib as mpl
+from cycler import cycler
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -28,41 +29,39 @@ OKABE_ITO = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK, YELLOW)
 COLUMN_WIDTH, PAGE_WIDTH = 3.5, 7.0
 """Widths of figures for one and for two columns of a journal [in]."""
 
-STYLE = MappingProxyType(
-    {
-        "font.family": "sans-serif",
-        "font.sans-serif": ["DejaVu Sans"],
-        "font.size": 8,
-        "axes.titlesize": 8.5,
-        "axes.labelsize": 8,
-        "xtick.labelsize": 7.5,
-        "ytick.labelsize": 7.5,
-        "legend.fontsize": 7.5,
-        "legend.frameon": False,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "axes.linewidth": 0.7,
-        "axes.grid": False,
-        "axes.axisbelow": True,
-        "grid.color": "#dddddd",
-        "grid.linewidth": 0.6,
-        "lines.linewidth": 1.2,
-        "lines.markersize": 4.5,
-        "axes.prop_cycle": mpl.cycler(color=OKABE_ITO),
-        "figure.constrained_layout.use": True,
-        "savefig.dpi": 200,
-        # identifiers inside an SVG are random unless they are salted
-        "svg.hashsalt": "rockfrag",
-        "svg.fonttype": "path",
-        "path.simplify": True,
-    }
-)
+STYLE: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8,
+    "axes.titlesize": 8.5,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.7,
+    "axes.grid": False,
+    "axes.axisbelow": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 4.5,
+    "axes.prop_cycle": cycler(color=OKABE_ITO),
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 200,
+    # identifiers inside an SVG are random unless they are salted
+    "svg.hashsalt": "rockfrag",
+    "svg.fonttype": "path",
+    "path.simplify": True,
+}
 
 
 @contextmanager
 def figure_style() -> Iterator[None]:
     """Draw and save figures inside this block."""
-    with mpl.rc_context(dict(STYLE)):
+    with mpl.rc_context(STYLE):
         yield
 
 

@@ -1,4 +1,4 @@
-"""Studies: what is to be computed, read from a configuration file and checked before anything runs."""
+"""Studies: what is to be computed, read from a configuration file and checked first."""
 
 from rockfrag.studies.study import Study, load_study, study_from
 

@@ -49,8 +49,9 @@ class Configuration:
 def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
     """Read a table of blocks.
 
-    Columns: ``name``, ``width_cm``, ``height_cm``, ``mass_g`` and, where the block is not a uniform
-    rectangle, ``inertia_kg_m2`` (about the centre of gravity), ``cg_height_cm`` and ``cg_offset_cm``.
+    Columns: ``name``, ``width_cm``, ``height_cm``, ``mass_g`` and, where the block is not a
+    uniform rectangle, ``inertia_kg_m2`` (about the centre of gravity), ``cg_height_cm`` and
+    ``cg_offset_cm``.
 
     Raises
     ------
@@ -100,8 +101,8 @@ def read_configurations(
     Raises
     ------
     InputError
-        If the file or a cell is not as expected, a name is given twice, a block is not known, or the
-        tower does not fit on the pedestal.
+        If the file or a cell is not as expected, a name is given twice, a block is not known, or
+        the tower does not fit on the pedestal.
     """
     found: dict[str, Configuration] = {}
     slugs: dict[str, str] = {}

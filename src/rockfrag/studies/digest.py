@@ -21,8 +21,8 @@ STAGES = (
 def source_digest(last: str) -> str:
     """Return a digest of every source file that a result of the stage ``last`` can depend on.
 
-    These are the modules at the package's top level, the reading of studies, and the folders up to and
-    including ``last``. An edit in the report thus leaves the response histories alone.
+    These are the modules at the package's top level, the reading of studies, and the folders up to
+    and including ``last``. An edit in the report thus leaves the response histories alone.
     """
     root = Path(__file__).resolve().parents[1]
     folders = [*STAGES[: STAGES.index(last) + 1], "studies"]

@@ -56,8 +56,8 @@ def read_rows(
     Raises
     ------
     InputError
-        If the file cannot be read, has no rows, lacks a required column, has one that is not known, or
-        a row has more or fewer cells than the header.
+        If the file cannot be read, has no rows, lacks a required column, has one that is not known,
+        or a row has more or fewer cells than the header.
     """
     needed, known = list(required), [*required, *optional]
     try:

@@ -84,17 +84,18 @@ def _expected(schema: Mapping[str, Any], fallback: str) -> str:
 
 def _sentence(error: ValidationError) -> str:
     schema: Mapping[str, Any] = error.schema if isinstance(error.schema, Mapping) else {}
+    instance: Any = error.instance
     if error.validator == "additionalProperties":
         known = sorted(schema.get("properties", {}))
-        wrong = sorted(str(name) for name in error.instance if name not in known)[0]
+        wrong = sorted(str(name) for name in instance if name not in known)[0]
         close = difflib.get_close_matches(wrong, known, n=1)
         hint = f"did you mean {close[0]}?" if close else f"expected one of {', '.join(known)}."
         return f"key {_key(error, wrong)} is not known; {hint}"
     if error.validator == "required":
-        missing = next(name for name in error.validator_value if name not in error.instance)
+        missing = next(name for name in schema["required"] if name not in instance)
         wanted = schema.get("properties", {}).get(missing, {})
         return f"key {_key(error, missing)} is missing; expected {_expected(wanted, 'a value')}."
     return (
         f"key {_key(error)}: expected {_expected(schema, error.message)}, "
-        f"found {json.dumps(error.instance, ensure_ascii=False, default=str)}."
+        f"found {json.dumps(instance, ensure_ascii=False, default=str)}."
     )

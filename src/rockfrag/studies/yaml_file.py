@@ -33,11 +33,11 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the file cannot be read, is not UTF-8 or not YAML, gives a key twice, or is not a mapping.
+        If the file cannot be read, is not UTF-8 or not YAML, gives a key twice, or is no mapping.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
-        content = yaml.load(text, Loader=_StrictLoader)  # noqa: S506 (a subclass of the safe loader)
+        content = yaml.load(text, Loader=_StrictLoader)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}).") from error
     except UnicodeDecodeError as error:
