@@ -72,7 +72,11 @@ class Motion:
         return float(np.abs(self.acceleration).max())
 
     def after(
-        self, step: str, acceleration: NDArray[np.float64], dt: float | None = None, **parameters: Any
+        self,
+        step: str,
+        acceleration: NDArray[np.float64],
+        dt: float | None = None,
+        **parameters: Any,
     ) -> "Motion":
         """Return the motion that ``step`` made of this one, with the step in its provenance."""
         return replace(

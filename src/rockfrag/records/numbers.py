@@ -1,0 +1,127 @@
+"""Numbers out of text: fast, independent of the locale, and strict.
+
+The fast way is numpy's own parser of separated numbers, which rounds correctly. Anything it cannot
+take is looked at line by line, so that the error names the line.
+"""
+
+import re
+import warnings
+
+import numpy as np
+from numpy.typing import NDArray
+
+_D_EXPONENT = bytes.maketrans(b"Dd", b"Ee")
+_EXPONENT_WITHOUT_LETTER = re.compile(rb"^([+-]?(?:\d+\.?\d*|\.\d+))([+-]\d{1,3})$")
+_NUMBER = re.compile(rb"^[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?$")
+_SHOWN = 24
+
+
+class NumberError(ValueError):
+    """Text that is not a number; ``line`` counts from zero in the text that was given."""
+
+    def __init__(self, line: int, what: str) -> None:
+        super().__init__(what)
+        self.line = line
+
+
+def parse_separated(text: bytes) -> NDArray[np.float64]:
+    """Parse numbers separated by white space, shape (n,).
+
+    Fortran's ``D`` exponents and exponents without a letter (``1.5-101``) are understood.
+
+    Raises
+    ------
+    NumberError
+        At the first token that is not a finite number.
+    """
+    body = text.strip()
+    if not body:
+        return np.empty(0)
+    if b"D" in body or b"d" in body:
+        body = body.translate(_D_EXPONENT)
+    values = _fast(body)
+    if values is None or not np.isfinite(values).all():
+        return _line_by_line(text)
+    return values
+
+
+def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
+    """Parse fixed-width Fortran fields, which need no blank between them, shape (n,).
+
+    Raises
+    ------
+    NumberError
+        At the first line with a field that is not one finite number.
+    """
+    padded = []
+    for line in lines:
+        stripped = line.rstrip()
+        padded.append(stripped.ljust(-(-len(stripped) // width) * width))
+    joined = b"".join(padded)
+    if not joined:
+        return np.empty(0)
+    fields = np.frombuffer(joined, dtype=np.uint8).reshape(-1, width)
+    # a blank after every field turns columns into separated numbers
+    separated = np.full((fields.shape[0], width + 1), ord(" "), dtype=np.uint8)
+    separated[:, :width] = fields
+    filled = separated > ord(" ")
+    starts = filled[:, :-1].astype(np.int8)
+    tokens = (np.diff(starts, axis=1) == 1).sum(axis=1) + starts[:, 0]
+    if (tokens != 1).any():
+        first = int(np.flatnonzero(tokens != 1)[0])
+        raise NumberError(_line_of_field(padded, width, first), "a field is not one number")
+    try:
+        values = parse_separated(separated.tobytes())
+    except NumberError as error:
+        raise NumberError(_line_of_bad_field(padded, width), str(error)) from None
+    return values
+
+
+def _fast(body: bytes) -> NDArray[np.float64] | None:
+    with warnings.catch_warnings():
+        # numpy before 2.4 warns where later ones raise
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(body, dtype=np.float64, sep=" ")  # type: ignore[arg-type]
+        except (ValueError, DeprecationWarning):
+            return None
+
+
+def _line_by_line(text: bytes) -> NDArray[np.float64]:
+    values: list[float] = []
+    for number, line in enumerate(text.split(b"\n")):
+        values.extend(_number(token, number) for token in line.split())
+    return np.array(values)
+
+
+def _number(token: bytes, line: int) -> float:
+    plain = token.translate(_D_EXPONENT)
+    match = _EXPONENT_WITHOUT_LETTER.match(plain)
+    if match:
+        plain = match.group(1) + b"E" + match.group(2)
+    if not _NUMBER.match(plain):
+        raise NumberError(line, f"{_shown(token)} is not a number")
+    value = float(plain)
+    if not np.isfinite(value):
+        raise NumberError(line, f"{_shown(token)} is too large for a number")
+    return value
+
+
+def _shown(token: bytes) -> str:
+    short = token[:_SHOWN].decode("ascii", errors="replace")
+    return repr(short + "…" if len(token) > _SHOWN else short)
+
+
+def _line_of_field(padded: list[bytes], width: int, field: int) -> int:
+    ends = np.cumsum([len(line) // width for line in padded])
+    return int(np.searchsorted(ends, field, side="right"))
+
+
+def _line_of_bad_field(padded: list[bytes], width: int) -> int:
+    for number, line in enumerate(padded):
+        for start in range(0, len(line), width):
+            try:
+                parse_separated(line[start : start + width])
+            except NumberError:
+                return number
+    return 0

@@ -1,0 +1,80 @@
+"""Units that accelerations are stored in, and the words that formats use for them."""
+
+import re
+
+from rockfrag.errors import InputError
+from rockfrag.units import STANDARD_GRAVITY
+
+TO_SI = {
+    "g": STANDARD_GRAVITY,
+    "g/10": STANDARD_GRAVITY / 10,
+    "mg": STANDARD_GRAVITY / 1e3,
+    "ug": STANDARD_GRAVITY / 1e6,
+    "m/s2": 1.0,
+    "cm/s2": 0.01,
+    "mm/s2": 0.001,
+    "in/s2": 0.0254,
+}
+"""Factor from each unit of acceleration to m/s²."""
+
+ASKED_UNITS = ("g", "m/s2", "cm/s2", "gal", "mm/s2")
+"""Units that a user may name for a file that does not state its own."""
+
+_SYNONYMS = {
+    "gal": "cm/s2",
+    "gals": "cm/s2",
+    "g's": "g",
+    "gs": "g",
+    "microg": "ug",
+    "milli-g": "mg",
+    "micro-g": "ug",
+    "inch/s2": "in/s2",
+    "inches/s2": "in/s2",
+}
+_OTHER_QUANTITIES = {
+    "m/s": "velocity",
+    "cm/s": "velocity",
+    "mm/s": "velocity",
+    "in/s": "velocity",
+    "m": "displacement",
+    "cm": "displacement",
+    "mm": "displacement",
+    "in": "displacement",
+}
+
+
+def canonical_unit(words: str) -> str:
+    """Return the one spelling used here for a unit, or the words themselves if it is unknown.
+
+    ``CM/SEC/SEC``, ``cm/s^2``, ``cm/sec2``, ``cm s-2`` and ``gal`` all give ``cm/s2``.
+    """
+    unit = re.sub(r"\s+", "", words.strip().strip("().,;").lower())
+    unit = re.sub(r"seconds?|secs?", "s", unit)
+    unit = unit.replace("**", "").replace("^", "").replace("²", "2").replace("cm.", "cm")
+    unit = re.sub(r"/s/s$|/\(s2\)$|/ss$|\.?s-2$|/s\*s$", "/s2", unit)
+    unit = re.sub(r"\.?s-1$", "/s", unit)
+    return _SYNONYMS.get(unit, unit)
+
+
+def quantity_of(unit: str) -> str:
+    """Return ``acceleration``, ``velocity`` or ``displacement`` for a canonical unit, or ``""``."""
+    if unit in TO_SI:
+        return "acceleration"
+    return _OTHER_QUANTITIES.get(unit, "")
+
+
+def asked_unit(unit: str) -> str:
+    """Check a unit that the user named and return its canonical spelling.
+
+    Raises
+    ------
+    InputError
+        If it is not one of :data:`ASKED_UNITS`.
+    """
+    found = canonical_unit(unit)
+    if found not in {canonical_unit(known) for known in ASKED_UNITS}:
+        raise InputError(
+            f"unit {unit!r} is not a unit of acceleration known here; "
+            f"give one of {', '.join(ASKED_UNITS)}."
+        )
+    return found
