@@ -1,0 +1,143 @@
+"""Test protocols: amplitudes raised from rest until the first overturning or the limit."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.shaketable.measurement import Accelerometer, Exact, Measurement
+from rockfrag.shaketable.steps import Steps
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Bounds of the overturning amplitude of one test.
+
+    Attributes
+    ----------
+    lower_g
+        Largest amplitude survived on the way [g]; 0 if the first one overturned.
+    upper_g
+        Amplitude that overturned [g]; NaN if none did.
+    remark
+        What a reader of the figure has to know.
+    """
+
+    lower_g: float
+    upper_g: float
+    remark: str = ""
+
+    @property
+    def censored(self) -> bool:
+        """Whether it is only known that the amplitude is above ``lower_g``."""
+        return math.isnan(self.upper_g)
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """What the laboratory does with one specimen and one motion, and what it writes down.
+
+    Each amplitude is a test of its own: the specimen stands at rest and feels the whole motion.
+
+    Attributes
+    ----------
+    steps
+        Ladder of amplitudes.
+    limit_g
+        Amplitude at which the tests stop unless the shaker's limit comes first [g].
+    repetitions
+        Number of times the ladder is climbed. Repetition r starts r/repetitions of a step later, as
+        the gain of a force-guided shaker is not set to the digit, so repetitions sample what the
+        coarseness of the steps does to the figure.
+    reading
+        Amplitude reported: the largest ``before`` overturning, or the one ``at`` overturning.
+    measurement
+        How the amplitude becomes a figure.
+
+    Raises
+    ------
+    InputError
+        If the limit or the number of repetitions is not positive, or the reading is unknown.
+    """
+
+    steps: Steps
+    limit_g: float = 2.0
+    repetitions: int = 1
+    reading: Literal["before", "at"] = "before"
+    measurement: Measurement = field(default_factory=Exact)
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.limit_g) and self.limit_g > 0):
+            raise InputError(
+                f"protocol: limit_g must be a positive number of g, got {self.limit_g}."
+            )
+        if not (type(self.repetitions) is int and self.repetitions >= 1):
+            raise InputError(
+                f"protocol: repetitions must be a whole number from 1, got {self.repetitions}."
+            )
+        if self.reading not in ("before", "at"):
+            raise InputError(f"protocol: reading must be 'before' or 'at', got {self.reading!r}.")
+
+    def amplitudes(self, limit_g: float | None = None, repetition: int = 1) -> Floats:
+        """Amplitudes to be tested [g], rising.
+
+        Parameters
+        ----------
+        limit_g
+            Limit of the shaker for this motion [g], if it has one.
+        repetition
+            Number of the repetition, from 1.
+        """
+        limit = self.limit_g if limit_g is None else min(limit_g, self.limit_g)
+        return self.steps.amplitudes(limit, (repetition - 1) / self.repetitions)
+
+    def report(self, outcome: Outcome) -> float:
+        """Return the figure reported [g]; NaN if censored or nothing was survived."""
+        if outcome.censored:
+            return math.nan
+        if self.reading == "at":
+            return outcome.upper_g
+        return outcome.lower_g if outcome.lower_g > 0 else math.nan
+
+
+def climb(amplitudes: Sequence[float] | Floats, overturns: Callable[[float], bool]) -> Outcome:
+    """Raise the amplitude until the first overturning.
+
+    Parameters
+    ----------
+    amplitudes
+        Amplitudes [g], rising.
+    overturns
+        Whether the specimen, at rest first, overturns at an amplitude [g]; not asked again after
+        the first yes.
+    """
+    survived = 0.0
+    for amplitude in amplitudes:
+        if overturns(float(amplitude)):
+            remark = "" if survived > 0 else "overturned at the first step"
+            return Outcome(survived, float(amplitude), remark)
+        survived = float(amplitude)
+    return Outcome(survived, math.nan, "limit reached" if survived > 0 else "no step fits")
+
+
+def measured(outcome: Outcome, measurement: Measurement, configuration: str) -> Outcome:
+    """Return an outcome as the instruments show it.
+
+    An accelerometer at the end of its range gives a lower bound only.
+    """
+    if isinstance(measurement, Accelerometer):
+        true = outcome.lower_g if outcome.censored else outcome.upper_g
+        if true > measurement.clip_g:
+            lower = measurement.measure(outcome.lower_g, configuration)
+            return Outcome(lower, math.nan, "accelerometer clipped")
+    return replace(
+        outcome,
+        lower_g=measurement.measure(outcome.lower_g, configuration),
+        upper_g=measurement.measure(outcome.upper_g, configuration),
+    )

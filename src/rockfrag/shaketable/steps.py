@@ -1,0 +1,117 @@
+"""Ladders of amplitudes: how a laboratory raises the motion from test to test."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.units import STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
+
+MOST_STEPS = 100_000
+"""A ladder with more steps than this is a slip: nobody shakes a block that often."""
+
+
+@dataclass(frozen=True)
+class LinearSteps:
+    """Amplitudes that grow by the same amount.
+
+    Attributes
+    ----------
+    start_g
+        First amplitude [g].
+    step_g
+        Difference of one amplitude and the next [g].
+    """
+
+    start_g: float
+    step_g: float
+
+    def __post_init__(self) -> None:
+        _check_positive("linear steps", start_g=self.start_g, step_g=self.step_g)
+
+    def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
+        """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
+        count = _count((limit_g - self.start_g) / self.step_g - phase)
+        return self.start_g + self.step_g * (phase + np.arange(count))
+
+
+@dataclass(frozen=True)
+class GeometricSteps:
+    """Amplitudes that grow by the same factor.
+
+    Attributes
+    ----------
+    start_g
+        First amplitude [g].
+    growth
+        Growth from one amplitude to the next [-]; 0.05 raises each by 5 %.
+    """
+
+    start_g: float
+    growth: float
+
+    def __post_init__(self) -> None:
+        _check_positive("geometric steps", start_g=self.start_g, growth=self.growth)
+
+    def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
+        """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
+        ratio = limit_g / self.start_g
+        rungs = math.log(ratio) / math.log1p(self.growth) if ratio > 0 else -1.0
+        count = _count(rungs - phase)
+        return np.asarray(self.start_g * (1 + self.growth) ** (phase + np.arange(count)))
+
+
+@dataclass(frozen=True)
+class ForceSteps:
+    """Amplitudes set by the shaker's force, which grows by the same amount.
+
+    Attributes
+    ----------
+    start_n
+        First peak force [N].
+    step_n
+        Difference of one force and the next [N].
+    moved_mass_kg
+        Mass that the shaker moves: armature, table and specimen [kg].
+    """
+
+    start_n: float
+    step_n: float
+    moved_mass_kg: float
+
+    def __post_init__(self) -> None:
+        _check_positive(
+            "force steps",
+            start_n=self.start_n,
+            step_n=self.step_n,
+            moved_mass_kg=self.moved_mass_kg,
+        )
+
+    def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
+        """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
+        weight = self.moved_mass_kg * STANDARD_GRAVITY
+        ladder = LinearSteps(self.start_n / weight, self.step_n / weight)
+        return ladder.amplitudes(limit_g, phase)
+
+
+Steps = LinearSteps | GeometricSteps | ForceSteps
+
+
+def _count(rungs: float) -> int:
+    # the last rung counts when it meets the limit within rounding
+    count = math.floor(rungs + 1e-9) + 1
+    if count > MOST_STEPS:
+        raise InputError(
+            f"protocol: steps so small that {count} of them fit below the limit; enlarge them."
+        )
+    return max(count, 0)
+
+
+def _check_positive(owner: str, **values: float) -> None:
+    for name, value in values.items():
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(f"{owner}: {name} must be a positive number, got {value}.")

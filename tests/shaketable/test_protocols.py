@@ -1,0 +1,194 @@
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rockfrag.errors import InputError
+from rockfrag.shaketable.measurement import Accelerometer, ForceOverMass
+from rockfrag.shaketable.protocols import Outcome, Protocol, climb, measured
+from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
+from rockfrag.shaketable.sweeps import (
+    always_overturning,
+    first_overturning,
+    read_sweep,
+    step_protocol,
+    survival_windows,
+)
+from rockfrag.shaketable.tests_table import COLUMNS
+
+GRID = np.round(np.arange(0.05, 1.0001, 0.01), 10)
+# overturns from 0.30 to 0.34, survives to 0.50, overturns above: one survival window
+WINDOW = ((GRID > 0.295) & (GRID < 0.345)) | (GRID > 0.505)
+
+sweeps = st.lists(st.booleans(), min_size=1, max_size=60).map(np.array)
+
+
+def grid(verdicts):
+    return 0.05 + 0.01 * np.arange(len(verdicts))
+
+
+def sweep_table(overturned=WINDOW, amplitudes=GRID, **fields):
+    columns = {"configuration": "T1", "tower": "T1", "pedestal": "NP", "motion": "Kobe_GF"}
+    columns |= {"event": "Kobe", "floor": "GF"} | fields
+    body = np.where(overturned, "statue", "")
+    return pd.DataFrame(
+        {"amplitude_g": amplitudes, "overturned": overturned, "overturned_body": body, **columns}
+    )
+
+
+def test_ladders_climb_as_their_names_say():
+    assert LinearSteps(0.1, 0.1).amplitudes(0.5) == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5])
+    assert GeometricSteps(0.1, 1.0).amplitudes(0.8) == pytest.approx([0.1, 0.2, 0.4, 0.8])
+    force = ForceSteps(98.1, 98.1, moved_mass_kg=100.0)
+    assert force.amplitudes(0.35) == pytest.approx([0.1, 0.2, 0.3])
+    assert LinearSteps(0.1, 0.1).amplitudes(0.05).size == 0
+
+
+def test_the_lab_stops_at_the_first_overturning():
+    asked = []
+
+    def overturns(amplitude):
+        asked.append(amplitude)
+        return amplitude > 0.25
+
+    assert climb([0.1, 0.2, 0.3, 0.4], overturns) == Outcome(0.2, 0.3)
+    assert asked == [0.1, 0.2, 0.3]
+
+
+def test_three_readings_of_one_sweep_differ():
+    protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0)
+    assert step_protocol(GRID, WINDOW, protocol) == Outcome(0.45, 0.55)
+    assert first_overturning(GRID, WINDOW) == Outcome(0.29, 0.30)
+    assert always_overturning(GRID, WINDOW) == Outcome(0.50, 0.51)
+    assert survival_windows(GRID, WINDOW) == [(0.35, 0.50)]
+
+
+def test_repetitions_start_within_a_step_of_each_other():
+    protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, repetitions=2)
+    table = read_sweep(sweep_table(), protocol, readings=["step_protocol"])
+    assert table["repetition"].tolist() == [1, 2]
+    assert table["upper_g"].tolist() == pytest.approx([0.55, 0.30])
+
+
+def test_a_table_of_tests_has_the_schema_of_the_contract():
+    table = read_sweep(sweep_table(), Protocol(LinearSteps(0.05, 0.05)))
+    assert tuple(table.columns) == COLUMNS
+    assert table["reading"].tolist() == ["step_protocol", "first_overturning", "always_overturning"]
+    assert (table["amplitude_g"] == table["lower_g"]).all()
+    assert (table["overturned_body"] == "statue").all()
+    assert read_sweep(sweep_table().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(
+        table.dtypes
+    )
+
+
+def test_at_overturning_reports_the_upper_bound():
+    protocol = Protocol(LinearSteps(0.05, 0.05), reading="at")
+    table = read_sweep(sweep_table(), protocol)
+    assert (table["amplitude_g"] == table["upper_g"]).all()
+
+
+def test_the_shakers_limit_censors_the_step_protocol_only():
+    table = read_sweep(
+        sweep_table(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_GF": 0.272}
+    ).set_index("reading")
+    lab = table.loc["step_protocol"]
+    assert lab["lower_g"] == pytest.approx(0.25)
+    assert math.isnan(lab["upper_g"]) and math.isnan(lab["amplitude_g"])
+    assert (lab["censored"], lab["overturned_body"]) == ("right", "")
+    assert table.loc["first_overturning", "upper_g"] == pytest.approx(0.30)
+
+
+def test_overturning_at_the_first_step_leaves_nothing_to_report_before_it():
+    table = read_sweep(sweep_table(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
+    assert (table["lower_g"] == 0).all()
+    assert table["amplitude_g"].isna().all()
+    assert (table["censored"] == "none").all()
+    assert (table["remark"] == "overturned at the first step").all()
+
+
+def test_unaccounted_mass_raises_light_specimens_more():
+    lab = ForceOverMass({"T1": 20.0, "P T1": 50.0}, unaccounted_mass=10.0)
+    assert measured(Outcome(0.2, 0.4), lab, "T1").upper_g == pytest.approx(0.6)
+    assert measured(Outcome(0.2, 0.4), lab, "P T1").upper_g == pytest.approx(0.48)
+    with pytest.raises(InputError, match="no mass is given for configuration 'T9'"):
+        lab.measure(1.0, "T9")
+
+
+def test_a_clipped_accelerometer_gives_a_lower_bound_only():
+    shown = measured(Outcome(0.45, 0.55), Accelerometer(0.5), "T1")
+    assert shown.censored and shown.lower_g == 0.45
+    assert measured(Outcome(0.55, 0.65), Accelerometer(0.5), "T1").lower_g == 0.5
+    assert measured(Outcome(0.3, 0.4), Accelerometer(0.5), "T1") == Outcome(0.3, 0.4)
+
+
+@given(verdicts=sweeps, step=st.floats(0.003, 0.3), start=st.floats(0.01, 0.5))
+def test_the_bounds_hold_a_survival_and_an_overturning(verdicts, step, start):
+    amplitudes = grid(verdicts)
+    outcome = step_protocol(amplitudes, verdicts, Protocol(LinearSteps(start, step)))
+    known = dict(zip(amplitudes, verdicts, strict=True))
+    assert outcome.lower_g == 0 or not known[outcome.lower_g]
+    if not outcome.censored:
+        assert outcome.lower_g < outcome.upper_g
+        assert known[outcome.upper_g]
+
+
+@given(verdicts=sweeps)
+def test_fine_steps_find_the_first_overturning(verdicts):
+    amplitudes = grid(verdicts)
+    fine = Protocol(LinearSteps(0.05, 0.002))
+    assert step_protocol(amplitudes, verdicts, fine) == first_overturning(amplitudes, verdicts)
+
+
+@given(verdicts=sweeps, step=st.floats(0.003, 0.3))
+def test_no_protocol_overturns_below_the_first_overturning(verdicts, step):
+    amplitudes = grid(verdicts)
+    outcome = step_protocol(amplitudes, verdicts, Protocol(LinearSteps(0.05, step)))
+    if not outcome.censored:
+        assert outcome.upper_g >= first_overturning(amplitudes, verdicts).upper_g
+
+
+@given(verdicts=sweeps)
+def test_survival_windows_lie_between_first_and_always(verdicts):
+    amplitudes = grid(verdicts)
+    first = first_overturning(amplitudes, verdicts)
+    always = always_overturning(amplitudes, verdicts)
+    windows = survival_windows(amplitudes, verdicts)
+    inside = sum(((amplitudes >= a) & (amplitudes <= b)).sum() for a, b in windows)
+    assert inside == ((~verdicts) & (amplitudes > first.upper_g)).sum()
+    assert bool(windows) == (not first.censored and always.lower_g > first.upper_g)
+
+
+@given(growth=st.floats(0.01, 0.5), threshold=st.floats(0.1, 1.5))
+def test_a_monotone_specimen_is_bracketed_within_one_step(growth, threshold):
+    protocol = Protocol(GeometricSteps(0.05, growth), limit_g=3.0)
+    outcome = climb(protocol.amplitudes(), lambda amplitude: amplitude > threshold)
+    assert outcome.lower_g <= threshold < outcome.upper_g
+    assert outcome.upper_g / outcome.lower_g == pytest.approx(1 + growth)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: LinearSteps(0.1, 0.0), "step_g must be a positive number"),
+        (lambda: GeometricSteps(-0.1, 0.1), "start_g must be a positive number"),
+        (lambda: Protocol(LinearSteps(0.1, 0.1), limit_g=math.inf), "limit_g"),
+        (lambda: Protocol(LinearSteps(0.1, 0.1), repetitions=0), "repetitions"),
+        (lambda: LinearSteps(0.1, 1e-9).amplitudes(1.0), "so small"),
+        (lambda: Accelerometer(0.0), "clip_g"),
+        (lambda: ForceOverMass({"T1": 5.0}, -6.0), "must be positive masses"),
+    ],
+)
+def test_protocols_that_make_no_sense_are_refused(make, message):
+    with pytest.raises(InputError, match=message):
+        make()
+
+
+def test_sweeps_with_missing_columns_or_doubled_amplitudes_are_refused():
+    protocol = Protocol(LinearSteps(0.1, 0.1))
+    with pytest.raises(InputError, match="'event' is missing"):
+        read_sweep(sweep_table().drop(columns="event"), protocol)
+    with pytest.raises(InputError, match="T1 Kobe_GF: amplitudes must"):
+        read_sweep(pd.concat([sweep_table(), sweep_table()]), protocol)
