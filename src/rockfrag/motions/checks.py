@@ -28,7 +28,7 @@ def positive(owner: str, name: str, value: Any, unit: str = "") -> float:
 
 
 def not_negative(owner: str, name: str, value: Any, unit: str = "") -> float:
-    """Return ``value`` as a float if it is zero or a positive finite number; InputError otherwise."""
+    """Return ``value`` as a float if it is zero or positive and finite; InputError otherwise."""
     if number(owner, name, value, unit) < 0:
         raise InputError(f"{owner}: {name} must not be negative, got {value!r}{_of(unit)}.")
     return float(value)

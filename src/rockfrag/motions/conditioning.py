@@ -46,8 +46,8 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
     """Subtract the second derivative of a polynomial fitted to the displacement.
 
     The polynomial has no constant and no linear term, so that displacement and velocity still start
-    from zero; order 6 is the rule of the PEER ground motion database (Ancheta et al. 2013, PEER Report
-    2013/03, section 3.2.2).
+    from zero; order 6 is the rule of the PEER ground motion database (Ancheta et al. 2013, PEER
+    Report 2013/03).
 
     Parameters
     ----------

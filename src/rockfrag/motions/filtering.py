@@ -1,8 +1,9 @@
 """Steps that change the frequency content or the sampling: acausal Butterworth filters, resampling.
 
-The filters are ObsPy's, run forwards and backwards: no phase shift, and a response that is the square of
-the Butterworth response of the given order (at a corner -6 dB, not -3 dB).  They start from rest at
-either end; put zero pads first where the displacement matters (:func:`rockfrag.motions.pad`).
+The filters are ObsPy's, run forwards and backwards: no phase shift, and a response that is the
+square of the Butterworth response of the given order (at a corner -6 dB, not -3 dB).  They start
+from rest at either end; put zero pads first where the displacement matters
+(:func:`rockfrag.motions.pad`).
 """
 
 from fractions import Fraction
@@ -55,7 +56,8 @@ def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> M
     Raises
     ------
     InputError
-        If a corner is not between zero and Nyquist, the band is empty, or the order is not from 1 to 10.
+        If a corner is not between zero and Nyquist, the band is empty, or the order is not from 1
+        to 10.
     """
     low_hz = _corner("bandpass", "low_hz", low_hz, motion)
     high_hz = _corner("bandpass", "high_hz", high_hz, motion)
@@ -74,7 +76,7 @@ def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> M
 def resample(motion: Motion, dt_s: float) -> Motion:
     """Change the sampling interval of a band-limited signal (SciPy's polyphase filter).
 
-    The filter takes out what the coarser of the two samplings cannot carry, and so there is no aliasing.
+    The filter takes out what the coarser of the two samplings cannot carry, so nothing is aliased.
     The values between samples become those of the band-limited signal, not of the straight lines:
     peaks change; :func:`interpolate` keeps the lines.
 
@@ -102,7 +104,7 @@ def resample(motion: Motion, dt_s: float) -> Motion:
 
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:
-    """Sample the straight lines between samples more finely; the motion as a function stays the same.
+    """Sample the straight lines between samples more finely; the motion itself stays the same.
 
     Parameters
     ----------
@@ -118,8 +120,8 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
     parts = round(motion.dt / dt_s)
     if not 1 <= parts <= 1000 or abs(parts * dt_s / motion.dt - 1) > 1e-9:
         raise InputError(
-            f"step interpolate: dt_s {dt_s} is not a whole fraction of the motion's dt {motion.dt}; "
-            "choose one that is, or use the step resample."
+            f"step interpolate: dt_s {dt_s} is not a whole fraction of the motion's dt "
+            f"{motion.dt}; choose one that is, or use the step resample."
         )
     old = np.arange(motion.acceleration.size) * parts
     samples = np.interp(np.arange(old[-1] + 1), old, motion.acceleration)

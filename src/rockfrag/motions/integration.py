@@ -2,11 +2,14 @@
 
 In an interval that starts with acceleration a₀, velocity v₀ and displacement d₀ and ends with a₁,
 
-    a(τ) = a₀ + s τ,   v(τ) = v₀ + a₀ τ + s τ²/2,   d(τ) = d₀ + v₀ τ + a₀ τ²/2 + s τ³/6,   s = (a₁ - a₀)/dt,
+    a(τ) = a₀ + s τ,   s = (a₁ - a₀)/dt,
+    v(τ) = v₀ + a₀ τ + s τ²/2,
+    d(τ) = d₀ + v₀ τ + a₀ τ²/2 + s τ³/6,
 
-so nothing is lost by integrating and the peaks can be located between samples as well: that of the
-velocity where a(τ) = 0, that of the displacement where v(τ) = 0.  With g = 9.81 m/s² this is the rule
-that gives every figure of Table 3.3 of the thesis; the largest *sample* of the velocity does not.
+so nothing is lost by integrating, and the peaks can be located between samples as well: that of the
+velocity where a(τ) = 0, that of the displacement where v(τ) = 0.  With g = 9.81 m/s² this is the
+rule that gives every figure of Table 3.3 of the thesis; the largest *sample* of the velocity does
+not.
 """
 
 import numpy as np
@@ -37,7 +40,7 @@ def integrate(acceleration: Floats, dt: float) -> tuple[Floats, Floats]:
 
 
 def velocity_extremes(acceleration: Floats, dt: float) -> Floats:
-    """Return the velocity at every sample and at every zero of the acceleration between samples [m/s]."""
+    """Return the velocity at samples and where the acceleration crosses zero between them [m/s]."""
     velocity, _ = integrate(acceleration, dt)
     a0, a1 = acceleration[:-1], acceleration[1:]
     turns = a0 * a1 < 0
@@ -47,7 +50,7 @@ def velocity_extremes(acceleration: Floats, dt: float) -> Floats:
 
 
 def displacement_extremes(acceleration: Floats, dt: float) -> Floats:
-    """Return the displacement at every sample and at every zero of the velocity between samples [m]."""
+    """Return the displacement at samples and where the velocity crosses zero between them [m]."""
     velocity, displacement = integrate(acceleration, dt)
     a0, v0, d0 = acceleration[:-1], velocity[:-1], displacement[:-1]
     slope = np.diff(acceleration) / dt

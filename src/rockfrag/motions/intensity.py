@@ -1,7 +1,8 @@
 """Intensity measures of one component, in SI units, each with its definition and source.
 
-Acceleration is linear between samples, and every integral below is the exact one of that function: values
-differ slightly from those of programs that apply the trapezoidal rule to a², |a| or the velocity.
+Acceleration is linear between samples, and every integral below is the exact one of that function:
+values differ slightly from those of programs that apply the trapezoidal rule to a², |a| or
+velocity.
 """
 
 import math
@@ -46,7 +47,11 @@ def cumulative_arias(motion: Motion) -> Floats:
 
 
 def arias(motion: Motion) -> float:
-    """Arias intensity π/(2g) ∫ a² dt [m/s] (Arias 1970, in Seismic Design for Nuclear Power Plants, MIT)."""
+    """Arias intensity π/(2g) ∫ a² dt [m/s].
+
+    Arias (1970), A measure of earthquake intensity, in: Seismic Design for Nuclear Power Plants,
+    MIT Press, 438-483.
+    """
     return float(cumulative_arias(motion)[-1])
 
 
@@ -60,7 +65,7 @@ def cav(motion: Motion) -> float:
 
 
 def arias_times(motion: Motion, lower: float, upper: float) -> tuple[float, float]:
-    """Times at which two fractions of the Arias intensity are reached [s].
+    """Find the times at which two fractions of the Arias intensity are reached [s].
 
     The cumulative intensity is read linearly between samples.  Both are NaN for a motion of zeros.
 
@@ -77,10 +82,10 @@ def arias_times(motion: Motion, lower: float, upper: float) -> tuple[float, floa
 
 
 def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> float:
-    """Significant duration [s]: from ``lower`` to ``upper`` of the Arias intensity; NaN if that is zero.
+    """Time between two fractions of the Arias intensity [s]; NaN for a motion of zeros.
 
-    D5-95 by Trifunac & Brady (1975, Bull. Seism. Soc. Am. 65(3), 581-626), D5-75 by Somerville et al.
-    (1997, Seism. Res. Lett. 68(1), 199-222).
+    D5-95 by Trifunac & Brady (1975, Bull. Seism. Soc. Am. 65(3), 581-626), D5-75 by Somerville et
+    al. (1997, Seism. Res. Lett. 68(1), 199-222).
     """
     start, end = arias_times(motion, lower, upper)
     return end - start
@@ -101,8 +106,8 @@ def mean_period(motion: Motion) -> float:
     """Mean period Tm = Σ C²/f / Σ C² over 0.25 ≤ f ≤ 20 Hz [s]; NaN where there is no such content.
 
     C are Fourier amplitudes (Rathje, Abrahamson & Bray 1998, J. Geotech. Geoenviron. Eng. 124(2),
-    150-159).  Zeros are added so that frequencies are at most 0.05 Hz apart, as Rathje et al. (2004,
-    Earthquake Spectra 20(1), 119-144) require.
+    150-159).  Zeros are added so that frequencies are at most 0.05 Hz apart, as Rathje et al.
+    (2004, Earthquake Spectra 20(1), 119-144) require.
     """
     frequency, amplitude = fourier_amplitude(motion, math.ceil(1 / (0.05 * motion.dt)))
     band = (frequency >= 0.25) & (frequency <= 20.0)
@@ -116,7 +121,7 @@ PREDOMINANT_PERIODS = np.geomspace(0.02, 10.0, 541)
 
 
 def predominant_period(motion: Motion) -> float:
-    """Predominant period Tp [s]: the period of the largest 5 % damped PSA; NaN for a motion of zeros.
+    """Period Tp of the largest 5 % damped PSA [s]; NaN for a motion of zeros.
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
     """
@@ -147,8 +152,9 @@ HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
 def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
     """Housner (spectrum) intensity ∫ PSV(T, ζ) dT from 0.1 to 2.5 s [m].
 
-    Housner (1952, Symposium on Earthquake and Blast Effects on Structures, UCLA); by the trapezoidal rule
-    on steps of 0.01 s.  Housner left the damping open (he used 0 and 20 %); 5 % is today's custom.
+    Housner (1952, Symposium on Earthquake and Blast Effects on Structures, UCLA); by the
+    trapezoidal rule on steps of 0.01 s.  Housner gave curves for undamped and 20 % damped
+    oscillators; 5 % is today's custom.
     """
     spectrum = response_spectrum(motion, HOUSNER_PERIODS, damping)
     return float(np.trapezoid(spectrum.pseudo_velocity, HOUSNER_PERIODS))

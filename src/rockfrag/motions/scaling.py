@@ -58,9 +58,9 @@ def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
 def compress_time(motion: Motion, factor: float) -> Motion:
     """Divide all times by a similitude factor, with the acceleration unchanged.
 
-    A model at length scale 1 : λ under the same gravity needs the factor √λ; velocities are divided by
-    √λ and displacements by λ (similitude of Froude; Harris & Sabnis 1999, Structural Modeling and
-    Experimental Techniques, 2nd ed.).  A factor below one stretches time.
+    A model at length scale 1 : λ under the same gravity needs the factor √λ; velocities are divided
+    by √λ and displacements by λ (similitude of Froude; Harris & Sabnis 1999, Structural Modeling
+    and Experimental Techniques, 2nd ed.).  A factor below one stretches time.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Steps that keep the strong part of a motion.
 
-What is cut away had given the kept part a velocity; the kept part starts from rest and so integrates to
-other velocities.  Baseline steps after the cut are the user's choice.
+What is cut away had given the kept part a velocity; the kept part starts from rest and so
+integrates to other velocities.  Baseline steps after the cut are the user's choice.
 """
 
 import math
@@ -72,8 +72,8 @@ def trim(motion: Motion, start_s: float, end_s: float) -> Motion:
     length = float(motion.time[-1])
     if not start_s < end_s <= length + motion.dt / 2:
         raise InputError(
-            f"step trim: the window from {start_s} to {end_s} s does not lie inside the {length:g} s "
-            f"of motion {motion.name!r}."
+            f"step trim: the window from {start_s} to {end_s} s does not lie inside the {length:g} "
+            f"s of motion {motion.name!r}."
         )
     return _between(motion, "trim", start_s, end_s)
 

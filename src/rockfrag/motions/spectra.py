@@ -17,8 +17,8 @@ Floats = NDArray[np.float64]
 STEPS_PER_PERIOD = 50
 """Least number of steps in one natural period.
 
-Between two steps a response is taken as the cubic through both values and both slopes; its error is at
-most (2π/50)⁴/384 = 6.5e-7 of the peak, which is what "peak" means to six digits here.
+Between two steps a response is taken as the cubic through both values and both slopes; its error is
+at most (2π/50)⁴/384 = 6.5e-7 of the amplitude, so peaks are right to six digits.
 """
 
 
@@ -60,10 +60,10 @@ class ResponseSpectrum:
 def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
     """Exact propagator of an oscillator over one step of linearly varying ground acceleration.
 
-    The state is (u, u', a, s): relative displacement and velocity, ground acceleration and its slope;
-    u'' + 2 ζ ω u' + ω² u = -a, a' = s. The propagator is the exponential of that system's matrix, which
-    is the recursion of Nigam & Jennings (1969, Bull. Seism. Soc. Am. 59(2), 909-922) without its case
-    distinctions, for any damping, at and above critical too.
+    The state is (u, u', a, s): relative displacement and velocity, ground acceleration and its
+    slope; u'' + 2 ζ ω u' + ω² u = -a, a' = s.  The propagator is the exponential of that system's
+    matrix: the recursion of Nigam & Jennings (1969, Bull. Seism. Soc. Am. 59(2), 909-922) without
+    its case distinctions, for any damping, at and above critical too.
 
     Returns
     -------
@@ -76,7 +76,7 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
     return np.asarray(expm(system * step)[:2], dtype=np.float64)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _histories(acceleration: Floats, step: float, matrix: Floats) -> tuple[Floats, Floats]:
     """Relative displacement and velocity at the samples, from rest."""
     n = acceleration.size
@@ -89,7 +89,7 @@ def _histories(acceleration: Floats, step: float, matrix: Floats) -> tuple[Float
     return u, v
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _cubic_peak(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
     """Peak absolute value of the cubic with values x0, x1 and slopes m0, m1 at the ends of h."""
     peak = max(abs(x0), abs(x1))
@@ -111,11 +111,11 @@ def _cubic_peak(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
     return peak
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def _peaks(
     acceleration: Floats, step: float, parts: int, matrix: Floats, omega: float, damping: float
 ) -> tuple[float, float, float]:
-    """Peaks of relative displacement, relative velocity and total acceleration, between steps too."""
+    """Peaks of relative displacement and velocity and total acceleration, between steps too."""
     u = v = sd = sv = sa = 0.0
     c, k = 2 * damping * omega, omega * omega
     for i in range(acceleration.size - 1):
@@ -214,7 +214,8 @@ def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Fl
     motion
         Motion of n samples.
     least_length
-        Zeros are added behind the motion until it has this many samples, for a finer frequency step.
+        Zeros are added behind the motion until it has this many samples, for a finer frequency
+        step.
 
     Returns
     -------
@@ -224,7 +225,7 @@ def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Fl
     """
     length = max(motion.acceleration.size, least_length)
     amplitude = motion.dt * np.abs(np.fft.rfft(motion.acceleration, length))
-    return np.fft.rfftfreq(length, motion.dt), amplitude
+    return np.asarray(np.fft.rfftfreq(length, motion.dt), dtype=np.float64), amplitude
 
 
 def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
@@ -242,6 +243,6 @@ def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
 def _checked_damping(damping: float) -> float:
     if not (math.isfinite(damping) and damping >= 0):
         raise InputError(
-            f"response spectrum: damping must be a fraction of critical, zero or more, got {damping}."
+            f"response spectrum: damping is a fraction of critical, zero or more, not {damping}."
         )
     return float(damping)

@@ -1,0 +1,130 @@
+"""Tables of intensity measures, a row per motion, with the unit in the name of each column."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.motions import intensity
+from rockfrag.motions.checks import positive
+from rockfrag.motions.pulse_extraction import strongest_pulse
+from rockfrag.motions.spectra import response_spectrum
+from rockfrag.records.motion import Motion
+from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+
+SPECTRAL_PERIODS = (0.3, 1.0)
+"""Periods at which a table gives the 5 % damped spectrum unless others are asked for [s]."""
+
+
+def measure_motion(
+    motion: Motion, periods: Sequence[float] = SPECTRAL_PERIODS, damping: float = 0.05
+) -> dict[str, Any]:
+    """Give all intensity measures of one motion.
+
+    Parameters
+    ----------
+    motion
+        What to measure.
+    periods
+        Periods of the spectral measures [s].
+    damping
+        Damping of the spectral measures and of the Housner intensity [-].
+
+    Returns
+    -------
+    ``name``, ``event`` and ``floor`` (from the metadata, empty where not known), then ``pga_g``,
+    ``pgv_cm_s``, ``pgd_cm``, ``pgv_over_pga_s``, ``arias_m_s``, ``cav_m_s``, ``d5_75_s``, ``d5_95_s``,
+    ``mean_period_s``, ``predominant_period_s``; for each period such as 0.3 s ``sa_0_3s_g`` (pseudo),
+    ``sv_0_3s_cm_s`` and ``sd_0_3s_cm``; ``housner_cm``, ``pulse_period_s``, ``pulse_velocity_cm_s`` and
+    ``pulse_explained``.  A measure that does not exist for the motion, such as the duration of a motion
+    of zeros, is NaN.
+
+    Raises
+    ------
+    InputError
+        If a period is not positive or the damping negative.
+    """
+    pulse = strongest_pulse(motion)
+    cm = CENTIMETRES_PER_METRE
+    return {
+        "name": motion.name,
+        "event": str(motion.metadata.get("event", "")),
+        "floor": str(motion.metadata.get("floor", "")),
+        "pga_g": intensity.pga(motion) / STANDARD_GRAVITY,
+        "pgv_cm_s": intensity.pgv(motion) * cm,
+        "pgd_cm": intensity.pgd(motion) * cm,
+        "pgv_over_pga_s": intensity.pgv_over_pga(motion),
+        "arias_m_s": intensity.arias(motion),
+        "cav_m_s": intensity.cav(motion),
+        "d5_75_s": intensity.significant_duration(motion, 0.05, 0.75),
+        "d5_95_s": intensity.significant_duration(motion, 0.05, 0.95),
+        "mean_period_s": intensity.mean_period(motion),
+        "predominant_period_s": intensity.predominant_period(motion),
+        **_spectral(motion, periods, damping),
+        "housner_cm": intensity.housner_intensity(motion, damping) * cm,
+        "pulse_period_s": pulse.period,
+        "pulse_velocity_cm_s": pulse.velocity * cm,
+        "pulse_explained": pulse.explained,
+    }
+
+
+def measure_motions(
+    motions: Iterable[Motion],
+    periods: Sequence[float] = SPECTRAL_PERIODS,
+    damping: float = 0.05,
+) -> pd.DataFrame:
+    """Table of :func:`measure_motion`, a row per motion in the order given.
+
+    Raises
+    ------
+    InputError
+        If two motions have the same name, or as :func:`measure_motion`.
+    """
+    rows = [measure_motion(motion, periods, damping) for motion in motions]
+    table = pd.DataFrame(rows)
+    if rows and table["name"].duplicated().any():
+        twice = table.loc[table["name"].duplicated(), "name"].iloc[0]
+        raise InputError(f"measures: two motions are called {twice!r}; give each its own name.")
+    return table
+
+
+def rocking_measures(motion: Motion, alpha: float, p: float) -> dict[str, float]:
+    """Give the measures that compare a motion with one block.
+
+    Parameters
+    ----------
+    alpha
+        Critical angle of the block [rad].
+    p
+        Frequency parameter of the block [1/s].
+
+    Returns
+    -------
+    ``uplift_ratio`` a/(g tan α), ``velocity_ratio`` p PGV/(g tan α) and ``frequency_ratio`` ωp/p with ωp
+    that of the strongest pulse, all [-].
+
+    Raises
+    ------
+    InputError
+        If the angle or the frequency parameter is not positive.
+    """
+    p = positive("rocking_measures", "p", p, "1/s")
+    return {
+        "uplift_ratio": intensity.uplift_ratio(motion, alpha),
+        "velocity_ratio": intensity.velocity_ratio(motion, alpha, p),
+        "frequency_ratio": intensity.frequency_ratio(strongest_pulse(motion).period, p),
+    }
+
+
+def _spectral(motion: Motion, periods: Sequence[float], damping: float) -> dict[str, float]:
+    if not periods:
+        return {}
+    spectrum = response_spectrum(motion, periods, damping)
+    values: dict[str, float] = {}
+    for i, period in enumerate(spectrum.period):
+        label = f"{period:.12g}".replace(".", "_") + ("" if period % 1 else "_0") + "s"
+        values[f"sa_{label}_g"] = float(spectrum.pseudo_acceleration[i]) / STANDARD_GRAVITY
+        values[f"sv_{label}_cm_s"] = float(spectrum.velocity[i]) * CENTIMETRES_PER_METRE
+        values[f"sd_{label}_cm"] = float(spectrum.displacement[i]) * CENTIMETRES_PER_METRE
+    return values

@@ -1,0 +1,320 @@
+"""Idealised input motions: sine, half-sine and rectangular pulses, Ricker wavelets, sweeps.
+
+Each pulse starts and ends with a sample of zero.  The sampling interval is the largest one up to ``dt``
+that divides the pulse's duration; pulses that jump are sampled at the middle of the intervals, so that
+the jump is a line of one interval's length centred on it and the velocity left behind is exact.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.motions.checks import number, positive, whole
+from rockfrag.records.motion import Motion
+
+Floats = NDArray[np.float64]
+
+DT = 0.005
+"""Sampling interval that pulses have unless another is asked for [s]."""
+
+MOST_SAMPLES = 10_000_000
+"""More samples than this are taken for a mistake in a unit."""
+
+
+def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion:
+    """Sinusoidal acceleration a sin(2πt/T) of whole cycles from rest.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration a [m/s²], of either sign.
+    period
+        Period T [s].
+    cycles
+        Number of whole cycles, 1 to 1000.
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
+    """
+    cycles = whole("sine", "cycles", cycles, 1, 1000)
+    return _pulse(
+        "sine",
+        "steady harmonic motion from rest",
+        lambda t: np.sin(2 * np.pi * t / period),
+        cycles * positive("sine", "period", period, "seconds"),
+        dt,
+        amplitude=amplitude,
+        period=period,
+        cycles=cycles,
+    )
+
+
+def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
+    """One-sine acceleration pulse a sin(2πt/T), 0 ≤ t ≤ T: a forward ground displacement (type A).
+
+    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for :func:`sine`.
+    """
+    return _pulse(
+        "one_sine",
+        "Makris & Roussos (2000)",
+        lambda t: np.sin(2 * np.pi * t / period),
+        positive("one_sine", "period", period, "seconds"),
+        dt,
+        amplitude=amplitude,
+        period=period,
+    )
+
+
+def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
+    """One-cosine acceleration pulse a cos(2πt/T), 0 ≤ t ≤ T: forward and back (type B).
+
+    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for :func:`sine`.
+    The samples nearest its ends lie half an interval inside it, at cos(π dt/T) of the peak.
+    """
+    return _pulse(
+        "one_cosine",
+        "Makris & Roussos (2000)",
+        lambda t: np.cos(2 * np.pi * t / period),
+        positive("one_cosine", "period", period, "seconds"),
+        dt,
+        jumps=True,
+        amplitude=amplitude,
+        period=period,
+    )
+
+
+def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
+    """Half-sine acceleration pulse a sin(πt/d), 0 ≤ t ≤ d.
+
+    Housner (1963), Bull. Seism. Soc. Am. 53(2), 403-417.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration a [m/s²], of either sign.
+    duration
+        Duration d [s].
+    dt
+        Longest sampling interval [s].
+    """
+    return _pulse(
+        "half_sine",
+        "Housner (1963)",
+        lambda t: np.sin(np.pi * t / duration),
+        positive("half_sine", "duration", duration, "seconds"),
+        dt,
+        amplitude=amplitude,
+        duration=duration,
+    )
+
+
+def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
+    """Rectangular acceleration pulse of constant a for a duration d; it leaves the velocity a d.
+
+    Housner (1963), Bull. Seism. Soc. Am. 53(2), 403-417.  Parameters as for :func:`half_sine`.
+    """
+    return _pulse(
+        "rectangular",
+        "Housner (1963)",
+        np.ones_like,
+        positive("rectangular", "duration", duration, "seconds"),
+        dt,
+        jumps=True,
+        amplitude=amplitude,
+        duration=duration,
+    )
+
+
+def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
+    """Return a symmetric Ricker wavelet, a (1 - x²) exp(-x²/2) with x = √2 π t/T.
+
+    The second derivative of a Gaussian; T is the period of the largest Fourier amplitude.  Ricker
+    (1943), Bull. Seism. Soc. Am. 33(3), 197-228; Vassiliou & Makris (2011), Bull. Seism. Soc. Am.
+    101(2), 596-618; cut off where less than 1e-9 of the peak is left.  Parameters as for
+    :func:`sine`.
+    """
+    centre = (
+        7.1 * positive("ricker_symmetric", "period", period, "seconds") / (math.sqrt(2) * np.pi)
+    )
+
+    def shape(t: Floats) -> Floats:
+        x2 = 2 * (np.pi * (t - centre) / period) ** 2
+        return (1 - x2) * np.exp(-x2 / 2)
+
+    return _pulse(
+        "ricker_symmetric",
+        "Ricker (1943)",
+        shape,
+        2 * centre,
+        dt,
+        amplitude=amplitude,
+        period=period,
+    )
+
+
+def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
+    """Return an antisymmetric Ricker wavelet, a x (x² - 3) exp(-x²/2) / c with x = 2πt/(√3 T).
+
+    The third derivative of a Gaussian; c = 1.3801 makes its peak a, and T is the period of the largest
+    Fourier amplitude.  Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618; cut
+    off where less than 1e-9 of the peak is left.  Parameters as for :func:`sine`.
+    """
+    unit = (
+        math.sqrt(3) * positive("ricker_antisymmetric", "period", period, "seconds") / (2 * np.pi)
+    )
+    centre = 7.5 * unit
+    # the derivative of the shape vanishes at x² = 3 ± √6; the smaller one is the peak
+    peak = math.sqrt(3 - math.sqrt(6))
+    largest = peak * math.sqrt(6) * math.exp(-(peak**2) / 2)
+
+    def shape(t: Floats) -> Floats:
+        x = (t - centre) / unit
+        return x * (x**2 - 3) * np.exp(-(x**2) / 2) / largest
+
+    return _pulse(
+        "ricker_antisymmetric",
+        "Vassiliou & Makris (2011)",
+        shape,
+        2 * centre,
+        dt,
+        amplitude=amplitude,
+        period=period,
+    )
+
+
+def mavroeidis_papageorgiou(
+    velocity: float, period: float, cycles: float = 1.5, phase_deg: float = 0.0, dt: float = DT
+) -> Motion:
+    """Near-fault velocity pulse v(t) = (A/2) [1 + cos(2πt/(γT))] cos(2πt/T + ν), |t| ≤ γT/2.
+
+    Mavroeidis & Papageorgiou (2003), Bull. Seism. Soc. Am. 93(3), 1099-1131; the acceleration is
+    its derivative.  The residual velocity is zero.
+
+    Parameters
+    ----------
+    velocity
+        Amplitude A of the velocity [m/s], of either sign.
+    period
+        Prevailing period T [s].
+    cycles
+        Oscillatory character γ [-], one or more: nearly the number of half waves in the pulse.
+    phase_deg
+        Phase ν [degrees]; 0 is a symmetric velocity pulse, 90 an antisymmetric one.
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
+    """
+    who = "mavroeidis_papageorgiou"
+    if number(who, "cycles", cycles) < 1:
+        raise InputError(f"{who}: cycles must be one or more, got {cycles!r}.")
+    length = cycles * positive(who, "period", period, "seconds")
+    omega, phase = 2 * np.pi / period, math.radians(number(who, "phase_deg", phase_deg, "degrees"))
+
+    def shape(t: Floats) -> Floats:
+        s = t - length / 2
+        slow, fast = omega * s / cycles, omega * s + phase
+        return np.asarray(
+            -omega / 2 * (np.sin(slow) * np.cos(fast) / cycles + (1 + np.cos(slow)) * np.sin(fast))
+        )
+
+    return _pulse(
+        who,
+        "Mavroeidis & Papageorgiou (2003)",
+        shape,
+        length,
+        dt,
+        amplitude=velocity,
+        period=period,
+        cycles=cycles,
+        phase_deg=phase_deg,
+    )
+
+
+def sine_sweep(
+    amplitude: float, start_hz: float, end_hz: float, octaves_per_minute: float, dt: float = DT
+) -> Motion:
+    """Logarithmic sine sweep of constant acceleration amplitude.
+
+    The frequency f(t) = f₀ 2^(rt/60) passes r octaves in a minute, upwards or downwards: the sweep of
+    IEC 60068-2-6 as shake-table laboratories run it.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration [m/s²].
+    start_hz, end_hz
+        First and last frequency [Hz], different, below a quarter of the sampling frequency.
+    octaves_per_minute
+        Rate r [1/min], positive.
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
+    """
+    who = "sine_sweep"
+    start = positive(who, "start_hz", start_hz, "hertz")
+    end = positive(who, "end_hz", end_hz, "hertz")
+    step = positive(who, "dt", dt, "seconds")
+    rate = positive(who, "octaves_per_minute", octaves_per_minute) / 60
+    octaves = math.log2(end / start)
+    if octaves == 0:
+        raise InputError(f"{who}: start_hz and end_hz are both {start_hz} and nothing is swept.")
+    if max(start, end) > 0.25 / step:
+        raise InputError(
+            f"{who}: {max(start, end):g} Hz is above a quarter of the sampling frequency, "
+            f"{0.25 / step:g} Hz; give a smaller dt."
+        )
+    growth = math.copysign(rate, octaves) * math.log(2)
+    return _pulse(
+        who,
+        "IEC 60068-2-6, logarithmic sweep",
+        lambda t: np.sin(2 * np.pi * start * np.expm1(growth * t) / growth),
+        abs(octaves) / rate,
+        dt,
+        amplitude=amplitude,
+        start_hz=start_hz,
+        end_hz=end_hz,
+        octaves_per_minute=octaves_per_minute,
+    )
+
+
+def _pulse(
+    name: str,
+    source: str,
+    shape: Callable[[Floats], Floats],
+    length: float,
+    dt: float,
+    *,
+    jumps: bool = False,
+    amplitude: float,
+    **parameters: Any,
+) -> Motion:
+    """Sample ``amplitude`` × ``shape`` between zeros; see the module's first lines."""
+    number(name, "amplitude", amplitude)
+    count = math.ceil(length / positive(name, "dt", dt, "seconds") - 1e-9)
+    whole(name, "number of samples", count, 2, MOST_SAMPLES)
+    step = length / count
+    instants = (np.arange(count) + 0.5) * step if jumps else np.arange(1, count) * step
+    acceleration = np.concatenate([[0.0], amplitude * shape(instants), [0.0]])
+    return Motion(
+        acceleration,
+        step,
+        name=name,
+        metadata={"synthetic": True, "kind": name, "source": source},
+        provenance=({"step": name, "amplitude": amplitude, **parameters},),
+    )
