@@ -7,7 +7,6 @@ uses here.
 """
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -15,7 +14,14 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.intervals import Interval, IntervalMethod, WeightedFit, resampled_interval
+from rockfrag.fragility.intervals import (
+    Interval,
+    IntervalMethod,
+    Over,
+    WeightedFit,
+    population,
+    resampled_interval,
+)
 from rockfrag.fragility.lognormal import FragilityFit, curve_parameters
 from rockfrag.fragility.outcomes import Floats, labels, name_and_unit, numbers
 
@@ -57,11 +63,13 @@ def brackets_from_table(
     upper: str = "upper_g",
     motion: str | None = "motion",
     event: str | None = None,
+    measure: str = "pga_g",
     source: str = "table",
 ) -> Brackets:
     """Read the bounds of the overturning amplitude out of a table of tests, one row per test.
 
-    A missing upper bound means right-censored.
+    A missing upper bound means right-censored. ``measure`` is a column name that tells the measure
+    and its unit.
 
     Raises
     ------
@@ -86,7 +94,7 @@ def brackets_from_table(
         )
     motions = labels(table, motion, source)
     events = motions if event is None else labels(table, event, source)
-    return Brackets(low, high, motions, events, *name_and_unit(upper.replace("upper", "pga")))
+    return Brackets(low, high, motions, events, *name_and_unit(measure))
 
 
 def fit_brackets(brackets: Brackets) -> FragilityFit:
@@ -153,9 +161,7 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     return result(theta, beta, spread, float(log_likelihood[0]), method)
 
 
-def bracket_fitter(
-    brackets: Brackets, over: Literal["motion", "event"] = "motion"
-) -> tuple[WeightedFit, int]:
+def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedFit, int]:
     """Make the function that refits θ and β to reweighted motions or events."""
     groups = brackets.motion if over == "motion" else brackets.event
     codes, names = pd.factorize(pd.Series(groups))
@@ -170,16 +176,24 @@ def bracket_fitter(
 def bracket_interval(
     brackets: Brackets,
     *,
-    over: Literal["motion", "event"] = "motion",
-    method: IntervalMethod | None = None,
+    over: Over | None = None,
+    method: IntervalMethod = "jackknife",
     level: float = 0.90,
     replicates: int = 1000,
     seed: int = 0,
 ) -> Interval:
     """Confidence limits of a curve fitted to brackets, by resampling whole motions or events."""
+    over, notes = population(brackets.motion, brackets.event, over)
     fit, groups = bracket_fitter(brackets, over)
     return resampled_interval(
-        fit, groups, over=over, method=method, level=level, replicates=replicates, seed=seed
+        fit,
+        groups,
+        over=over,
+        notes=notes,
+        method=method,
+        level=level,
+        replicates=replicates,
+        seed=seed,
     )
 
 

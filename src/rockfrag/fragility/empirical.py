@@ -1,0 +1,185 @@
+"""What the verdicts say without a curve: shares in bins, isotonic and local, survival windows.
+
+Rocking bodies overturn at one amplitude and survive a larger one; a fitted curve cannot show it, so
+these stand beside it.
+"""
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+from scipy import optimize, stats
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.outcomes import Floats, Outcomes, positive, verdicts
+
+
+def wilson_interval(
+    overturned: ArrayLike, trials: ArrayLike, level: float = 0.90
+) -> tuple[Floats, Floats]:
+    """Confidence limits of a binomial share (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212)."""
+    y, n = np.asarray(overturned, dtype=np.float64), np.asarray(trials, dtype=np.float64)
+    z = stats.norm.ppf(0.5 + 0.5 * level)
+    centre = (y + 0.5 * z**2) / (n + z**2)
+    half = z / (n + z**2) * np.sqrt(y * (n - y) / n + 0.25 * z**2)
+    return np.clip(centre - half, 0.0, 1.0), np.clip(centre + half, 0.0, 1.0)
+
+
+def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
+    """Share of overturned tests in bins of about equal numbers of tests.
+
+    Stripes with at most ``bins`` levels keep their levels.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``im`` (geometric mean), ``im_lower``, ``im_upper``, ``tests``, ``motions``, ``overturned``,
+        ``share``, ``share_lower``, ``share_upper`` (binomial limits, tests taken as independent).
+    """
+    values = np.unique(outcomes.im)
+    if values.size <= bins:
+        code = np.searchsorted(values, outcomes.im)
+    else:
+        order = np.argsort(outcomes.im, kind="stable")
+        passed = np.empty(outcomes.im.size)
+        passed[order] = np.cumsum(outcomes.trials[order]) - 0.5 * outcomes.trials[order]
+        code = np.minimum((passed / outcomes.n * bins).astype(np.int64), bins - 1)
+        # equal values belong together
+        code = pd.Series(code).groupby(outcomes.im).transform("min").to_numpy()
+    rows = []
+    for k in np.unique(code):
+        inside = code == k
+        n = outcomes.trials[inside].sum()
+        rows.append(
+            {
+                "im": np.exp(np.average(outcomes.log_im[inside], weights=outcomes.trials[inside])),
+                "im_lower": outcomes.im[inside].min(),
+                "im_upper": outcomes.im[inside].max(),
+                "tests": int(n),
+                "motions": int(pd.Series(outcomes.motion[inside]).nunique()),
+                "overturned": int(outcomes.overturned[inside].sum()),
+                "share": outcomes.overturned[inside].sum() / n,
+            }
+        )
+    table = pd.DataFrame(rows)
+    lower, upper = wilson_interval(table["overturned"], table["tests"], level)
+    return table.assign(share_lower=lower, share_upper=upper)
+
+
+def isotonic_share(outcomes: Outcomes) -> pd.DataFrame:
+    """Never-falling share of overturned tests closest to the verdicts (pool adjacent violators).
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per value of the measure, ascending: ``im``, ``tests``, ``share`` (raw),
+        ``isotonic``.
+    """
+    values, code = np.unique(outcomes.im, return_inverse=True)
+    trials = np.bincount(code, outcomes.trials)
+    share = np.bincount(code, outcomes.overturned) / trials
+    fitted = optimize.isotonic_regression(share, weights=trials).x
+    return pd.DataFrame(
+        {"im": values, "tests": trials.astype(np.int64), "share": share, "isotonic": fitted}
+    )
+
+
+def local_share(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = None) -> Floats:
+    """Share of overturned tests near each ``im``, weighted by a normal kernel in ln IM; may fall.
+
+    Parameters
+    ----------
+    outcomes
+        The tests.
+    im
+        Values > 0, shape (n,).
+    bandwidth
+        Standard deviation of the kernel in ln IM; by default Silverman's 1.06 s n^(-1/5).
+    """
+    x = outcomes.log_im
+    if bandwidth is None:
+        bandwidth = 1.06 * float(np.std(x)) * outcomes.n ** (-0.2)
+    if not bandwidth > 0:
+        raise InputError(
+            f"bandwidth: the kernel needs a width above zero in ln IM, got {bandwidth:g}; give "
+            "one if all tests share one value."
+        )
+    offset = (np.log(np.atleast_1d(np.asarray(im, dtype=np.float64)))[:, None] - x) / bandwidth
+    # the largest exponent is taken out so that far values still have weights
+    power = -0.5 * offset**2
+    weight = np.exp(power - power.max(axis=1, keepdims=True)) * outcomes.trials
+    share = outcomes.overturned / outcomes.trials
+    return np.asarray((weight * share).sum(axis=1) / weight.sum(axis=1))
+
+
+def survival_windows(
+    sweep: pd.DataFrame, *, amplitude: str = "amplitude_g", by: str | list[str] = "motion"
+) -> pd.DataFrame:
+    """Find where each motion first overturns, where it always does, and the windows between.
+
+    Parameters
+    ----------
+    sweep
+        One row per motion and amplitude, with ``overturned``.
+    amplitude
+        Column of the amplitude.
+    by
+        Column or columns that tell the sweeps apart.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per sweep: the columns ``by``; ``first_lower``, ``first_upper``: the largest
+        amplitude below the first overturning and that overturning; ``always_lower``,
+        ``always_upper``: the largest amplitude survived and the next one; ``windows``: number of
+        ranges survived above the first overturning; ``window_width``: sum of their widths in ln
+        amplitude, each counted between the middles of its bounding steps. Lower bounds are 0 where
+        nothing lower was tried, upper ones NaN where nothing overturned.
+
+    Raises
+    ------
+    InputError
+        If an amplitude is not above zero, a verdict is not 0 or 1, or a sweep repeats an amplitude.
+    """
+    keys = [by] if isinstance(by, str) else by
+    values = positive(sweep, amplitude)
+    table = sweep[keys].assign(amplitude=values, overturned=verdicts(sweep, "overturned") == 1)
+    doubled = table.duplicated([*keys, "amplitude"])
+    if doubled.any():
+        row = int(np.flatnonzero(doubled)[0])
+        raise InputError(
+            f"table, row {row + 1}, column {amplitude!r}: the sweep of "
+            f"{', '.join(str(table[key].iloc[row]) for key in keys)} already has the amplitude "
+            f"{values[row]:g}; leave the repetition out."
+        )
+    rows = []
+    for name, group in table.groupby(keys, sort=True):
+        ordered = group.sort_values("amplitude")
+        found = _windows(ordered["amplitude"].to_numpy(), ordered["overturned"].to_numpy())
+        rows.append({**dict(zip(keys, name, strict=True)), **found})
+    return pd.DataFrame(rows)
+
+
+def _windows(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, float | int]:
+    nan = float("nan")
+    padded = np.concatenate([[0.0], amplitude, [nan]])
+    fell, stood = np.flatnonzero(overturned), np.flatnonzero(~overturned)
+    first = int(fell[0]) if fell.size else amplitude.size
+    always = int(stood[-1]) + 1 if stood.size else 0
+    between = np.concatenate([~overturned[first:always], [False]])
+    starts = np.flatnonzero(between[1:] & ~between[:-1]) + 1 + first
+    ends = np.flatnonzero(~between[1:] & between[:-1]) + first
+    middles = np.sqrt(amplitude[1:] * amplitude[:-1])
+    width = 0.0
+    closed = 0
+    for start, end in zip(starts, ends, strict=True):
+        if end + 1 < amplitude.size:
+            closed += 1
+            width += float(np.log(middles[end] / middles[start - 1]))
+    return {
+        "first_lower": float(padded[first]),
+        "first_upper": float(padded[first + 1]),
+        "always_lower": float(padded[always]),
+        "always_upper": float(padded[always + 1]),
+        "windows": closed,
+        "window_width": width,
+    }

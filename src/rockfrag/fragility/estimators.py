@@ -1,0 +1,174 @@
+"""Fragility from the data that the field knows: clouds, stripes, sweeps, step protocols."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.fragility.censored import bracket_interval, brackets_from_table, fit_brackets
+from rockfrag.fragility.empirical import survival_windows
+from rockfrag.fragility.intervals import Interval, IntervalMethod, interval_over_motions
+from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
+from rockfrag.fragility.newton import Link
+from rockfrag.fragility.outcomes import Outcomes, outcomes_from_table
+
+
+@dataclass(frozen=True)
+class Fragility:
+    """A fitted curve with its confidence limits."""
+
+    fit: FragilityFit
+    interval: Interval
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """All that a reader must know, of the fit and of the limits."""
+        return (*self.fit.warnings, *self.interval.warnings)
+
+
+@dataclass(frozen=True)
+class IncrementalFragility:
+    """Three readings of the same amplitude sweeps; they differ where there are survival windows.
+
+    Attributes
+    ----------
+    first
+        First overturning amplitude of each motion (first passage).
+    always
+        Amplitude above which each motion always overturns, as far as it was raised.
+    probability
+        Mean P(overturn | amplitude) over the motions, survival windows included.
+    windows
+        Table of :func:`rockfrag.fragility.empirical.survival_windows`.
+    share_with_windows
+        Share of the motions that overturned and have at least one window.
+    """
+
+    first: Fragility
+    always: Fragility
+    probability: Fragility
+    windows: pd.DataFrame
+    share_with_windows: float
+
+
+def fragility_of(
+    outcomes: Outcomes,
+    *,
+    link: Link = "probit",
+    interval: IntervalMethod = "jackknife",
+    level: float = 0.90,
+    replicates: int = 1000,
+    seed: int = 0,
+) -> Fragility:
+    """Fit a curve to verdicts and give it limits over motions, or events where they are known."""
+    return Fragility(
+        fit_lognormal(outcomes, link=link),
+        interval_over_motions(
+            outcomes, method=interval, level=level, replicates=replicates, seed=seed, link=link
+        ),
+    )
+
+
+def fit_cloud(
+    table: pd.DataFrame,
+    im: str,
+    *,
+    overturned: str = "overturned",
+    motion: str | None = "motion",
+    event: str | None = None,
+    level: float = 0.90,
+) -> Fragility:
+    """Fit a curve to single tests at scattered values of the measure (cloud analysis)."""
+    outcomes = outcomes_from_table(table, im, overturned=overturned, motion=motion, event=event)
+    return fragility_of(outcomes, level=level)
+
+
+def fit_stripes(
+    table: pd.DataFrame,
+    im: str,
+    *,
+    overturned: str = "overturned",
+    trials: str | None = None,
+    motion: str | None = "motion",
+    event: str | None = None,
+    level: float = 0.90,
+) -> Fragility:
+    """Fit a curve to counts at a few levels of the measure (multiple stripe analysis).
+
+    The curve maximises the product of the binomial likelihoods of the stripes (Baker, 2015,
+    Earthquake Spectra 31: 579-599, eq. 11). Rows are counts when ``trials`` names a column, else
+    single tests, which are pooled by level for the likelihood; the limits resample motions (each
+    stripe a motion of its own only when ``motion`` is None).
+    """
+    outcomes = outcomes_from_table(
+        table, im, overturned=overturned, trials=trials, motion=motion, event=event
+    )
+    whole = fragility_of(outcomes, level=level)
+    return Fragility(fit_lognormal(_pooled(outcomes)), whole.interval) if trials is None else whole
+
+
+def fit_incremental(
+    sweep: pd.DataFrame,
+    *,
+    amplitude: str = "amplitude_g",
+    motion: str = "motion",
+    event: str | None = None,
+    level: float = 0.90,
+) -> IncrementalFragility:
+    """Fit first overturning, always overturning, and mean probability to amplitude sweeps.
+
+    Parameters
+    ----------
+    sweep
+        One row per motion and amplitude, with ``overturned``; one body.
+    amplitude, motion, event
+        Names of the columns.
+    """
+    keys = [motion] if event is None else [motion, event]
+    windows = survival_windows(sweep, amplitude=amplitude, by=keys)
+    readings = {}
+    for reading in ("first", "always"):
+        brackets = brackets_from_table(
+            windows,
+            lower=f"{reading}_lower",
+            upper=f"{reading}_upper",
+            motion=motion,
+            event=event,
+            measure=amplitude,
+        )
+        readings[reading] = Fragility(
+            fit_brackets(brackets), bracket_interval(brackets, level=level)
+        )
+    outcomes = outcomes_from_table(sweep, amplitude, motion=motion, event=event)
+    fell = windows["first_upper"].notna()
+    share = float((windows.loc[fell, "windows"] > 0).mean()) if fell.any() else float("nan")
+    return IncrementalFragility(
+        readings["first"],
+        readings["always"],
+        fragility_of(outcomes, level=level),
+        windows,
+        share,
+    )
+
+
+def fit_step_tests(
+    tests: pd.DataFrame,
+    *,
+    lower: str = "lower_g",
+    upper: str = "upper_g",
+    motion: str | None = "motion",
+    event: str | None = "event",
+    level: float = 0.90,
+) -> Fragility:
+    """Fit a curve to tests of a step protocol, one row per test, interval- or right-censored."""
+    brackets = brackets_from_table(tests, lower=lower, upper=upper, motion=motion, event=event)
+    return Fragility(fit_brackets(brackets), bracket_interval(brackets, level=level))
+
+
+def _pooled(outcomes: Outcomes) -> Outcomes:
+    values, code = np.unique(outcomes.im, return_inverse=True)
+    overturned = np.bincount(code, outcomes.overturned).astype(np.float64)
+    trials = np.bincount(code, outcomes.trials).astype(np.float64)
+    # labels only feed notes on the number of motions, which a stripe no longer has one of
+    labels = np.array([f"stripe {k + 1}" for k in range(values.size)], dtype=object)
+    return Outcomes(values, overturned, trials, labels, labels, outcomes.name, outcomes.unit)
