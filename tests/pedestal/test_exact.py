@@ -1,0 +1,112 @@
+"""Tests on units agree with closed forms, scipy and enumeration."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from rockfrag.pedestal.exact import leave_one_event_out, sign_flip_test, wilcoxon_exact
+from rockfrag.pedestal.pairs import pair_tests
+from rockfrag.pedestal.units import contrast, mean_effect, slope_effect, t_estimate, unit_means
+
+
+def test_t_on_units_is_the_one_sample_t_test():
+    x = np.array([0.05, 0.21, -0.03, 0.11])
+    ours = t_estimate(x)
+    theirs = stats.ttest_1samp(x, 0)
+    assert ours.p == pytest.approx(theirs.pvalue, rel=1e-12)
+    assert (ours.lower, ours.upper) == pytest.approx(tuple(theirs.confidence_interval(0.95)))
+
+
+def test_units_without_scatter_have_a_stated_result():
+    same = t_estimate([0.0, 0.0, 0.0])
+    assert (same.p, same.lower, same.upper) == (1.0, 0.0, 0.0)
+    assert t_estimate([0.2, 0.2]).p == 0.0
+    assert np.isnan(t_estimate([0.2]).p)
+
+
+def test_exact_signed_ranks_agree_with_scipy():
+    x = np.random.default_rng(4).normal(0.1, 0.2, 12)
+    ours = wilcoxon_exact(x)
+    assert ours.p == pytest.approx(stats.wilcoxon(x, method="exact").pvalue, rel=1e-12)
+    assert ours.smallest_p == 2.0**-11
+
+
+def test_signed_ranks_with_ties_agree_with_enumeration():
+    x = np.array([0.1, -0.1, 0.2, 0.2, 0.3, -0.4, 0.0])
+    nonzero = x[x != 0]
+    ranks = stats.rankdata(np.abs(nonzero))
+    signs = np.array(np.meshgrid(*[[0, 1]] * len(nonzero))).reshape(len(nonzero), -1)
+    sums = ranks @ signs
+    observed = ranks[nonzero > 0].sum()
+    p = min(1, 2 * min((sums <= observed).mean(), (sums >= observed).mean()))
+    assert wilcoxon_exact(x).p == pytest.approx(p, rel=1e-12)
+
+
+def test_hodges_lehmann_interval_inverts_the_test():
+    x = np.random.default_rng(7).normal(0.1, 0.2, 12)
+    ours = wilcoxon_exact(x)
+    for limit in (ours.lower, ours.upper):
+        inside = limit + 1e-6 * np.sign(ours.estimate - limit)
+        outside = limit - 1e-6 * np.sign(ours.estimate - limit)
+        assert wilcoxon_exact(x - inside).p > 0.05 >= wilcoxon_exact(x - outside).p
+
+
+def test_four_values_cannot_bound_the_centre_at_95_percent():
+    ours = wilcoxon_exact([0.1, 0.2, 0.3, 0.4])
+    assert (ours.p, ours.smallest_p) == (0.125, 0.125)
+    assert (ours.lower, ours.upper) == (-np.inf, np.inf)
+
+
+def test_four_events_never_give_a_sign_flip_p_below_an_eighth():
+    result = sign_flip_test([0.5, 0.6, 0.7, 0.8])
+    assert result.exact
+    assert result.p == result.smallest_p == 0.125
+
+
+def test_drawn_sign_flips_agree_with_enumerated_ones(monkeypatch):
+    x = np.random.default_rng(2).normal(0.1, 0.2, 12)
+    exact = sign_flip_test(x).p
+    monkeypatch.setattr("rockfrag.pedestal.exact.LARGEST_ENUMERATION", 4)
+    drawn = sign_flip_test(x, seed=5)
+    assert not drawn.exact
+    assert drawn.p == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 1e5))
+    assert drawn == sign_flip_test(x, seed=5)
+
+
+def test_effect_is_mean_of_pairs_and_its_units_are_events(tests_table):
+    table = pair_tests(tests_table(3)).table
+    effect = mean_effect(table)
+    assert effect.mean == pytest.approx(table["d"].mean(), abs=1e-14)
+    assert effect.units == 4
+    one = mean_effect(table[table["event"] == "Kobe"])
+    assert one.units == 3
+
+
+def test_event_with_more_motions_counts_once(tests_table):
+    table = pair_tests(tests_table(3)).table
+    fewer = table[~((table["event"] == "Kobe") & (table["floor"] == "F5"))]
+    means = unit_means(fewer, "event")
+    assert mean_effect(fewer).mean == pytest.approx(means.mean())
+    assert len(means) == 4
+
+
+def test_slope_on_slenderness_is_recovered_without_noise(tests_table):
+    table = pair_tests(tests_table(3)).table.assign(d=lambda t: 0.1 - 0.07 * t["s_c"])
+    slope = slope_effect(table)
+    assert slope.mean == pytest.approx(-0.07, abs=1e-12)
+
+
+def test_contrast_of_floors_is_taken_inside_each_event(tests_table):
+    table = pair_tests(tests_table(3)).table
+    # a shift of a whole event must not matter to a difference of floors
+    moved = table.assign(d=table["d"] + 5.0 * (table["event"] == "Kobe"))
+    one, other = (contrast(t, "floor", "GF", "F3") for t in (table, moved))
+    assert one.mean == pytest.approx(other.mean) and one.se == pytest.approx(other.se)
+
+
+def test_leaving_an_event_out_finds_the_one_that_matters(tests_table):
+    table = pair_tests(tests_table(3, sd_event=0, sd_motion=0, sd_pair=0.01)).table
+    table = table.assign(d=table["d"] + 1.0 * (table["event"] == "Friuli"))
+    result = leave_one_event_out(table)
+    assert result.loc[result["largest_change"], "without"].tolist() == ["Friuli"]
+    assert len(result) == 4

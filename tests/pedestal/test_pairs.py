@@ -1,0 +1,112 @@
+"""Tests become pairs, and what cannot be paired is said."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.pedestal.pairs import pair_tests
+
+
+def test_thesis_design_gives_36_pairs_in_12_motions_of_4_events(tests_table):
+    pairs = pair_tests(tests_table(1))
+    assert len(pairs.table) == 36
+    assert pairs.table["motion"].nunique() == 12
+    assert pairs.table["event"].nunique() == 4
+    assert pairs.balanced
+    assert pairs.notes() == []
+
+
+def test_d_is_log_ratio_with_over_without(tests_table):
+    tests = tests_table(1)
+    pairs = pair_tests(tests).table.set_index(["tower", "motion"])
+    one = tests[(tests["tower"] == "T2") & (tests["motion"] == "Kobe-F3")]
+    p = one.loc[one["pedestal"] == "P", "amplitude_g"].item()
+    np_ = one.loc[one["pedestal"] == "NP", "amplitude_g"].item()
+    assert pairs.loc[("T2", "Kobe-F3"), "d"] == pytest.approx(np.log(p / np_), abs=1e-14)
+
+
+def test_order_of_rows_does_not_matter(tests_table):
+    tests = tests_table(1)
+    shuffled = tests.sample(frac=1, random_state=3)
+    pd.testing.assert_frame_equal(pair_tests(tests).table, pair_tests(shuffled).table)
+
+
+def test_missing_partner_is_left_out_and_named(tests_table):
+    tests = tests_table(1).iloc[1:]
+    pairs = pair_tests(tests)
+    assert len(pairs.table) == 35 and not pairs.balanced
+    assert pairs.unpaired["missing"].tolist() == ["NP"]
+    assert "T1/Friuli-GF without NP" in pairs.notes()[0]
+
+
+def test_censored_side_bounds_the_log_ratio(tests_table):
+    tests = tests_table(1)
+    row = tests.index[(tests["tower"] == "T1") & (tests["motion"] == "Kobe-GF")]
+    np_row, p_row = row[0], row[1]
+    tests.loc[p_row, ["censored", "lower_g", "upper_g", "amplitude_g"]] = ["right", 0.6, None, None]
+    pairs = pair_tests(tests)
+    one = pairs.censored.iloc[0]
+    assert len(pairs.table) == 35
+    assert one["d_lower"] == pytest.approx(np.log(0.6 / tests.loc[np_row, "amplitude_g"]))
+    assert one["d_upper"] == np.inf
+    assert "never" in pairs.notes()[0]
+
+
+def test_repetitions_are_averaged_in_the_logarithm(tests_table):
+    tests = tests_table(1)
+    again = tests.iloc[[0]].assign(repetition=2, amplitude_g=tests["amplitude_g"].iloc[0] * 1.21)
+    again["lower_g"] = again["upper_g"] = again["amplitude_g"]
+    both = pair_tests(pd.concat([tests, again])).table
+    alone = pair_tests(tests).table
+    ratio = both["a_np_g"] / alone["a_np_g"]
+    assert ratio.max() == pytest.approx(1.1)
+    assert np.count_nonzero(ratio != 1) == 1
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "words"),
+    [
+        ("amplitude_g", np.nan, "amplitude_g is nan"),
+        ("amplitude_g", 0.0, "amplitude_g is 0.0"),
+        ("amplitude_g", -0.2, "amplitude_g is -0.2"),
+        ("amplitude_g", np.inf, "amplitude_g is inf"),
+        ("pedestal", "yes", "pedestal is 'yes'"),
+        ("censored", "left", "censored is 'left'"),
+        ("event", None, "event is empty"),
+        ("tower", "T9", "slenderness of tower T9"),
+        ("lower_g", 9.0, "exceeds upper_g"),
+    ],
+)
+def test_what_cannot_be_used_is_said_in_one_sentence(tests_table, column, value, words):
+    tests = tests_table(1)
+    tests.loc[5, column] = value
+    with pytest.raises(InputError, match=words) as error:
+        pair_tests(tests)
+    assert str(error.value).count("\n") == 0
+
+
+def test_duplicate_row_is_refused_with_both_row_numbers(tests_table):
+    tests = tests_table(1)
+    with pytest.raises(InputError, match="row 73: the same test as row 4"):
+        pair_tests(pd.concat([tests, tests.iloc[[3]]]))
+
+
+def test_mixed_readings_of_one_sweep_are_refused(tests_table):
+    tests = tests_table(1).assign(reading="step_protocol")
+    tests.loc[0, "reading"] = "first_overturning"
+    with pytest.raises(InputError, match="several readings"):
+        pair_tests(tests)
+
+
+def test_only_one_side_tested_is_an_error(tests_table):
+    tests = tests_table(1)
+    with pytest.raises(InputError, match="with and without pedestal"):
+        pair_tests(tests[tests["pedestal"] == "P"])
+
+
+def test_missing_column_and_empty_table_are_errors(tests_table):
+    with pytest.raises(InputError, match="floor missing"):
+        pair_tests(tests_table(1).drop(columns="floor"))
+    with pytest.raises(InputError, match="no rows"):
+        pair_tests(tests_table(1).iloc[:0])
