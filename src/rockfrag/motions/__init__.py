@@ -1,4 +1,4 @@
-"""Motions: processing, scaling, spectra and intensity measures."""
+"""Motions: processing, scaling, spectra, intensity measures, pulses and synthetic motions."""
 
 from rockfrag.motions.conditioning import baseline, demean, displacement_baseline, pad, taper
 from rockfrag.motions.filtering import bandpass, highpass, interpolate, lowpass, resample
@@ -24,7 +24,20 @@ from rockfrag.motions.intensity import (
     uplift_ratio,
     velocity_ratio,
 )
+from rockfrag.motions.measures import measure_motion, measure_motions, rocking_measures
 from rockfrag.motions.processing import STEPS, check_steps, process
+from rockfrag.motions.pulse_extraction import StrongestPulse, pulse_motion, strongest_pulse
+from rockfrag.motions.pulses import (
+    half_sine,
+    mavroeidis_papageorgiou,
+    one_cosine,
+    one_sine,
+    rectangular,
+    ricker_antisymmetric,
+    ricker_symmetric,
+    sine,
+    sine_sweep,
+)
 from rockfrag.motions.rotation import over_directions, rotate, rotd, rotd50, rotd100
 from rockfrag.motions.scaling import (
     compress_time,
@@ -41,3 +54,77 @@ from rockfrag.motions.spectra import (
     oscillator_response,
     response_spectrum,
 )
+from rockfrag.motions.synthetic import evolutionary, spectrum_compatible
+
+__all__ = [
+    "STEPS",
+    "ResponseSpectrum",
+    "StrongestPulse",
+    "arias",
+    "arias_times",
+    "bandpass",
+    "baseline",
+    "bracketed_part",
+    "bracketed_times",
+    "cav",
+    "check_steps",
+    "compress_time",
+    "cumulative_arias",
+    "demean",
+    "displacement_baseline",
+    "evolutionary",
+    "fourier_amplitude",
+    "frequency_ratio",
+    "half_sine",
+    "highpass",
+    "housner_intensity",
+    "integrate",
+    "interpolate",
+    "lowpass",
+    "mavroeidis_papageorgiou",
+    "mean_period",
+    "measure_motion",
+    "measure_motions",
+    "one_cosine",
+    "one_sine",
+    "oscillator_response",
+    "over_directions",
+    "pad",
+    "peak_displacement",
+    "peak_velocity",
+    "pga",
+    "pgd",
+    "pgv",
+    "pgv_over_pga",
+    "predominant_period",
+    "process",
+    "pulse_motion",
+    "rectangular",
+    "resample",
+    "response_spectrum",
+    "ricker_antisymmetric",
+    "ricker_symmetric",
+    "rocking_measures",
+    "rotate",
+    "rotd",
+    "rotd50",
+    "rotd100",
+    "scale",
+    "scale_to_arias",
+    "scale_to_pga",
+    "scale_to_pgv",
+    "scale_to_sa",
+    "significant_duration",
+    "sine",
+    "sine_sweep",
+    "spectral_acceleration",
+    "spectral_displacement",
+    "spectral_velocity",
+    "spectrum_compatible",
+    "strong_part",
+    "strongest_pulse",
+    "taper",
+    "trim",
+    "uplift_ratio",
+    "velocity_ratio",
+]

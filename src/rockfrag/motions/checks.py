@@ -1,10 +1,16 @@
 """Checks of the numbers that users give to steps, pulses and measures."""
 
 import math
+from collections.abc import Mapping
 from numbers import Real
 from typing import Any
 
+import numpy as np
+
 from rockfrag.errors import InputError
+
+MOST_SAMPLES = 10_000_000
+"""More samples than this are taken for a mistake in a unit."""
 
 
 def number(owner: str, name: str, value: Any, unit: str = "") -> float:
@@ -41,6 +47,14 @@ def whole(owner: str, name: str, value: Any, least: int, most: int) -> int:
             f"{owner}: {name} must be a whole number from {least} to {most}, got {value!r}."
         )
     return int(value)
+
+
+def plain(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return parameters with numbers of NumPy's types as Python's own, which JSON can carry."""
+    return {
+        key: value.item() if isinstance(value, np.generic) else value
+        for key, value in parameters.items()
+    }
 
 
 def _of(unit: str) -> str:

@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 from scipy.signal.windows import tukey
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import not_negative, positive, whole
+from rockfrag.motions.checks import MOST_SAMPLES, not_negative, positive, whole
 from rockfrag.motions.integration import integrate
 from rockfrag.records.motion import Motion
 
@@ -22,7 +22,7 @@ def demean(motion: Motion) -> Motion:
 
 
 def baseline(motion: Motion, order: int = 1) -> Motion:
-    """Subtract the polynomial in time that fits the acceleration best in the sense of least squares.
+    """Subtract the polynomial in time that fits the acceleration best (least squares).
 
     Parameters
     ----------
@@ -88,8 +88,8 @@ def taper(motion: Motion, duration_s: float) -> Motion:
     length = motion.time[-1]
     if 2 * duration_s > length:
         raise InputError(
-            f"step taper: duration_s of {duration_s} at each end does not fit into the {length:g} s "
-            f"of motion {motion.name!r}; give at most half of it."
+            f"step taper: duration_s of {duration_s} at each end does not fit into the {length:g} "
+            f"s of motion {motion.name!r}; give at most half of it."
         )
     window = tukey(motion.acceleration.size, alpha=2 * duration_s / length)
     return motion.after("taper", motion.acceleration * window, duration_s=duration_s)
@@ -105,18 +105,21 @@ def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
     Parameters
     ----------
     before_s, after_s
-        Length of the zeros at either end [s], rounded to whole samples, at most an hour.
+        Length of the zeros at either end [s], rounded to whole samples, at most 10 million of them.
 
     Raises
     ------
     InputError
-        If a length is negative or more than an hour.
+        If a length is negative or makes too many samples.
     """
-    counts = []
-    for name, seconds in (("before_s", before_s), ("after_s", after_s)):
-        if not_negative("step pad", name, seconds, "seconds") > 3600:
-            raise InputError(f"step pad: {name} must be at most 3600 seconds, got {seconds!r}.")
-        counts.append(round(seconds / motion.dt))
+    before_s = not_negative("step pad", "before_s", before_s, "seconds")
+    after_s = not_negative("step pad", "after_s", after_s, "seconds")
+    if before_s + after_s > MOST_SAMPLES * motion.dt:
+        raise InputError(
+            f"step pad: {before_s + after_s:g} s of zeros are more than {MOST_SAMPLES} samples of "
+            f"dt {motion.dt:g} s; give less."
+        )
+    counts = [round(seconds / motion.dt) for seconds in (before_s, after_s)]
     return motion.after(
         "pad", np.pad(motion.acceleration, counts), before_s=before_s, after_s=after_s
     )

@@ -34,11 +34,11 @@ def measure_motion(
     Returns
     -------
     ``name``, ``event`` and ``floor`` (from the metadata, empty where not known), then ``pga_g``,
-    ``pgv_cm_s``, ``pgd_cm``, ``pgv_over_pga_s``, ``arias_m_s``, ``cav_m_s``, ``d5_75_s``, ``d5_95_s``,
-    ``mean_period_s``, ``predominant_period_s``; for each period such as 0.3 s ``sa_0_3s_g`` (pseudo),
-    ``sv_0_3s_cm_s`` and ``sd_0_3s_cm``; ``housner_cm``, ``pulse_period_s``, ``pulse_velocity_cm_s`` and
-    ``pulse_explained``.  A measure that does not exist for the motion, such as the duration of a motion
-    of zeros, is NaN.
+    ``pgv_cm_s``, ``pgd_cm``, ``pgv_over_pga_s``, ``arias_m_s``, ``cav_m_s``, ``d5_75_s``,
+    ``d5_95_s``, ``mean_period_s``, ``predominant_period_s``; for each period such as 0.3 s
+    ``sa_0_3s_g`` (pseudo), ``sv_0_3s_cm_s`` and ``sd_0_3s_cm``; ``housner_cm``, ``pulse_period_s``,
+    ``pulse_velocity_cm_s`` and ``pulse_explained``.  A measure that does not exist for the motion,
+    such as the duration of a motion of zeros, is NaN.
 
     Raises
     ------
@@ -101,8 +101,8 @@ def rocking_measures(motion: Motion, alpha: float, p: float) -> dict[str, float]
 
     Returns
     -------
-    ``uplift_ratio`` a/(g tan α), ``velocity_ratio`` p PGV/(g tan α) and ``frequency_ratio`` ωp/p with ωp
-    that of the strongest pulse, all [-].
+    ``uplift_ratio`` a/(g tan α), ``velocity_ratio`` p PGV/(g tan α) and ``frequency_ratio`` ωp/p
+    with ωp that of the strongest pulse, all [-].
 
     Raises
     ------

@@ -15,14 +15,15 @@ from rockfrag.records.motion import Motion
 Floats = NDArray[np.float64]
 
 CYCLES = (1.0, 1.5, 2.0, 2.5, 3.0)
-"""Oscillatory characters γ that are tried; Mavroeidis & Papageorgiou (2003) found 1 to 3 in records."""
+"""Oscillatory characters γ that are tried; recorded near-fault pulses have 1 to 3 (Mavroeidis &
+Papageorgiou 2003)."""
 
 SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_RATIO = 0.1, 15.0, 1.05
 """Periods that are tried [s] and the ratio of one to the next; none is shorter than 10 samples or
 longer than the record.  The best is then refined between its neighbours."""
 
 SAMPLES_PER_PERIOD = 40
-"""A wavelet needs no finer sampling than this; denser records are thinned while they are searched."""
+"""A wavelet needs no finer sampling; denser records are thinned while they are searched."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ class StrongestPulse:
     time
         Middle of the pulse [s].
     explained
-        Share of the record's ∫ v² dt that goes when the pulse is subtracted, 0 to 1: the matching index.
+        Share of the record's ∫ v² dt that goes when the pulse is subtracted, 0 to 1: the matching
+        index.
     """
 
     period: float
@@ -60,12 +62,13 @@ NO_PULSE = StrongestPulse(*[math.nan] * 6)
 def strongest_pulse(motion: Motion) -> StrongestPulse:
     """Find the velocity pulse that explains the largest share of a record's velocity.
 
-    Pulses of the form of Mavroeidis & Papageorgiou (2003, Bull. Seism. Soc. Am. 93(3), 1099-1131) are
-    slid along the velocity, as in the extended wavelet transform of Vassiliou & Makris (2011, Bull.
-    Seism. Soc. Am. 101(2), 596-618), over periods, cycles and phases.  For given period and cycles the
-    amplitude and the phase follow from least squares, because the symmetric and the antisymmetric pulse
-    are orthogonal and any phase is a sum of the two.  The best fit is the one that takes most of
-    ∫ v² dt, which is what Baker (2007, Bull. Seism. Soc. Am. 97(5), 1486-1501) asks of his pulse too.
+    Pulses of the form of Mavroeidis & Papageorgiou (2003, Bull. Seism. Soc. Am. 93(3), 1099-1131)
+    are slid along the velocity, as in the extended wavelet transform of Vassiliou & Makris (2011,
+    Bull. Seism. Soc. Am. 101(2), 596-618), over periods, cycles and phases.  For given period and
+    cycles the amplitude and the phase follow from least squares, because the symmetric and the
+    antisymmetric pulse are orthogonal and any phase is a sum of the two.  The best fit is the one
+    that takes most of ∫ v² dt, which is what Baker (2007, Bull. Seism. Soc. Am. 97(5), 1486-1501)
+    asks of his pulse too.
 
     Parameters
     ----------

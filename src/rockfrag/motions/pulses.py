@@ -1,8 +1,9 @@
 """Idealised input motions: sine, half-sine and rectangular pulses, Ricker wavelets, sweeps.
 
-Each pulse starts and ends with a sample of zero.  The sampling interval is the largest one up to ``dt``
-that divides the pulse's duration; pulses that jump are sampled at the middle of the intervals, so that
-the jump is a line of one interval's length centred on it and the velocity left behind is exact.
+Each pulse starts and ends with a sample of zero.  The sampling interval is the largest one up to
+``dt`` that divides the pulse's duration; pulses that jump are sampled at the middle of the
+intervals, so that the jump is a line of one interval's length centred on it and the velocity left
+behind is exact.
 """
 
 import math
@@ -13,16 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import number, positive, whole
+from rockfrag.motions.checks import MOST_SAMPLES, number, plain, positive, whole
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
 
 DT = 0.005
 """Sampling interval that pulses have unless another is asked for [s]."""
-
-MOST_SAMPLES = 10_000_000
-"""More samples than this are taken for a mistake in a unit."""
 
 
 def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion:
@@ -60,7 +58,8 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
 def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     """One-sine acceleration pulse a sin(2πt/T), 0 ≤ t ≤ T: a forward ground displacement (type A).
 
-    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for :func:`sine`.
+    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for
+    :func:`sine`.
     """
     return _pulse(
         "one_sine",
@@ -76,8 +75,9 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
 def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     """One-cosine acceleration pulse a cos(2πt/T), 0 ≤ t ≤ T: forward and back (type B).
 
-    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for :func:`sine`.
-    The samples nearest its ends lie half an interval inside it, at cos(π dt/T) of the peak.
+    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for
+    :func:`sine`. The samples nearest its ends lie half an interval inside it, at cos(π dt/T) of the
+    peak.
     """
     return _pulse(
         "one_cosine",
@@ -163,9 +163,9 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
 def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
     """Return an antisymmetric Ricker wavelet, a x (x² - 3) exp(-x²/2) / c with x = 2πt/(√3 T).
 
-    The third derivative of a Gaussian; c = 1.3801 makes its peak a, and T is the period of the largest
-    Fourier amplitude.  Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618; cut
-    off where less than 1e-9 of the peak is left.  Parameters as for :func:`sine`.
+    The third derivative of a Gaussian; c = 1.3801 makes its peak a, and T is the period of the
+    largest Fourier amplitude.  Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618;
+    cut off where less than 1e-9 of the peak is left.  Parameters as for :func:`sine`.
     """
     unit = (
         math.sqrt(3) * positive("ricker_antisymmetric", "period", period, "seconds") / (2 * np.pi)
@@ -247,8 +247,8 @@ def sine_sweep(
 ) -> Motion:
     """Logarithmic sine sweep of constant acceleration amplitude.
 
-    The frequency f(t) = f₀ 2^(rt/60) passes r octaves in a minute, upwards or downwards: the sweep of
-    IEC 60068-2-6 as shake-table laboratories run it.
+    The frequency f(t) = f₀ 2^(rt/60) passes r octaves in a minute, upwards or downwards: the sweep
+    of IEC 60068-2-6 as shake-table laboratories run it.
 
     Parameters
     ----------
@@ -306,15 +306,21 @@ def _pulse(
 ) -> Motion:
     """Sample ``amplitude`` × ``shape`` between zeros; see the module's first lines."""
     number(name, "amplitude", amplitude)
-    count = math.ceil(length / positive(name, "dt", dt, "seconds") - 1e-9)
-    whole(name, "number of samples", count, 2, MOST_SAMPLES)
+    samples = length / positive(name, "dt", dt, "seconds")
+    if not 1 < samples <= MOST_SAMPLES:
+        raise InputError(
+            f"{name}: {length:g} s make {samples:.3g} samples of dt {dt:g} s, which is not between "
+            f"2 and {MOST_SAMPLES}; choose another dt."
+        )
+    count = math.ceil(samples - 1e-9)
     step = length / count
-    instants = (np.arange(count) + 0.5) * step if jumps else np.arange(1, count) * step
-    acceleration = np.concatenate([[0.0], amplitude * shape(instants), [0.0]])
+    first = 0.5 if jumps else 1.0
+    instants: Floats = np.arange(first, count) * step
+    acceleration = np.concatenate([[0.0], amplitude * np.asarray(shape(instants)), [0.0]])
     return Motion(
         acceleration,
         step,
         name=name,
         metadata={"synthetic": True, "kind": name, "source": source},
-        provenance=({"step": name, "amplitude": amplitude, **parameters},),
+        provenance=({"step": name, **plain({"amplitude": amplitude, **parameters})},),
     )

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import expm
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
@@ -61,19 +60,28 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
     """Exact propagator of an oscillator over one step of linearly varying ground acceleration.
 
     The state is (u, u', a, s): relative displacement and velocity, ground acceleration and its
-    slope; u'' + 2 ζ ω u' + ω² u = -a, a' = s.  The propagator is the exponential of that system's
-    matrix: the recursion of Nigam & Jennings (1969, Bull. Seism. Soc. Am. 59(2), 909-922) without
-    its case distinctions, for any damping, at and above critical too.
+    slope; u'' + 2 ζ ω u' + ω² u = -a, a' = s.  Nigam & Jennings (1969, Bull. Seism. Soc. Am. 59(2),
+    909-922), for any damping, at and above critical too.
 
     Returns
     -------
     Array of shape (2, 4) that maps (u, u', a, s) to (u, u') one step [s] later.
     """
-    system = np.zeros((4, 4))
-    system[0, 1] = 1.0
-    system[1] = -(omega**2), -2 * damping * omega, -1.0, 0.0
-    system[2, 3] = 1.0
-    return np.asarray(expm(system * step)[:2], dtype=np.float64)
+    rate = damping * omega
+    turn = omega * math.sqrt(abs(1 - damping**2))
+    if damping < 1:
+        decay = math.exp(-rate * step)
+        cosine, sine = decay * math.cos(turn * step), decay * math.sin(turn * step) / turn
+    elif damping > 1:
+        slow, fast = math.exp((turn - rate) * step), math.exp(-(turn + rate) * step)
+        cosine, sine = (slow + fast) / 2, (slow - fast) / (2 * turn)
+    else:
+        cosine, sine = math.exp(-rate * step), step * math.exp(-rate * step)
+    free = np.array([[cosine + rate * sine, sine], [-(omega**2) * sine, cosine - rate * sine]])
+    # the steady answer to a and to s at the beginning of the step, and one step later
+    before = np.array([[-1.0, 2 * damping / omega], [0.0, -1.0]]) / omega**2
+    after = before + np.array([[0.0, -step], [0.0, 0.0]]) / omega**2
+    return np.hstack([free, after - free @ before])
 
 
 @njit(cache=True)

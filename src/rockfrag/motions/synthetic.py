@@ -14,7 +14,8 @@ from scipy.signal.windows import tukey
 from scipy.stats import gamma
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import number, positive, whole
+from rockfrag.motions.checks import number, plain, positive, whole
+from rockfrag.motions.integration import integrate
 from rockfrag.motions.spectra import oscillator_response, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.units import STANDARD_GRAVITY
@@ -41,12 +42,12 @@ def evolutionary(
     corner_hz: float = 0.1,
     dt: float = 0.01,
 ) -> Motion:
-    """Filtered white noise whose intensity and frequency content both evolve in time.
+    """Return filtered white noise whose intensity and frequency content both evolve in time.
 
-    Rezaeian & Der Kiureghian (2008, Earthquake Eng. Struct. Dyn. 37, 1565-1584; 2010, 39, 1155-1180):
-    white noise passes a linear filter with a frequency that changes linearly in time, is normalised to
-    unit variance at each instant, modulated by q(t) = α₁ t^(α₂-1) exp(-α₃ t), and high-passed by a
-    critically damped oscillator so that velocity and displacement come to rest.
+    Rezaeian & Der Kiureghian (2008, Earthquake Eng. Struct. Dyn. 37, 1565-1584; 2010, 39,
+    1155-1180): white noise passes a linear filter with a frequency that changes linearly in time,
+    is normalised to unit variance at each instant, modulated by q(t) = α₁ t^(α₂-1) exp(-α₃ t), and
+    high-passed by a critically damped oscillator so that velocity and displacement come to rest.
 
     Parameters
     ----------
@@ -89,8 +90,8 @@ def evolutionary(
     frequency = np.maximum(mid_hz + slope_hz_s * (time - mid_s), LOWEST_FREQUENCY)
     if frequency.max() > 0.25 / dt:
         raise InputError(
-            f"{who}: the filter frequency reaches {frequency.max():.3g} Hz, more than a quarter of the "
-            f"sampling frequency ({0.25 / dt:g} Hz); give a smaller dt."
+            f"{who}: the filter frequency reaches {frequency.max():.3g} Hz, more than a quarter of "
+            f"the sampling frequency ({0.25 / dt:g} Hz); give a smaller dt."
         )
     noise = np.random.default_rng(seed).standard_normal(count)
     intensity = arias_m_s * 2 * STANDARD_GRAVITY / math.pi
@@ -127,12 +128,12 @@ def spectrum_compatible(
 ) -> Motion:
     """Noise whose Fourier amplitudes are corrected until its response spectrum meets a target.
 
-    The phases of modulated white noise are kept and the amplitude at each frequency is multiplied by
-    target over actual pseudo-acceleration at that period, again and again (SIMQKE's rule: Gasparini &
-    Vanmarcke 1976, MIT report R76-4; Preumont 1984, Nucl. Eng. Des. 78, 431-444).  The best of 30
-    corrections is returned; what misfit remains is in the metadata.  Between the given periods the
-    target is a straight line in logarithms; nothing is asked of the motion outside of them, and
-    content below half the lowest frequency is taken out.
+    The phases of modulated white noise are kept and the amplitude at each frequency is multiplied
+    by target over actual pseudo-acceleration at that period, again and again (SIMQKE's rule:
+    Gasparini & Vanmarcke 1976, MIT report R76-4; Preumont 1984, Nucl. Eng. Des. 78, 431-444).  The
+    best of 30 corrections is returned; what misfit remains is in the metadata.  Between the given
+    periods the target is a straight line in logarithms; nothing is asked of the motion outside of
+    them, and content below half the lowest frequency is taken out.
 
     Parameters
     ----------
@@ -151,8 +152,8 @@ def spectrum_compatible(
 
     Returns
     -------
-    Motion with the metadata ``misfit_rms`` (of ln actual/target) and ``misfit_max`` over 30 periods a
-    decade.
+    Motion with the metadata ``misfit_rms`` (of ln actual/target) and ``misfit_max`` over 30 periods
+    a decade.
 
     Raises
     ------
@@ -174,7 +175,7 @@ def spectrum_compatible(
     noise = np.random.default_rng(seed).standard_normal(count)
     acceleration = noise * np.sqrt(gamma.pdf(np.arange(count) * dt - quiet, shape, scale=spread))
     window = tukey(count, alpha=quiet / (count * dt))
-    frequency = np.fft.rfftfreq(count, dt)
+    frequency = np.asarray(np.fft.rfftfreq(count, dt), dtype=np.float64)
     low_cut = _low_cut(frequency, 1 / quiet)
 
     best, best_rms, best_max = acceleration, math.inf, math.inf
@@ -187,7 +188,7 @@ def spectrum_compatible(
         # periods run upwards and frequencies downwards; beyond the ends the last correction holds
         gain = np.exp(-np.interp(frequency, 1 / control[::-1], error[::-1]))
         corrected = np.fft.irfft(np.fft.rfft(acceleration) * gain * low_cut, count)
-        acceleration = corrected * window
+        acceleration = _at_rest(corrected * window, window, dt)
     motion = _synthetic(
         best,
         dt,
@@ -218,8 +219,8 @@ def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:
     least, most = 1.001, 1000.0
     if not ratio(most) < duration / middle < ratio(least):
         raise InputError(
-            f"{who}: d5_95_s of {duration:g} must lie between {ratio(most):.2f} and {ratio(least):.2f} "
-            f"times mid_s of {middle:g}."
+            f"{who}: d5_95_s of {duration:g} must lie between {ratio(most):.2f} and "
+            f"{ratio(least):.2f} times mid_s of {middle:g}."
         )
     shape = float(brentq(lambda k: ratio(k) - duration / middle, least, most))
     return shape, middle / float(gamma.ppf(0.45, shape))
@@ -263,6 +264,15 @@ def _target(who: str, periods: ArrayLike, target_g: ArrayLike, dt: float) -> tup
     return given, wanted * STANDARD_GRAVITY
 
 
+def _at_rest(acceleration: Floats, window: Floats, dt: float) -> Floats:
+    """Bring velocity and displacement to rest at the end with a windowed straight line."""
+    lines = [window, window * np.linspace(0.0, 1.0, window.size)]
+    ends = np.array([[history[-1] for history in integrate(line, dt)] for line in lines])
+    drift = np.array([history[-1] for history in integrate(acceleration, dt)])
+    first, second = np.linalg.solve(ends.T, drift)
+    return np.asarray(acceleration - first * lines[0] - second * lines[1])
+
+
 def _low_cut(frequency: Floats, lowest: float) -> Floats:
     """One above the lowest frequency, zero below half of it, half a cosine between them."""
     ramp = np.clip(2 * frequency / lowest - 1, 0.0, 1.0)
@@ -277,5 +287,5 @@ def _synthetic(
         dt,
         name=f"{model}_{seed}",
         metadata={"synthetic": True, "kind": model, "source": source, "seed": seed},
-        provenance=({"step": model, "seed": seed, **parameters, "dt": dt},),
+        provenance=({"step": model, "seed": seed, **plain(parameters), "dt": float(dt)},),
     )
