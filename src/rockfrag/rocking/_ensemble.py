@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from rockfrag.rocking._compile import kernel
-from rockfrag.rocking._march import EVENT, HISTORY, SUMMARY, march, scratch
+from rockfrag.rocking._march import EVENT, HISTORY, march, scratch
 
 
 @kernel

@@ -26,7 +26,7 @@ from rockfrag.rocking._mechanics import (
     potential_energy,
     settle,
 )
-from rockfrag.rocking._series import ORDER, closing_time, lowest_point, slope, value
+from rockfrag.rocking._series import ORDER, closing_time, slope, value
 from rockfrag.rocking._step import GAP, ROWS, TH1, TH2, series
 
 # Entries of the summary of a march.

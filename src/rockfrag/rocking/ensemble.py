@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import _march as kmarch
 from rockfrag.rocking._ensemble import march_cases
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.parameters import Restitution, body_parameters
-from rockfrag.rocking.simulation import (
+from rockfrag.rocking.inputs import (
     CLOSING_SPEED,
     FREE_TIME,
     STEP,
@@ -22,10 +22,13 @@ from rockfrag.rocking.simulation import (
     slowest_frequency,
     step_count,
 )
+from rockfrag.rocking.parameters import Restitution, body_parameters, lone_restitution
 from rockfrag.units import STANDARD_GRAVITY
 
-CHUNK = 256
-"""Cases a thread takes at a time."""
+Array = NDArray[np.float64]
+
+CHUNK = 2048
+"""Cases that a thread takes at a time."""
 
 
 @dataclass(frozen=True)
@@ -39,33 +42,27 @@ class EnsembleResult:
     overturned_body
         0 none, 1 the pedestal, 2 the statue or the lone block.
     overturning_time
-        When it lay down [s], NaN if it did not.
+        Time at which the fall was certain whatever followed [s], NaN without a fall.
     peak_rotation
-        Largest rotation over the critical angle [-] of the statue or lone block.
+        Largest rotation over the critical angle [-] of the statue or lone block; infinite if it fell.
     peak_rotation_pedestal
         Likewise of the pedestal with what stands on it; 0 for a lone block.
     peak_velocity
-        Largest |θ'| of the statue or lone block [rad/s].
+        Largest |θ'| of the statue or lone block until the verdict was certain [rad/s].
     impacts
-        Number of impacts.
+        Number of impacts until the verdict was certain.
     closest_approach
         Least distance from an unstable equilibrium, as in :class:`Response`; infinite if it never rocked.
     """
 
     overturned: NDArray[np.bool_]
     overturned_body: NDArray[np.int8]
-    overturning_time: NDArray[np.float64]
-    peak_rotation: NDArray[np.float64]
-    peak_rotation_pedestal: NDArray[np.float64]
-    peak_velocity: NDArray[np.float64]
+    overturning_time: Array
+    peak_rotation: Array
+    peak_rotation_pedestal: Array
+    peak_velocity: Array
     impacts: NDArray[np.int64]
-    closest_approach: NDArray[np.float64]
-
-
-def _listed(accelerations: ArrayLike | Sequence[ArrayLike]) -> list[ArrayLike]:
-    if isinstance(accelerations, np.ndarray) and accelerations.ndim == 1:
-        return [accelerations]
-    return list(accelerations)  # type: ignore[arg-type]
+    closest_approach: Array
 
 
 def overturns(
@@ -86,7 +83,7 @@ def overturns(
     bodies
         Blocks and stacks.
     accelerations
-        Motions [m/s²], each of shape (n,).
+        Motions [m/s²], each of shape (n,), linear between samples and zero one sample after the last.
     dt
         Sampling interval [s], one or one per motion.
     scales
@@ -107,55 +104,183 @@ def overturns(
     motions = _listed(accelerations)
     dts = np.broadcast_to(np.asarray(dt, dtype=float), (len(motions),)).copy()
     values = [
-        checked_acceleration(motion, float(step_), f"accelerations[{i}]")
-        for i, (motion, step_) in enumerate(zip(motions, dts, strict=True))
+        checked_acceleration(motion, float(interval), f"accelerations[{i}]")
+        for i, (motion, interval) in enumerate(zip(motions, dts, strict=True))
     ]
-    factors = np.asarray(scales, dtype=float)
-    if factors.ndim == 1:
-        factors = np.broadcast_to(factors, (len(motions), factors.size))
-    if factors.ndim != 2 or factors.shape[0] != len(motions) or not np.isfinite(factors).all():
-        raise InputError(
-            f"scales: expected finite numbers of shape (scales,) or ({len(motions)}, scales), "
-            f"got shape {np.shape(scales)}."
-        )
+    factors = _factors(scales, len(motions))
     if restitution is not None and len(restitution) != len(body_list):
         raise InputError(
             f"restitution: expected {len(body_list)} entries, one per body, got {len(restitution)}."
         )
     if not (math.isfinite(step) and step > 0):
         raise InputError(f"step: expected a positive number, got {step}.")
+    workers = threads or os.cpu_count() or 1
+    per_body: Sequence[Restitution]
     per_body = restitution if restitution is not None else [None] * len(body_list)
-    parameters = np.array(
-        [body_parameters(body, e, g=g) for body, e in zip(body_list, per_body, strict=True)]
+    shape = (len(body_list), *factors.shape)
+    result = EnsembleResult(
+        overturned=np.zeros(shape, dtype=bool),
+        overturned_body=np.zeros(shape, dtype=np.int8),
+        overturning_time=np.full(shape, np.nan),
+        peak_rotation=np.zeros(shape),
+        peak_rotation_pedestal=np.zeros(shape),
+        peak_velocity=np.zeros(shape),
+        impacts=np.zeros(shape, dtype=np.int64),
+        closest_approach=np.full(shape, np.inf),
     )
-    substeps = np.array([[step_count(body, d, g, step) for d in dts] for body in body_list])
+    lone = [i for i, body in enumerate(body_list) if isinstance(body, Block)]
+    stacks = [i for i, body in enumerate(body_list) if isinstance(body, Stack)]
+    for chosen, run in ((lone, _lone_blocks), (stacks, _stacks)):
+        if chosen and factors.size:
+            run(
+                [body_list[i] for i in chosen],
+                [per_body[i] for i in chosen],
+                values, dts, factors, g, step, workers, result, np.array(chosen),
+            )  # fmt: skip
+    return result
+
+
+def _listed(accelerations: ArrayLike | Sequence[ArrayLike]) -> list[ArrayLike]:
+    if isinstance(accelerations, np.ndarray) and accelerations.ndim == 1:
+        return [accelerations]
+    return list(accelerations)  # type: ignore[arg-type]
+
+
+def _factors(scales: ArrayLike, n_motions: int) -> Array:
+    factors = np.asarray(scales, dtype=float)
+    if factors.ndim == 1:
+        factors = np.broadcast_to(factors, (n_motions, factors.size))
+    if factors.ndim != 2 or factors.shape[0] != n_motions or not np.isfinite(factors).all():
+        raise InputError(
+            f"scales: expected finite numbers of shape (scales,) or ({n_motions}, scales), "
+            f"got shape {np.shape(scales)}."
+        )
+    return np.ascontiguousarray(factors)
+
+
+def _in_parallel(count: int, workers: int, work: Callable[[int, int], None]) -> None:
+    """Call ``work(first, last)`` on chunks of ``count`` cases."""
+    starts = range(0, count, CHUNK)
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(lambda first: work(first, min(first + CHUNK, count)), starts))
+
+
+def _stacks(
+    bodies: list[Body],
+    restitution: list[Restitution],
+    values: list[Array],
+    dts: Array,
+    factors: Array,
+    g: float,
+    step: float,
+    workers: int,
+    result: EnsembleResult,
+    rows: NDArray[np.intp],
+) -> None:
+    parameters = np.array(
+        [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)]
+    )
+    substeps = np.array([[step_count(body, d, g, step) for d in dts] for body in bodies])
     free = np.array(
-        [[math.ceil(FREE_TIME / slowest_frequency(body, g) / d) for d in dts] for body in body_list]
+        [[math.ceil(FREE_TIME / slowest_frequency(body, g) / d) for d in dts] for body in bodies]
     )
     samples = np.concatenate(values)
     offsets = np.concatenate([[0], np.cumsum([v.size for v in values])])
-    shape = (len(body_list), *factors.shape)
-    results = np.empty((math.prod(shape), kmarch.SUMMARY))
-    factors = np.ascontiguousarray(factors)
+    shape = (len(bodies), *factors.shape)
+    table = np.empty((math.prod(shape), kmarch.SUMMARY))
 
-    def work(first: int) -> None:
-        last = min(first + CHUNK, len(results))
+    def work(first: int, last: int) -> None:
         march_cases(
             first, last, parameters, substeps, free, samples, offsets, dts, factors,
-            CLOSING_SPEED, results[first:last],
+            CLOSING_SPEED, table[first:last],
         )  # fmt: skip
 
-    starts = range(0, len(results), CHUNK)
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        list(pool.map(work, starts))
-    table = results.reshape(*shape, kmarch.SUMMARY)
-    return EnsembleResult(
-        overturned=table[..., kmarch.FALLEN] > 0,
-        overturned_body=table[..., kmarch.FALLEN].astype(np.int8),
-        overturning_time=table[..., kmarch.FALL_TIME].copy(),
-        peak_rotation=table[..., kmarch.RATIO2].copy(),
-        peak_rotation_pedestal=table[..., kmarch.RATIO1].copy(),
-        peak_velocity=table[..., kmarch.SPEED2].copy(),
-        impacts=table[..., kmarch.IMPACTS].astype(np.int64),
-        closest_approach=table[..., kmarch.CLOSEST].copy(),
-    )
+    _in_parallel(len(table), workers, work)
+    table = table.reshape(*shape, kmarch.SUMMARY)
+    fallen = table[..., kmarch.FALLEN]
+    result.overturned[rows] = fallen > 0
+    result.overturned_body[rows] = fallen
+    result.overturning_time[rows] = table[..., kmarch.FALL_TIME]
+    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, table[..., kmarch.RATIO2])
+    result.peak_rotation_pedestal[rows] = np.where(fallen == 1, np.inf, table[..., kmarch.RATIO1])
+    result.peak_velocity[rows] = table[..., kmarch.SPEED2]
+    result.impacts[rows] = table[..., kmarch.IMPACTS]
+    result.closest_approach[rows] = table[..., kmarch.CLOSEST]
+
+
+def _refined(values: Array, times: int) -> Array:
+    """Sample a piecewise linear motion ``times`` as densely, and let it end in zero."""
+    closed = np.append(values, 0.0)
+    if times == 1:
+        return closed
+    at = np.arange((closed.size - 1) * times + 1) / times
+    return np.interp(at, np.arange(closed.size), closed)
+
+
+def _lone_blocks(
+    bodies: list[Body],
+    restitution: list[Restitution],
+    values: list[Array],
+    dts: Array,
+    factors: Array,
+    g: float,
+    step: float,
+    workers: int,
+    result: EnsembleResult,
+    rows: NDArray[np.intp],
+) -> None:
+    shape = (len(bodies), *factors.shape)
+    # a block that needs shorter steps than the samples gets the motion sampled more densely
+    times = np.array([[step_count(body, d, g, step) for d in dts] for body in bodies])
+    times = 2 ** np.ceil(np.log2(times)).astype(int)
+    kinds = sorted({(int(n), m) for m in range(len(values)) for n in times[:, m]})
+    number = {kind: i for i, kind in enumerate(kinds)}
+    sampled = [_refined(values[m], n) for n, m in kinds]
+    which = np.array([[number[int(n), m] for m, n in enumerate(row)] for row in times])
+    offsets = np.concatenate([[0], np.cumsum([v.size for v in sampled])])
+    samples = np.concatenate(sampled)
+    padding = -samples.size % lanes.BLOCK
+    blocks = np.append(samples, np.zeros(padding)).reshape(-1, lanes.BLOCK)
+    ahead_high = np.concatenate([np.maximum.accumulate(v[::-1])[::-1] for v in sampled])
+    ahead_low = np.concatenate([np.minimum.accumulate(v[::-1])[::-1] for v in sampled])
+    intervals = dts[np.newaxis, :] / times
+    table = np.empty((len(bodies), len(values), lanes.BODY))
+    for i, (body, e) in enumerate(zip(bodies, restitution, strict=True)):
+        assert isinstance(body, Block)
+        table[i] = _lane_row(body, e, g)
+        table[i, :, [lanes.KAPPA_R, lanes.KAPPA_L]] *= intervals[i] ** 2
+    per_g = factors / g
+    outcome = np.empty((math.prod(shape), lanes.RESULTS))
+
+    def work(first: int, last: int) -> None:
+        lanes.lone_blocks(
+            first, last, table, per_g, which, offsets, samples, blocks.max(axis=1),
+            blocks.min(axis=1), ahead_high, ahead_low, outcome[first:last],
+        )  # fmt: skip
+
+    _in_parallel(len(outcome), workers, work)
+    outcome = outcome.reshape(*shape, lanes.RESULTS)
+    fallen = outcome[..., lanes.OVERTURNED] > 0
+    interval = intervals[:, :, np.newaxis]
+    result.overturned[rows] = fallen
+    result.overturned_body[rows] = 2 * fallen
+    result.overturning_time[rows] = np.where(fallen, outcome[..., lanes.CERTAIN] * interval, np.nan)
+    result.peak_rotation[rows] = np.where(fallen, np.inf, outcome[..., lanes.RATIO])
+    result.peak_velocity[rows] = outcome[..., lanes.SPEED] / interval
+    result.impacts[rows] = outcome[..., lanes.IMPACTS]
+    result.closest_approach[rows] = outcome[..., lanes.CLOSEST]
+
+
+def _lane_row(body: Block, restitution: Restitution, g: float) -> Array:
+    """Entries of the lanes' body table, with p² where p² dt² belongs."""
+    row = np.empty(lanes.BODY)
+    measured = lone_restitution(body, restitution)
+    for pole, alpha, tan, kappa, e in (
+        (+1, lanes.ALPHA_R, lanes.TAN_R, lanes.KAPPA_R, lanes.E_FROM_R),
+        (-1, lanes.ALPHA_L, lanes.TAN_L, lanes.KAPPA_L, lanes.E_FROM_L),
+    ):
+        row[alpha] = body.critical_angle(pole)
+        row[tan] = math.tan(row[alpha])
+        row[kappa] = body.frequency(pole, g) ** 2
+        row[e] = body.momentum_restitution(pole) if measured is None else measured
+    return row

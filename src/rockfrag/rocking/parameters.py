@@ -71,6 +71,11 @@ def _pair(body: Body, restitution: Restitution) -> tuple[float | None, float | N
     return _checked(restitution[0], "ground"), _checked(restitution[1], "interface")
 
 
+def lone_restitution(block: Block, restitution: Restitution) -> float | None:
+    """Return the checked restitution of a lone block; None if momentum is conserved."""
+    return _pair(block, restitution)[1]
+
+
 def body_parameters(
     body: Body, restitution: Restitution = None, linear: bool = False, g: float = 9.81
 ) -> NDArray[np.float64]:

@@ -1,7 +1,6 @@
 """One body, one motion, everything about the response."""
 
 import math
-import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,94 +13,18 @@ from rockfrag.rocking import _march as kmarch
 from rockfrag.rocking import _mechanics as km
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.forces import contact_forces
+from rockfrag.rocking.inputs import (
+    CLOSING_SPEED,
+    FREE_TIME,
+    STEP,
+    checked_acceleration,
+    slowest_frequency,
+    step_count,
+    warn_if_weak,
+)
 from rockfrag.rocking.parameters import Restitution, body_parameters
 from rockfrag.rocking.response import PATTERNS, Response
 from rockfrag.units import STANDARD_GRAVITY
-
-STEP = 0.1
-"""Largest p h of a step: frequency parameter of the faster block times step."""
-
-CLOSING_SPEED = 1e-6
-"""Separation speed after an impact [rad/s] below which a contact stays closed."""
-
-FREE_TIME = 60.0
-"""Free rocking after the motion is followed for at most this long, in units of 1/p."""
-
-MOST_SAMPLES = 20_000_000
-
-WEAK_MOTION = 0.05
-"""A peak acceleration [m/s²] below this was probably given in g."""
-
-
-def checked_acceleration(
-    acceleration: ArrayLike, dt: float, name: str = "acceleration"
-) -> NDArray[np.float64]:
-    """Return the samples as a float array [m/s²], or say in one sentence why they cannot be used.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two samples, one is not finite, or ``dt`` is not positive.
-    """
-    try:
-        values = np.ascontiguousarray(acceleration, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{name}: expected numbers [m/s²], got {type(acceleration).__name__}."
-        ) from error
-    if values.ndim != 1:
-        raise InputError(f"{name}: expected shape (n,), got {values.shape}.")
-    if values.size < 2:
-        raise InputError(f"{name}: a motion needs at least two samples, got {values.size}.")
-    if values.size > MOST_SAMPLES:
-        raise InputError(f"{name}: {values.size} samples are more than the {MOST_SAMPLES} allowed.")
-    if not np.isfinite(values).all():
-        first = int(np.flatnonzero(~np.isfinite(values))[0])
-        raise InputError(f"{name}: sample {first} is not a finite number.")
-    if np.abs(values).max() > 1e4:
-        raise InputError(
-            f"{name}: a peak of {np.abs(values).max():.3g} m/s² is beyond any earthquake; check the unit."
-        )
-    if (
-        isinstance(dt, bool)
-        or not isinstance(dt, (int, float, np.number))
-        or not (math.isfinite(dt) and dt > 0)
-    ):
-        raise InputError(f"dt: expected a positive number of seconds, got {dt!r}.")
-    return values
-
-
-def warn_if_weak(values: NDArray[np.float64]) -> None:
-    """Warn if the motion looks as if it were given in g."""
-    peak = float(np.abs(values).max())
-    if 0 < peak < WEAK_MOTION:
-        warnings.warn(
-            f"the peak acceleration is {peak:.3g} m/s²; if the motion is in g, multiply it by 9.81",
-            UserWarning,
-            stacklevel=3,
-        )
-
-
-def fastest_frequency(body: Body, g: float) -> float:
-    """Largest frequency parameter p of the body's blocks [1/s]."""
-    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.statue)
-    return max(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
-
-
-def slowest_frequency(body: Body, g: float) -> float:
-    """Smallest frequency parameter p of the ways in which the body rocks [1/s]."""
-    blocks = (body,) if isinstance(body, Block) else (body.statue, body.glued())
-    return min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
-
-
-def step_count(body: Body, dt: float, g: float, step: float) -> int:
-    """Steps per sample so that p h does not exceed ``step``."""
-    steps = math.ceil(fastest_frequency(body, g) * dt / step - 1e-9)
-    if steps > 10_000:
-        raise InputError(
-            f"dt: {dt} s is too long for a block of p = {fastest_frequency(body, g):.3g} 1/s."
-        )
-    return max(1, steps)
 
 
 def _initial(body: Body, value: float | Sequence[float] | None, name: str) -> list[float]:

@@ -1,0 +1,552 @@
+"""The lone block, many cases side by side.
+
+Each lane carries one case; one pass of the vector loop advances every lane by one sample with the same
+straight-line arithmetic, and what is rare (impacts, rest, verdicts, the next case) is handled lane by lane
+between passes.  A case's numbers depend on that case alone, so neither the number of lanes nor their
+neighbours nor the threads change a bit of them.
+
+With ψ = θc - |θ| and A the ground acceleration over g, positive where it pushes the block back down, the
+equation of motion on either pole is ψ'' = p² (sin ψ + A cos ψ) (thesis eq. 2.4).  Time is counted in samples.
+"""
+
+import math
+
+import numba
+import numpy as np
+
+from rockfrag.rocking._compile import kernel
+
+LANES = 32
+BLOCK = 16
+"""Samples under one entry of the tables of extremes that rest is skipped with."""
+
+# Columns of the body table: critical angle of either pole and its tangent, p² dt² of either pole, and the
+# ratio e of angular velocities of an impact that ends rocking on it.
+ALPHA_R, ALPHA_L, TAN_R, TAN_L, KAPPA_R, KAPPA_L, E_FROM_R, E_FROM_L = range(8)
+BODY = 8
+
+# Columns of the results: verdict; sample at which it was certain; largest θ/θc; largest |θ'| per sample;
+# number of impacts; least distance from the unstable equilibrium.
+OVERTURNED, CERTAIN, RATIO, SPEED, IMPACTS, CLOSEST = range(6)
+RESULTS = 6
+
+MAX_IMPACTS_PER_SAMPLE = 400
+HALF_TURN = 0.5 * math.pi
+
+
+@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+def _sine_cosine(x):
+    """Sine and cosine for |x| ≤ π/2 to 1e-10, and to rounding for |x| ≤ 0.6."""
+    y = x * x
+    s = -1.0 / 1307674368000.0
+    s = s * y + 1.0 / 6227020800.0
+    s = s * y - 1.0 / 39916800.0
+    s = s * y + 1.0 / 362880.0
+    s = s * y - 1.0 / 5040.0
+    s = s * y + 1.0 / 120.0
+    s = s * y - 1.0 / 6.0
+    c = 1.0 / 20922789888000.0
+    c = c * y - 1.0 / 87178291200.0
+    c = c * y + 1.0 / 479001600.0
+    c = c * y - 1.0 / 3628800.0
+    c = c * y + 1.0 / 40320.0
+    c = c * y - 1.0 / 720.0
+    c = c * y + 1.0 / 24.0
+    c = c * y - 0.5
+    return x + x * y * s, 1.0 + y * c
+
+
+@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+def _rates(psi, w, kappa, a, ramp):
+    """Taylor coefficients 1 to 5 of ψ' over a step, and sin ψ, cos ψ at its start."""
+    s0, c0 = _sine_cosine(psi)
+    w1 = kappa * (s0 + a * c0)
+    s1 = c0 * w
+    c1 = -s0 * w
+    w2 = 0.5 * kappa * (s1 + a * c1 + ramp * c0)
+    s2 = 0.5 * (c0 * w1 + c1 * w)
+    c2 = -0.5 * (s0 * w1 + s1 * w)
+    w3 = (1.0 / 3.0) * kappa * (s2 + a * c2 + ramp * c1)
+    s3 = (1.0 / 3.0) * (c0 * w2 + c1 * w1 + c2 * w)
+    c3 = -(1.0 / 3.0) * (s0 * w2 + s1 * w1 + s2 * w)
+    w4 = 0.25 * kappa * (s3 + a * c3 + ramp * c2)
+    s4 = 0.25 * (c0 * w3 + c1 * w2 + c2 * w1 + c3 * w)
+    c4 = -0.25 * (s0 * w3 + s1 * w2 + s2 * w1 + s3 * w)
+    w5 = 0.2 * kappa * (s4 + a * c4 + ramp * c3)
+    return w1, w2, w3, w4, w5, s0, c0
+
+
+@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+def _travel(w, w1, w2, w3, w4, w5, t):
+    """ψ(t) - ψ(0)."""
+    return t * (
+        w + t * (0.5 * w1 + t * (1 / 3 * w2 + t * (0.25 * w3 + t * (0.2 * w4 + t * (1 / 6 * w5)))))
+    )
+
+
+@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+def _rate(w, w1, w2, w3, w4, w5, t):
+    """ψ'(t)."""
+    return w + t * (w1 + t * (w2 + t * (w3 + t * (w4 + t * w5))))
+
+
+# Rows of the lanes, in one flat array so that the compiler sees that rows do not overlap.
+(PSI, RATE, ANGLE, KAPPA, A0, A1, BOUND, CREST, NEW_PSI, NEW_RATE, FLAG, LOW, FAST, NEAR) = (
+    LANES * row for row in range(14)
+)
+ROWS = 14
+
+
+@kernel
+def advance(x):
+    """Advance every lane by one sample; flag those that need a closer look."""
+    for i in range(LANES):
+        psi = x[PSI + i]
+        w = x[RATE + i]
+        kappa = x[KAPPA + i]
+        a = x[A0 + i]
+        w1, w2, w3, w4, w5, s, c = _rates(psi, w, kappa, a, x[A1 + i] - a)
+        p = psi + _travel(w, w1, w2, w3, w4, w5, 1.0)
+        v = _rate(w, w1, w2, w3, w4, w5, 1.0)
+        x[NEW_PSI + i] = p
+        x[NEW_RATE + i] = v
+        certain = (w < 0.0) & (0.5 * w * w >= kappa * (x[CREST + i] - c + x[BOUND + i] * s))
+        grazes = (w > 0.0) & (v < 0.0)
+        touches = p >= x[ANGLE + i]
+        lies = p <= x[ANGLE + i] - HALF_TURN
+        x[FLAG + i] = 1.0 if touches | certain | grazes | lies else 0.0
+        # the turning point of a parabola lies between the samples
+        low = psi + 0.5 * w * w / (w - v) if (w < 0.0) & (v > 0.0) else p
+        x[LOW + i] = min(x[LOW + i], low)
+        x[FAST + i] = max(x[FAST + i], 0.0 if touches else abs(v))
+        x[NEAR + i] = min(x[NEAR + i], kappa * p * p + v * v)
+
+
+@kernel
+def _falls(psi, w, kappa, bound):
+    """Whether the block falls whatever the ground does, as long as A stays below ``bound``.
+
+    Let tan φ = bound.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side grows with ψ:
+    a block that the constant A = tan φ cannot bring back is brought back by no smaller A.  With ψ' < 0 that
+    pendulum passes its upper equilibrium ψ = -φ if ψ'²/2 ≥ κ (1 - cos(ψ + φ)) / cos φ, or is beyond it.
+    """
+    if w >= 0.0:
+        return False
+    barrier = math.sqrt(1.0 + bound * bound) - math.cos(psi) + bound * math.sin(psi)
+    return 0.5 * w * w >= kappa * barrier or psi <= -math.atan(bound)
+
+
+@kernel
+def _flight(psi, w, angle, w1, w2, w3, w4, w5):
+    """Time within (0, 1] at which ψ reaches the angle of impact, given that it is beyond it at 1; else 2."""
+    gap = psi - angle
+    low = 0.0
+    guess = -1.0
+    if gap >= 0.0:
+        # just left this pole: look behind the root at 0
+        gap = 0.0
+        if w1 > 0.0:
+            guess = -2.0 * w / w1
+        low = min(1e-3, 0.5 * guess) if guess > 0.0 else 1e-3
+        while gap + _travel(w, w1, w2, w3, w4, w5, low) >= 0.0:
+            low *= 0.1
+            if low < 1e-13:
+                return 2.0
+    high = 1.0
+    if not low < guess < high:
+        over = gap + _travel(w, w1, w2, w3, w4, w5, 1.0)
+        guess = 1.0 - over / max(1e-300, _rate(w, w1, w2, w3, w4, w5, 1.0))
+    for _ in range(100):
+        if not low < guess < high:
+            guess = 0.5 * (low + high)
+        f = gap + _travel(w, w1, w2, w3, w4, w5, guess)
+        if f < 0.0:
+            low = guess
+        else:
+            high = guess
+        d = _rate(w, w1, w2, w3, w4, w5, guess)
+        step = f / d if d != 0.0 else 0.0
+        guess -= step
+        if abs(step) <= 1e-15 or high - low <= 1e-15:
+            break
+    return min(max(guess, low), high)
+
+
+@kernel
+def _graze(psi, w, angle, w1, w2, w3, w4, w5):
+    """Time of impact of a ψ that rises and falls again within a step; 2 if it stays clear."""
+    low = 0.0
+    high = 1.0
+    while high - low > 1e-9:
+        t = 0.5 * (low + high)
+        if _rate(w, w1, w2, w3, w4, w5, t) > 0.0:
+            low = t
+        else:
+            high = t
+    if psi - angle + _travel(w, w1, w2, w3, w4, w5, low) < 0.0:
+        return 2.0
+    high = low
+    low = 0.0
+    while high - low > 1e-15:
+        t = 0.5 * (low + high)
+        if psi - angle + _travel(w, w1, w2, w3, w4, w5, t) < 0.0:
+            low = t
+        else:
+            high = t
+    return high
+
+
+@kernel
+def _dies_out(w, side, k, tau, end, factor, samples, b):
+    """Whether the impacts after a launch at speed ``w`` end before anything else can happen.
+
+    With restoring accelerations of at least κ D and κ' D' on the two poles a flight lasts 2 w / (κ D) at
+    most and each impact leaves e of the speed, so all flights together last 2 w (1/κD + e/κ'D')/(1 - e e').
+    If the ground stays below the threshold of rocking that long, the block is at rest afterwards,
+    exactly, however the flights went; w² ≤ 0.04 κ D² keeps D within 2 % over a flight.
+    """
+    here = ALPHA_R if side > 0 else ALPHA_L
+    there = ALPHA_L if side > 0 else ALPHA_R
+    e_next = b[E_FROM_R] if side > 0 else b[E_FROM_L]
+    e_back = b[E_FROM_L] if side > 0 else b[E_FROM_R]
+    kappa = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+    kappa_there = b[KAPPA_L] if side > 0 else b[KAPPA_R]
+    loss = 1.0 - e_next * e_back
+    if loss <= 0.0:
+        return False
+    s, c = math.sin(b[here]), math.cos(b[here])
+    if w * w > 0.16 * kappa * s * s:
+        return False
+    s_there, c_there = math.sin(b[there]), math.cos(b[there])
+    a = factor * samples[k]
+    a += tau * (factor * samples[k + 1] - a)
+    d = s + side * a * c
+    d_there = s_there - side * a * c_there
+    for ahead in range(32):
+        a = factor * samples[k + ahead + 1] if k + ahead + 1 <= end else 0.0
+        d = min(d, s + side * a * c)
+        d_there = min(d_there, s_there - side * a * c_there)
+        if d <= 0.0 or d_there <= 0.0 or w * w > 0.04 * kappa * d * d:
+            return False
+        time = 2.0 * w * (1.0 / (kappa * d) + e_next / (kappa_there * d_there)) / loss
+        if 1.03 * time <= ahead + 1 - tau:
+            return True
+    return False
+
+
+@kernel
+def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
+    """Take one block from τ within sample interval k to its end, through whatever happens.
+
+    ``side`` is the pole, 0 at rest.  Returns ψ, ψ' and the side at the end.
+    """
+    first = factor * samples[k]
+    ramp_all = factor * samples[k + 1] - first
+    events = 0
+    while True:
+        now = first + ramp_all * tau
+        if side == 0:
+            # thesis eq. 2.1: the ground pushes the block over the other way
+            if now > b[TAN_L]:
+                side = -1
+            elif now < -b[TAN_R]:
+                side = 1
+            elif now + ramp_all * (1.0 - tau) > b[TAN_L]:
+                side = -1
+                tau = max(tau, (b[TAN_L] - first) / ramp_all)
+            elif now + ramp_all * (1.0 - tau) < -b[TAN_R]:
+                side = 1
+                tau = max(tau, (-b[TAN_R] - first) / ramp_all)
+            else:
+                return 0.0, 0.0, 0
+            psi = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+            w = 0.0
+            now = first + ramp_all * tau
+            if tau >= 1.0:
+                return psi, w, side
+        angle = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+        full = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+        left = 1.0 - tau
+        kappa = full * left * left
+        rate = w * left
+        w1, w2, w3, w4, w5, _, _ = _rates(psi, rate, kappa, side * now, side * ramp_all * left)
+        p = psi + _travel(rate, w1, w2, w3, w4, w5, 1.0)
+        v = _rate(rate, w1, w2, w3, w4, w5, 1.0)
+        t = 2.0
+        if p >= angle:
+            t = _flight(psi, rate, angle, w1, w2, w3, w4, w5)
+            if t > 1.0:
+                # it never left the ground
+                return 0.0, 0.0, 0
+        elif rate > 0.0 and v < 0.0:
+            t = _graze(psi, rate, angle, w1, w2, w3, w4, w5)
+        if t > 1.0:
+            _note(tally, p, v / left, angle, full)
+            if rate < 0.0 and v > 0.0:
+                turn = rate / (rate - v)
+                low = psi + _travel(rate, w1, w2, w3, w4, w5, turn)
+                _note(tally, low, 0.0, angle, full)
+            return p, v / left, side
+        v = max(0.0, _rate(rate, w1, w2, w3, w4, w5, t)) / left
+        if psi >= angle:
+            # the highest point of a flight that begins and ends in this step
+            low = psi + _travel(rate, w1, w2, w3, w4, w5, 0.5 * t)
+            _note(tally, low, v, angle, full)
+        tally[SPEED] = max(tally[SPEED], v)
+        tally[IMPACTS] += 1.0
+        events += 1
+        tau += t * left
+        w = -v * (b[E_FROM_R] if side > 0 else b[E_FROM_L])
+        side = -side
+        psi = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+        still = w > -1e-12 or events > MAX_IMPACTS_PER_SAMPLE
+        if still or _dies_out(-w, side, k, min(tau, 1.0), end, factor, samples, b):
+            side = 0
+        if tau >= 1.0:
+            return psi, w, side
+
+
+@kernel
+def _note(tally, psi, w, angle, kappa):
+    """Keep the largest rotation and speed and the closest approach to balance."""
+    tally[RATIO] = max(tally[RATIO], (angle - psi) / angle)
+    tally[SPEED] = max(tally[SPEED], abs(w))
+    tally[CLOSEST] = min(tally[CLOSEST], math.sqrt(psi * psi + w * w / kappa) / angle)
+
+
+@kernel
+def _left_alone(psi, w, side, b, tally):
+    """Whether the block falls once the ground is still; every speed follows from energy."""
+    for _ in range(64):
+        if side == 0:
+            return False
+        angle = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+        kappa = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+        energy = 0.5 * w * w + kappa * math.cos(psi)
+        if (psi > 0.0 and w <= 0.0) or psi <= 0.0:
+            if psi > 0.0 and energy < kappa:
+                _note(tally, math.acos(energy / kappa), 0.0, angle, kappa)
+            elif psi > 0.0 or w <= 0.0 or energy < kappa:
+                _note(tally, 0.0, math.sqrt(2.0 * abs(energy - kappa)), angle, kappa)
+                return True
+        v = math.sqrt(max(0.0, 2.0 * (energy - kappa * math.cos(angle))))
+        tally[SPEED] = max(tally[SPEED], v)
+        w = -v * (b[E_FROM_R] if side > 0 else b[E_FROM_L])
+        side = -side
+        psi = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+        kappa = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+        other = b[KAPPA_L] if side > 0 else b[KAPPA_R]
+        other_angle = b[ALPHA_L] if side > 0 else b[ALPHA_R]
+        if 0.5 * w * w < kappa * (1.0 - math.cos(psi)) and 0.5 * w * w < other * (
+            1.0 - math.cos(other_angle)
+        ):
+            _note(tally, math.acos(0.5 * w * w / kappa + math.cos(psi)), 0.0, psi, kappa)
+            return False
+    return False
+
+
+@kernel
+def _next_uplift(samples, highest, lowest, k, end, low, high):
+    """First sample after k, up to ``end``, outside [low, high]; -1 if there is none."""
+    m = k + 1
+    while m <= end:
+        if m % BLOCK == 0:
+            j = m // BLOCK
+            while m + BLOCK <= end + 1 and highest[j] <= high and lowest[j] >= low:
+                j += 1
+                m += BLOCK
+            if m > end:
+                break
+        if samples[m] > high or samples[m] < low:
+            return m
+        m += 1
+    return -1
+
+
+@kernel
+def lone_blocks(
+    first, last, table, factors, rows, offsets, samples, highest, lowest, ahead_high, ahead_low, results
+):  # fmt: skip
+    """March cases ``first`` ≤ n < ``last`` of bodies × motions × scales, the scale running fastest.
+
+    Parameters
+    ----------
+    table : (bodies, motions, BODY)
+    factors : (motions, scales) scale over g, for samples in m/s²
+    rows : (bodies, motions) which of the sampled motions to use
+    offsets : (sampled motions + 1,) where each begins; each ends with a sample of zero
+    samples : all sampled motions end to end [m/s²]
+    highest, lowest : extremes of each BLOCK of ``samples``
+    ahead_high, ahead_low : largest and smallest sample from here to the end of the motion
+    results : (last - first, RESULTS)
+
+    Returns
+    -------
+    Number of samples that lanes were advanced by.
+    """
+    n_motions, n_scales = factors.shape
+    x = np.zeros(ROWS * LANES)
+    where = np.zeros(LANES, dtype=np.int64)
+    ends = np.zeros(LANES, dtype=np.int64)
+    starts = np.zeros(LANES, dtype=np.int64)
+    sides = np.zeros(LANES, dtype=np.int64)
+    cases = np.full(LANES, -1, dtype=np.int64)
+    moves = np.zeros(LANES, dtype=np.int64)
+    factor = np.zeros(LANES)
+    signed = np.zeros(LANES)
+    upcoming = first
+    busy = 0
+    passes = 0
+    # a lane without a case stands still at a harmless place
+    for i in range(LANES):
+        x[ANGLE + i] = 1.0
+        x[CREST + i] = 10.0
+    filling = True
+    while filling or busy > 0:
+        if not filling:
+            passes += 1
+            for i in range(LANES):
+                x[A1 + i] = signed[i] * samples[where[i] + 1]
+            advance(x)
+        for i in range(LANES):
+            if filling:
+                if cases[i] >= 0:
+                    continue
+            elif (x[FLAG + i] == 0.0 and (moves[i] == 0 or where[i] + 1 < ends[i])) or cases[i] < 0:
+                continue
+            case = cases[i]
+            side = sides[i]
+            k = where[i]
+            end = ends[i]
+            done = False
+            if case >= 0:
+                tally = results[case - first]
+                b = table[case // (n_scales * n_motions), (case // n_scales) % n_motions]
+                _fold(x, i, tally)
+                psi = x[PSI + i]
+                w = x[RATE + i]
+                kappa = x[KAPPA + i]
+                bound = _bound(side, factor[i], ahead_high[k], ahead_low[k])
+                if _falls(psi, w, kappa, bound):
+                    surplus = max(0.0, w * w - 2.0 * kappa * (1.0 - math.cos(psi)))
+                    if psi <= 0.0:
+                        surplus = w * w + kappa * psi * psi
+                    near = math.sqrt(surplus / kappa) / x[ANGLE + i]
+                    tally[CLOSEST] = min(tally[CLOSEST], near)
+                    done = True
+                else:
+                    psi, w, side = _sample(psi, w, side, 0.0, k, end, factor[i], samples, b, tally)
+                    k += 1
+                    if side != 0:
+                        angle = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+                        done = psi <= angle - HALF_TURN
+                if done:
+                    tally[OVERTURNED] = 1.0
+                    tally[CERTAIN] = k - starts[i]
+            else:
+                psi = 0.0
+                w = 0.0
+            # run through what needs no lane, and through as many cases as end there
+            while True:
+                if case >= 0 and not done:
+                    if side == 0 and k < end:
+                        low = -b[TAN_R] / factor[i]
+                        high = b[TAN_L] / factor[i]
+                        if factor[i] < 0.0:
+                            low, high = high, low
+                        if samples[k] > high or samples[k] < low:
+                            m = k + 1
+                        else:
+                            m = _next_uplift(samples, highest, lowest, k, end, low, high)
+                        if m < 0:
+                            done = True
+                        else:
+                            k = m - 1
+                            psi, w, side = _sample(
+                                0.0, 0.0, 0, 0.0, k, end, factor[i], samples, b, tally
+                            )
+                            k += 1
+                            continue
+                    elif k >= end:
+                        done = True
+                        if side != 0 and _left_alone(psi, w, side, b, tally):
+                            tally[OVERTURNED] = 1.0
+                            tally[CERTAIN] = k - starts[i]
+                    else:
+                        break
+                if done or case < 0:
+                    if case >= 0:
+                        busy -= 1
+                        case = -1
+                        cases[i] = -1
+                    if upcoming >= last:
+                        break
+                    case = upcoming
+                    upcoming += 1
+                    busy += 1
+                    motion = (case // n_scales) % n_motions
+                    b = table[case // (n_scales * n_motions), motion]
+                    tally = results[case - first]
+                    tally[:] = 0.0
+                    tally[CLOSEST] = math.inf
+                    factor[i] = factors[motion, case % n_scales]
+                    row = rows[case // (n_scales * n_motions), motion]
+                    k = offsets[row]
+                    starts[i] = k
+                    end = offsets[row + 1] - 1
+                    side = 0
+                    done = factor[i] == 0.0
+            if case < 0:
+                moves[i] = 0
+                signed[i] = 0.0
+                where[i] = 0
+                x[NEW_PSI + i] = 0.0
+                x[NEW_RATE + i] = 0.0
+                x[KAPPA + i] = 0.0
+                x[ANGLE + i] = 1.0
+                x[CREST + i] = 10.0
+                x[BOUND + i] = 0.0
+                continue
+            cases[i] = case
+            sides[i] = side
+            ends[i] = end
+            moves[i] = 1
+            # the commit below moves every lane on by one
+            where[i] = k - 1 if not filling else k
+            signed[i] = side * factor[i]
+            x[A1 + i] = signed[i] * samples[k]
+            x[NEW_PSI + i] = psi
+            x[NEW_RATE + i] = w
+            x[ANGLE + i] = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+            x[KAPPA + i] = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+            bound = _bound(side, factor[i], ahead_high[k], ahead_low[k])
+            x[BOUND + i] = bound
+            x[CREST + i] = math.sqrt(1.0 + bound * bound)
+            x[LOW + i] = psi
+            x[FAST + i] = abs(w)
+            x[NEAR + i] = x[KAPPA + i] * psi * psi + w * w
+        for i in range(LANES):
+            x[PSI + i] = x[NEW_PSI + i]
+            x[RATE + i] = x[NEW_RATE + i]
+            x[A0 + i] = x[A1 + i]
+        if not filling:
+            for i in range(LANES):
+                where[i] += moves[i]
+        filling = False
+    return passes * LANES
+
+
+@kernel
+def _bound(side, factor, most, least):
+    """Largest A that can still push a block on this pole back down."""
+    return max(0.0, factor * most * side, factor * least * side)
+
+
+@kernel
+def _fold(x, i, tally):
+    """Take a lane's extremes, kept between two looks at it, over into its tally."""
+    angle = x[ANGLE + i]
+    tally[RATIO] = max(tally[RATIO], (angle - x[LOW + i]) / angle)
+    tally[SPEED] = max(tally[SPEED], x[FAST + i])
+    near = math.sqrt(x[NEAR + i] / x[KAPPA + i]) / angle
+    tally[CLOSEST] = min(tally[CLOSEST], near)
