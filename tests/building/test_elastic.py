@@ -44,11 +44,6 @@ def noise(n=400, dt=0.01, seed=3):
     return Motion(np.random.default_rng(seed).normal(size=n), dt, "noise")
 
 
-def record(shared, name):
-    time, acceleration = np.loadtxt(shared / "records" / f"{name}.dat", skiprows=5).T
-    return Motion(9.81 * acceleration, round(time[1] - time[0], 6), name)
-
-
 def test_reference_building_has_the_published_periods_and_stiffnesses():
     building = reference()
     period = find_modes(building).period
@@ -59,8 +54,8 @@ def test_reference_building_has_the_published_periods_and_stiffnesses():
 
 @pytest.mark.parametrize("name", ["Friuli", "Kobe", "Loma_Prieta", "Northridge"])
 @pytest.mark.parametrize("period", [0.35, 0.60])
-def test_reference_building_amplifies_the_four_records_as_published(shared, period, name):
-    ground, third, fifth = floor_motions(reference(period), record(shared, name))
+def test_reference_building_amplifies_the_four_records_as_published(record, period, name):
+    ground, third, fifth = floor_motions(reference(period), record(name))
     ratios = tuple(f"{floor.pga / ground.pga:.2f}" for floor in (third, fifth))
     assert ratios == AMPLIFICATION[period][name]
 

@@ -1,19 +1,12 @@
-import copy
 from pathlib import Path
 
 import pytest
-import yaml
 
 from rockfrag.building.modes import find_modes
 from rockfrag.building.settings import make_building, read_building
 from rockfrag.errors import InputError
 
 CONFIG = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
-
-
-@pytest.fixture
-def settings():
-    return copy.deepcopy(yaml.safe_load(CONFIG.read_text(encoding="utf-8")))
 
 
 def test_the_reference_building_is_what_the_configuration_holds():

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from rockfrag.building.inelastic import respond_hysteretically
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.response import BuildingResponse, respond_elastically
 from rockfrag.records.motion import Motion
@@ -42,7 +43,9 @@ def floor_motions(
 
 def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
     """Respond hysteretically if the building has a masonry law, else elastically."""
-    return respond_elastically(building, motion)
+    if building.masonry is None:
+        return respond_elastically(building, motion)
+    return respond_hysteretically(building, motion)
 
 
 def _floor_motion(

@@ -26,12 +26,14 @@ class MasonryLaw:
         Drift over storey height at yield, at the shear limit and at the rocking limit [-].
     residual
         Shear left beyond the rocking limit, over the shear strength [-].
-    pinch_force, pinch_drift
-        Point through which a storey reloads: share of the force and of the drift on the way to the
-        largest drift reached before [-]; 1 and 1 is no pinching.
+    pinch_force
+        Force at the point through which a storey reloads, over the force it aims for [-].
+    pinch_drift
+        Displacement of that point: its share of the way from zero force to the line of unloading
+        through the aim [-].  Both shares 1 is no pinching.
     damage_ductility, damage_energy
-        Growth of the drift that reloading aims for, per unit of ductility and of energy over the
-        energy of the elastic and cracked branch [-]; it lowers the force of repeated cycles.
+        Growth of the drift aimed for at each reversal, per unit of ductility beyond cracking and of
+        energy over the area under both sides of the envelope [-]; repeated cycles lose force by it.
     unloading
         Exponent by which the unloading stiffness falls with ductility [-].
     """
@@ -43,9 +45,9 @@ class MasonryLaw:
     rocking_drift: float = 0.008
     residual: float = 0.4
     pinch_force: float = 0.4
-    pinch_drift: float = 0.6
+    pinch_drift: float = 0.8
     damage_ductility: float = 0.0
-    damage_energy: float = 0.01
+    damage_energy: float = 0.02
     unloading: float = 0.3
 
     def __post_init__(self) -> None:

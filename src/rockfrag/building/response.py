@@ -14,6 +14,37 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class EnergyLedger:
+    """Where the energy is, relative to the ground (Uang & Bertero 1990); each [J], shape (n,).
+
+    Attributes
+    ----------
+    input
+        Work of the inertial forces -m a_g on the floors.
+    kinetic
+        Kinetic energy of the floors' velocities relative to the ground.
+    strain
+        Energy that the storeys would give back on unloading.
+    damping
+        Energy dissipated by viscous damping.
+    hysteretic
+        Energy dissipated by the storeys.
+    """
+
+    input: Floats
+    kinetic: Floats
+    strain: Floats
+    damping: Floats
+    hysteretic: Floats
+
+    @property
+    def gap(self) -> float:
+        """Largest gap of the ledger over the largest input [-]."""
+        spent = self.kinetic + self.strain + self.damping + self.hysteretic
+        return float(np.abs(self.input - spent).max() / np.abs(self.input).max())
+
+
+@dataclass(frozen=True)
 class BuildingResponse:
     """Histories at the samples of the ground motion.
 
@@ -25,11 +56,14 @@ class BuildingResponse:
         Absolute acceleration of the ground and of every floor [m/s²], shape (storeys + 1, n).
     drift
         Drift of every storey over its height [-], shape (storeys, n).
+    energy
+        Energy up to each sample, if the model keeps a ledger.
     """
 
     time: Floats
     acceleration: Floats
     drift: Floats
+    energy: EnergyLedger | None = None
 
     @property
     def peak_drift(self) -> Floats:

@@ -1,0 +1,216 @@
+"""Degrading, pinching law of one storey between force and displacement.
+
+The rules are those of Filippou's law as OpenSees' ``Hysteretic`` and ``HystereticSM`` have it, for
+an envelope that is the same on both sides, so that the two can be compared:
+
+1. Beyond the largest displacement reached so far on its side a storey follows the envelope.
+2. It unloads with the elastic stiffness over (largest displacement / cracking displacement)^β.
+3. Reloading starts where the force is zero, and goes in two straight lines through the pinching
+   point to the envelope at the aim: the largest displacement reached on that side, enlarged by
+   damage at each reversal from beyond cracking on the other side. It is nowhere steeper than
+   unloading.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from rockfrag.building.masonry import MasonryLaw
+from rockfrag.building.model import ShearBuilding
+from rockfrag.errors import InputError
+from rockfrag.units import STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
+
+# the memory of a storey: present displacement and force, aim on either side (as magnitudes), where
+# the force was zero after unloading from the other side, direction of motion, and work done on it
+DISPLACEMENT, FORCE, AIM_POS, AIM_NEG, ZERO_POS, ZERO_NEG, DIRECTION, WORK = range(8)
+MEMORY = 8
+
+
+def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
+    """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit.
+
+    The shear strength of a storey over that of the ground storey is the ratio of the products of
+    stiffness and height: the same walls have the same strength in every storey.
+
+    Returns
+    -------
+    displacement, force
+        [m], [N], each of shape (storeys, 4).
+
+    Raises
+    ------
+    InputError
+        If the building has no masonry law, or is so soft that a storey reaches its strength only
+        beyond the yield drift.
+    """
+    law = building.masonry
+    if law is None:
+        raise InputError(f"{building.name}: its model is elastic; set model to hysteretic.")
+    heights, stiffnesses = np.asarray(building.heights), np.asarray(building.stiffnesses)
+    section = stiffnesses * heights
+    strength = law.base_shear * building.mass * STANDARD_GRAVITY * section / section[0]
+    cracking = law.cracking * strength
+    displacement = np.column_stack(
+        [
+            cracking / stiffnesses,
+            law.yield_drift * heights,
+            law.shear_drift * heights,
+            law.rocking_drift * heights,
+        ]
+    )
+    force = np.column_stack([cracking, strength, strength, law.residual * strength])
+    soft = np.flatnonzero(strength / stiffnesses > displacement[:, 1])
+    if soft.size:
+        storey = int(soft[0])
+        drift = strength[storey] / section[storey]
+        raise InputError(
+            f"{building.name}: storey {storey + 1} reaches its shear strength at a drift of "
+            f"{drift:.3%} elastically, beyond the yield drift {law.yield_drift:.3%}; give the "
+            "period of the uncracked building or a lower base_shear."
+        )
+    return displacement, force
+
+
+def law_parameters(law: MasonryLaw) -> Floats:
+    """Parameters of the law as the kernels take them, shape (5,)."""
+    return np.array(
+        [
+            law.pinch_force,
+            law.pinch_drift,
+            law.damage_ductility,
+            law.damage_energy,
+            law.unloading,
+        ]
+    )
+
+
+def push_storey(building: ShearBuilding, storey: int, displacements: Sequence[float]) -> Floats:
+    """Push one storey through displacements in turn and return its forces.
+
+    Parameters
+    ----------
+    building
+        Building with a masonry law.
+    storey
+        Number of the storey, from 1.
+    displacements
+        Displacements of the upper floor against the lower [m], shape (n,); the path between them is
+        straight, and the storey is undamaged and at zero before the first.
+
+    Returns
+    -------
+    Storey shear [N], shape (n,).
+
+    Raises
+    ------
+    InputError
+        If there is no such storey, or as :func:`storey_envelopes`.
+    """
+    if not 1 <= storey <= building.storeys:
+        raise InputError(
+            f"{building.name}: storey {storey} does not exist; storeys run from 1 to "
+            f"{building.storeys}."
+        )
+    displacement, force = storey_envelopes(building)
+    assert building.masonry is not None
+    path = np.asarray(displacements, dtype=np.float64)
+    return np.asarray(
+        _push(path, displacement[storey - 1], force[storey - 1], law_parameters(building.masonry))
+    )
+
+
+@njit(cache=True)
+def envelope(x: float, corner: Any, strength: Any) -> float:
+    """Force of the envelope at a displacement x ≥ 0."""
+    if x <= corner[0]:
+        return float(strength[0] / corner[0] * x)
+    for i in range(1, corner.size):
+        if x <= corner[i]:
+            slope = (strength[i] - strength[i - 1]) / (corner[i] - corner[i - 1])
+            return float(strength[i - 1] + slope * (x - corner[i - 1]))
+    return float(strength[-1])
+
+
+@njit(cache=True)
+def unloading_stiffness(aim: float, corner: Any, strength: Any, exponent: float) -> float:
+    """Stiffness of unloading from the side whose largest displacement is ``aim``."""
+    ductility = max(aim / corner[0], 1.0)
+    return float(strength[0] / corner[0] / ductility**exponent)
+
+
+@njit(cache=True)
+def _area(corner: Any, strength: Any) -> float:
+    """Area under both sides of the envelope."""
+    total = corner[0] * strength[0]
+    for i in range(1, corner.size):
+        total += (corner[i] - corner[i - 1]) * (strength[i] + strength[i - 1])
+    return float(total)
+
+
+@njit(cache=True)
+def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: Any) -> None:
+    """Move a storey from the state ``memory`` to a displacement; its new state is ``moved``.
+
+    Everything is seen from the side it moves to, so that one set of rules serves both directions.
+    """
+    moved[:] = memory
+    step = to - memory[DISPLACEMENT]
+    if step == 0.0:
+        return
+    side = 1.0 if step > 0 else -1.0
+    front, back = (AIM_POS, AIM_NEG) if step > 0 else (AIM_NEG, AIM_POS)
+    zero = ZERO_POS if step > 0 else ZERO_NEG
+    x0, f0, x = side * memory[DISPLACEMENT], side * memory[FORCE], side * to
+    back_stiffness = unloading_stiffness(memory[back], corner, strength, law[4])
+    front_stiffness = unloading_stiffness(memory[front], corner, strength, law[4])
+
+    if memory[DIRECTION] != side and f0 <= 0.0:
+        # a reversal: note where the force will be zero, and enlarge the aim by damage
+        moved[zero] = x0 - f0 / back_stiffness
+        if memory[back] > corner[0]:
+            work = memory[WORK] - 0.5 * f0 * f0 / back_stiffness
+            damage = law[3] * work / _area(corner, strength)
+            damage += law[2] * (memory[back] - corner[0]) / corner[0]
+            moved[front] = memory[front] * (1.0 + damage)
+
+    moved[front] = max(moved[front], corner[0])
+    aim = moved[front]
+    if x >= aim:
+        force = envelope(x, corner, strength)
+        moved[front] = x
+    elif x < moved[zero]:
+        force = min(f0 + back_stiffness * (x - x0), 0.0)
+    else:
+        force = _reload(x, moved[zero], aim, envelope(aim, corner, strength), front_stiffness, law)
+        force = min(force, f0 + front_stiffness * (x - x0))
+    moved[DISPLACEMENT] = to
+    moved[FORCE] = side * force
+    moved[DIRECTION] = side
+    moved[WORK] = memory[WORK] + 0.5 * (f0 + force) * (x - x0)
+
+
+@njit(cache=True)
+def _reload(x: float, zero: float, aim: float, force: float, stiffness: float, law: Any) -> float:
+    """Force at x on the two lines from (zero, 0) through the pinching point to (aim, force)."""
+    pinch = zero + (aim - (1.0 - law[0]) * force / stiffness - zero) * law[1]
+    if x < pinch:
+        return float(law[0] * force * (x - zero) / (pinch - zero))
+    if aim <= pinch:
+        return float(force)
+    return float(force * (law[0] + (1.0 - law[0]) * (x - pinch) / (aim - pinch)))
+
+
+@njit(cache=True)
+def _push(path: Any, corner: Any, strength: Any, law: Any) -> Any:
+    memory, moved = np.zeros(MEMORY), np.zeros(MEMORY)
+    forces = np.zeros(path.size)
+    for i in range(path.size):
+        move(memory, path[i], corner, strength, law, moved)
+        memory[:] = moved
+        forces[i] = memory[FORCE]
+    return forces

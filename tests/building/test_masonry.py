@@ -1,0 +1,260 @@
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from rockfrag.building.floors import floor_motions, respond
+from rockfrag.building.hysteresis import push_storey, storey_envelopes
+from rockfrag.building.inelastic import respond_hysteretically
+from rockfrag.building.response import respond_elastically
+from rockfrag.building.settings import make_building
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
+
+
+@pytest.fixture
+def masonry(settings):
+    """Maker of the reference building as hysteretic masonry, with changes to its law."""
+
+    def make(damping=None, **law):
+        changed = settings | {"model": "hysteretic", "masonry": settings["masonry"] | law}
+        return make_building(changed | ({"damping": damping} if damping else {}))
+
+    return make
+
+
+def strong_motion(seed=1, peak=2.5):
+    """Ten seconds of noise around 2 Hz that cracks the reference building and takes it past yield."""
+    t = np.arange(1000) * 0.01
+    rng = np.random.default_rng(seed)
+    waves = sum(np.sin(2 * np.pi * f * t + rng.uniform(0, 6.28)) for f in rng.uniform(1, 4, 30))
+    shaped = waves * np.sin(np.pi * t / t[-1]) ** 2
+    return Motion(peak * shaped / np.abs(shaped).max(), 0.01, "noise")
+
+
+def cycles(amplitudes, points=150):
+    """Path through growing cycles of displacement."""
+    turns = np.array([0.0, *np.ravel([(a, -a) for a in amplitudes]), 0.0])
+    legs = [np.linspace(a, b, points)[1:] for a, b in pairwise(turns)]
+    return np.concatenate(legs)
+
+
+GROWING = cycles(4.5 * np.array([2e-4, 5e-4, 1e-3, 1e-3, 2e-3, 3.9e-3, 3.9e-3, 6e-3, 6e-3, 9e-3]))
+
+
+def test_the_envelope_follows_from_weight_and_drift_limits(masonry):
+    displacement, force = storey_envelopes(masonry())
+    weight = (5 * 350e3 + 245e3) * 9.81
+    assert force[0] == pytest.approx(0.12 * weight * np.array([0.5, 1, 1, 0.4]))
+    assert displacement[0, 1:] == pytest.approx(4.5 * np.array([0.001, 0.004, 0.008]))
+    assert force[0, 0] / displacement[0, 0] == pytest.approx(masonry().stiffnesses[0])
+    # the same walls in every storey have the same strength
+    assert np.ptp(force, axis=0) == pytest.approx(np.zeros(4), abs=1e-3)
+
+
+def test_a_single_push_follows_the_envelope(masonry):
+    building = masonry()
+    displacement, force = storey_envelopes(building)
+    path = np.linspace(0, 0.05, 500)
+    expected = np.interp(path, [0, *displacement[1]], [0, *force[1]])
+    assert push_storey(building, 2, path) == pytest.approx(expected, rel=1e-12)
+    assert push_storey(building, 2, -path) == pytest.approx(-expected, rel=1e-12)
+
+
+def test_repeated_cycles_lose_force_and_never_give_energy(masonry):
+    building = masonry(damage_energy=0.05)
+    path = cycles([0.009] * 4)
+    force = push_storey(building, 1, path)
+    peaks = [
+        force[path == 0.009][0]
+        for path, force in zip(
+            np.split(path, [298, 596, 894]), np.split(force, [298, 596, 894]), strict=True
+        )
+    ]
+    assert (np.diff(peaks) < 0).all()
+    both = np.concatenate([[0.0], path]), np.concatenate([[0.0], force])
+    work = np.cumsum(np.diff(both[0]) * (both[1][1:] + both[1][:-1]) / 2)
+    assert (work > 0).all()
+    assert np.all(np.diff(work[297::298]) > 0)
+
+
+def test_below_cracking_the_storeys_dissipate_nothing_and_the_building_is_elastic(masonry):
+    building, motion = masonry(base_shear=0.3), strong_motion(peak=0.3)
+    found = respond_hysteretically(building, motion)
+    exact = respond_elastically(building, motion)
+    ledger = found.energy
+    assert ledger.hysteretic.max() < 1e-9 * ledger.input.max()
+    assert np.abs(found.acceleration - exact.acceleration).max() < 2e-4 * motion.pga
+    assert np.abs(found.drift - exact.drift).max() < 2e-4 * exact.peak_drift.max()
+
+
+def test_the_energy_ledger_closes_beyond_yield(masonry):
+    found = respond_hysteretically(masonry(), strong_motion())
+    assert found.peak_drift.max() > 0.002
+    assert found.energy.gap < 1e-6
+    # most of the energy is dissipated, never returned, and all of it at rest
+    dissipated = found.energy.hysteretic
+    assert np.diff(dissipated).min() > -1e-6 * dissipated.max()
+    assert dissipated[-1] > 0.2 * found.energy.input[-1]
+
+
+def test_input_energy_equals_its_integral_over_the_floor_velocities(masonry):
+    motion = strong_motion()
+    building = masonry()
+    found = respond_hysteretically(building, motion, 5e-5)
+    # splines through the displacements at the samples know nothing of the steps of the integration
+    heights = np.array(building.heights)[:, None]
+    displacement = np.cumsum(found.drift * heights, axis=0)
+    velocity = CubicSpline(motion.time, displacement, axis=1).derivative()(motion.time)
+    power = -motion.acceleration * (np.array(building.masses) @ velocity)
+    total = CubicSpline(motion.time, power).integrate(0, motion.time[-1])
+    assert found.energy.input[-1] == pytest.approx(total, rel=2e-3)
+
+
+def test_halving_the_step_changes_nothing_that_matters(masonry):
+    building, motion = masonry(), strong_motion()
+    coarse = respond_hysteretically(building, motion)
+    fine = respond_hysteretically(building, motion, 1e-4)
+    assert np.abs(coarse.acceleration).max(axis=1) == pytest.approx(
+        np.abs(fine.acceleration).max(axis=1), rel=1e-3
+    )
+    assert coarse.peak_drift == pytest.approx(fine.peak_drift, rel=1e-3)
+
+
+def test_floor_motions_of_masonry_are_hysteretic_and_weaker(masonry, settings):
+    motion = strong_motion()
+    cracked = floor_motions(masonry(), motion, ["F5"])[0]
+    elastic = floor_motions(make_building(settings), motion, ["F5"])[0]
+    assert cracked.provenance[-1]["model"] == "hysteretic"
+    assert cracked.pga < 0.7 * elastic.pga
+    assert respond(masonry(), motion).energy is not None
+
+
+def test_a_law_that_the_stiffness_does_not_allow_is_refused(masonry, settings):
+    with pytest.raises(
+        InputError, match=r"storey 1 reaches its shear strength .* lower base_shear"
+    ):
+        storey_envelopes(masonry(base_shear=0.9))
+    with pytest.raises(InputError, match="model is elastic"):
+        respond_hysteretically(make_building(settings), strong_motion())
+    with pytest.raises(InputError, match="storey 7 does not exist"):
+        push_storey(masonry(), 7, [0.001])
+
+
+def material(ops, building, storey, tag=1):
+    """Define the storey's law as OpenSees' HystereticSM."""
+    displacement, force = storey_envelopes(building)
+    pairs = [float(x) for xy in zip(force[storey], displacement[storey], strict=True) for x in xy]
+    law = building.masonry
+    ops.uniaxialMaterial(
+        "HystereticSM", tag, "-posEnv", *pairs, "-negEnv", *[-x for x in pairs],
+        "-pinch", law.pinch_drift, law.pinch_force,
+        "-damage", law.damage_ductility, law.damage_energy, "-beta", law.unloading,
+    )  # fmt: skip
+
+
+def pushed(ops, path):
+    ops.testUniaxialMaterial(1)
+    forces = []
+    for x in path:
+        ops.setStrain(float(x))
+        forces.append(ops.getStress())
+    return np.array(forces)
+
+
+@pytest.mark.peers
+@pytest.mark.parametrize("law", [{}, {"damage_ductility": 0.05}, {"unloading": 0.0}])
+def test_a_cyclic_push_equals_opensees(opensees, masonry, law):
+    building = masonry(**({"damage_energy": 0.0} | law))
+    material(opensees, building, 0)
+    found = push_storey(building, 1, GROWING)
+    assert np.abs(found - pushed(opensees, GROWING)).max() < 1e-9 * np.abs(found).max()
+
+
+@pytest.mark.peers
+def test_damage_by_energy_equals_opensees(opensees, masonry):
+    # its trilinear law has the same envelope if nothing is lost after the shear limit, but relates
+    # the energy to the area under three corners
+    building = masonry(residual=1.0, damage_energy=0.1)
+    displacement, force = (values[0] for values in storey_envelopes(building))
+    areas = np.diff(displacement, prepend=0) * (force + np.concatenate([[0], force[:-1]]))
+    pairs = [float(x) for xy in zip(force[:3], displacement[:3], strict=True) for x in xy]
+    law = building.masonry
+    damage = law.damage_energy * areas[:3].sum() / areas.sum()
+    opensees.uniaxialMaterial(
+        "Hysteretic", 1, *pairs, *[-x for x in pairs], law.pinch_drift, law.pinch_force, 0.0,
+        float(damage), law.unloading,
+    )  # fmt: skip
+    found = push_storey(building, 1, GROWING)
+    assert np.abs(found - pushed(opensees, GROWING)).max() < 1e-9 * np.abs(found).max()
+
+
+@pytest.mark.peers
+def test_the_reference_law_is_within_three_per_cent_of_opensees(opensees, masonry):
+    # HystereticSM relates the energy to an area of its own, which is the whole difference
+    building = masonry()
+    material(opensees, building, 0)
+    found = push_storey(building, 1, GROWING)
+    assert np.abs(found - pushed(opensees, GROWING)).max() < 0.03 * np.abs(found).max()
+
+
+def shaken(ops, building, motion, parts, define):
+    """Absolute floor accelerations and top displacement of the building in OpenSees."""
+    n = building.storeys
+    ops.node(0, 0.0)
+    ops.fix(0, 1)
+    for i in range(n):
+        ops.node(i + 1, 0.0)
+        ops.mass(i + 1, building.masses[i])
+        define(i, i + 1)
+        ops.element("zeroLength", i + 1, i, i + 1, "-mat", i + 1, "-dir", 1, "-doRayleigh", 1)
+    first, second = np.sqrt(ops.eigen("-fullGenLapack", 2))
+    factor = 2 * building.damping.ratio / (first + second)
+    ops.rayleigh(factor * first * second, 0.0, factor, 0.0)
+    values = [float(x) for x in motion.acceleration]
+    ops.timeSeries("Path", 1, "-dt", motion.dt, "-values", *values)
+    ops.pattern("UniformExcitation", 1, 1, "-accel", 1)
+    ops.constraints("Plain")
+    ops.numberer("Plain")
+    ops.system("FullGeneral")
+    ops.test("NormDispIncr", 1e-12, 50)
+    ops.algorithm("Newton")
+    ops.integrator("Newmark", 0.5, 0.25)
+    ops.analysis("Transient")
+    total = np.zeros((n, len(values)))
+    drift = np.zeros((n, len(values)))
+    for k in range(1, len(values)):
+        assert ops.analyze(parts, motion.dt / parts) == 0
+        total[:, k] = [ops.nodeAccel(i + 1, 1) + values[k] for i in range(n)]
+        drift[:, k] = np.diff([ops.nodeDisp(i, 1) for i in range(n + 1)]) / building.heights
+    return total, drift
+
+
+RAYLEIGH = {"kind": "rayleigh", "ratio": 0.05, "modes": [1, 2]}
+
+
+@pytest.mark.peers
+def test_elastic_floor_motions_are_those_of_opensees(opensees, settings):
+    building, motion = make_building(settings | {"damping": RAYLEIGH}), strong_motion()
+
+    def spring(i, tag):
+        opensees.uniaxialMaterial("Elastic", tag, building.stiffnesses[i])
+
+    total, drift = shaken(opensees, building, motion, 40, spring)
+    found = respond_elastically(building, motion)
+    assert np.abs(found.acceleration[1:] - total).max() < 1e-3 * np.abs(total).max()
+    assert np.abs(found.drift - drift).max() < 1e-3 * np.abs(drift).max()
+
+
+@pytest.mark.peers
+def test_hysteretic_floor_motions_under_a_record_are_those_of_opensees(opensees, masonry, record):
+    building, motion = masonry(damping=RAYLEIGH), record("Friuli")
+
+    def storey(i, tag):
+        material(opensees, building, i, tag)
+
+    total, drift = shaken(opensees, building, motion, 20, storey)
+    found = respond_hysteretically(building, motion)
+    assert np.abs(found.acceleration[1:] - total).max() < 0.03 * np.abs(total).max()
+    assert np.abs(found.drift - drift).max() < 0.03 * np.abs(drift).max()
