@@ -134,3 +134,4 @@ def test_floor_motions_say_where_they_come_from():
     assert third.metadata["ground_motion"] == "noise"
     assert third.provenance[-1]["step"] == "floor_motion"
     assert third.provenance[-1]["model"] == "elastic"
+    assert third.provenance[-1]["verdict"].startswith("building, elastic: storey")

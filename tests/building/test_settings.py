@@ -13,7 +13,7 @@ def test_the_reference_building_is_what_the_configuration_holds():
     building = read_building(CONFIG)
     assert find_modes(building).period[0] == pytest.approx(0.35, rel=1e-12)
     assert (building.level("F3"), building.level("F5")) == (3, 5)
-    assert building.masonry is None
+    assert building.model == "elastic"
 
 
 def test_stiffnesses_can_be_given_instead_of_a_period(settings):

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from rockfrag.building.drift import judge_drift
 from rockfrag.building.inelastic import respond_hysteretically
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.response import BuildingResponse, respond_elastically
@@ -16,7 +17,7 @@ def floor_motions(
     Parameters
     ----------
     building
-        Building; with a masonry law it responds hysteretically, else elastically.
+        Building; its model says whether it responds elastically or hysteretically.
     motion
         Ground acceleration, of n samples.
     floors
@@ -42,8 +43,8 @@ def floor_motions(
 
 
 def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
-    """Respond hysteretically if the building has a masonry law, else elastically."""
-    if building.masonry is None:
+    """Response by the building's model."""
+    if building.model == "elastic":
         return respond_elastically(building, motion)
     return respond_hysteretically(building, motion)
 
@@ -55,10 +56,11 @@ def _floor_motion(
         "floor_motion",
         response.acceleration[level],
         building=building.name,
-        model="elastic" if building.masonry is None else "hysteretic",
+        model=building.model,
         floor=label,
         level=level,
         largest_drift=float(response.peak_drift.max()),
+        verdict=judge_drift(building, response).statement,
     )
     metadata = {**motion.metadata, "floor": label, "level": level, "ground_motion": motion.name}
     return Motion(

@@ -31,11 +31,19 @@ DISPLACEMENT, FORCE, AIM_POS, AIM_NEG, ZERO_POS, ZERO_NEG, DIRECTION, WORK = ran
 MEMORY = 8
 
 
+def shear_strengths(building: ShearBuilding) -> Floats:
+    """Shear strength of each storey [N], shape (storeys,).
+
+    The strength of a storey over that of the ground storey is the ratio of the products of stiffness
+    and height: the same walls have the same strength in every storey.
+    """
+    section = np.asarray(building.stiffnesses) * np.asarray(building.heights)
+    base = building.masonry.base_shear * building.mass * STANDARD_GRAVITY
+    return np.asarray(base * section / section[0])
+
+
 def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
     """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit.
-
-    The shear strength of a storey over that of the ground storey is the ratio of the products of
-    stiffness and height: the same walls have the same strength in every storey.
 
     Returns
     -------
@@ -45,15 +53,11 @@ def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
     Raises
     ------
     InputError
-        If the building has no masonry law, or is so soft that a storey reaches its strength only
-        beyond the yield drift.
+        If the building is so soft that a storey reaches its strength only beyond the yield drift.
     """
     law = building.masonry
-    if law is None:
-        raise InputError(f"{building.name}: its model is elastic; set model to hysteretic.")
     heights, stiffnesses = np.asarray(building.heights), np.asarray(building.stiffnesses)
-    section = stiffnesses * heights
-    strength = law.base_shear * building.mass * STANDARD_GRAVITY * section / section[0]
+    strength = shear_strengths(building)
     cracking = law.cracking * strength
     displacement = np.column_stack(
         [
@@ -67,7 +71,7 @@ def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
     soft = np.flatnonzero(strength / stiffnesses > displacement[:, 1])
     if soft.size:
         storey = int(soft[0])
-        drift = strength[storey] / section[storey]
+        drift = strength[storey] / stiffnesses[storey] / heights[storey]
         raise InputError(
             f"{building.name}: storey {storey + 1} reaches its shear strength at a drift of "
             f"{drift:.3%} elastically, beyond the yield drift {law.yield_drift:.3%}; give the "
@@ -95,7 +99,7 @@ def push_storey(building: ShearBuilding, storey: int, displacements: Sequence[fl
     Parameters
     ----------
     building
-        Building with a masonry law.
+        Building; its model need not be hysteretic.
     storey
         Number of the storey, from 1.
     displacements
@@ -117,7 +121,6 @@ def push_storey(building: ShearBuilding, storey: int, displacements: Sequence[fl
             f"{building.storeys}."
         )
     displacement, force = storey_envelopes(building)
-    assert building.masonry is not None
     path = np.asarray(displacements, dtype=np.float64)
     return np.asarray(
         _push(path, displacement[storey - 1], force[storey - 1], law_parameters(building.masonry))

@@ -43,7 +43,7 @@ def respond_hysteretically(
     Parameters
     ----------
     building
-        Building with a masonry law.
+        Building, whichever its model.
     motion
         Ground acceleration of n samples, linear between them.
     longest_step
@@ -56,10 +56,9 @@ def respond_hysteretically(
     Raises
     ------
     InputError
-        If the building has no masonry law, or one that its stiffness does not allow.
+        If its stiffness does not allow its masonry law.
     """
     corner, strength = storey_envelopes(building)
-    assert building.masonry is not None
     parts = max(1, int(np.ceil(motion.dt / longest_step - 1e-9)))
     step = motion.dt / parts
     mass = np.asarray(building.masses)

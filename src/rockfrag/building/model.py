@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,8 +84,10 @@ class ShearBuilding:
         Modal or Rayleigh damping, by the elastic modes.
     floors
         Label of each floor of interest and its level, 0 for the ground, ``storeys`` for the top.
+    model
+        Whether it responds ``elastic`` or ``hysteretic``.
     masonry
-        Storey law of the hysteretic model; ``None`` for a building that stays elastic.
+        Law of the storeys: what the hysteretic model does, and by what the elastic one is judged.
     name
         Short name for messages and provenance.
 
@@ -100,7 +103,8 @@ class ShearBuilding:
     stiffnesses: tuple[float, ...]
     damping: Damping = ModalDamping()
     floors: Mapping[str, int] = field(default_factory=lambda: {"GF": 0})
-    masonry: MasonryLaw | None = None
+    model: Literal["elastic", "hysteretic"] = "elastic"
+    masonry: MasonryLaw = field(default_factory=MasonryLaw)
     name: str = "building"
 
     def __post_init__(self) -> None:
@@ -112,6 +116,10 @@ class ShearBuilding:
             raise InputError(
                 f"{self.name}: masses ({len(self.masses)}), heights ({len(self.heights)}) and "
                 f"stiffnesses ({len(self.stiffnesses)}) must be equally many, one of each a storey."
+            )
+        if self.model not in ("elastic", "hysteretic"):
+            raise InputError(
+                f"{self.name}: model must be elastic or hysteretic, got {self.model!r}."
             )
         for label in self.floors:
             self.level(label)

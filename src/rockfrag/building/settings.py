@@ -86,10 +86,6 @@ def _make_building(settings: Mapping[str, Any]) -> ShearBuilding:
             f"storey_heights_m has {len(heights)} entries and masses_kg {len(masses)}; give one of "
             "each for every storey."
         )
-    model = settings.get("model", "elastic")
-    if model not in ("elastic", "hysteretic"):
-        raise InputError(f"model must be elastic or hysteretic, got {model!r}.")
-    law = _masonry(settings.get("masonry", {}))
     floors = _mapping(settings.get("floors", {"GF": 0}), "floors")
     return ShearBuilding(
         masses=masses,
@@ -97,7 +93,8 @@ def _make_building(settings: Mapping[str, Any]) -> ShearBuilding:
         stiffnesses=_stiffnesses(settings, masses, heights),
         damping=_damping(settings.get("damping", {})),
         floors=dict(floors),
-        masonry=law if model == "hysteretic" else None,
+        model=settings.get("model", "elastic"),
+        masonry=_masonry(settings.get("masonry", {})),
         name=str(settings.get("name", "building")),
     )
 

@@ -1,0 +1,92 @@
+"""How far a building is driven, and whether its model can be believed there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rockfrag.building.hysteresis import shear_strengths
+from rockfrag.building.model import ShearBuilding
+from rockfrag.building.response import BuildingResponse
+
+
+@dataclass(frozen=True)
+class DriftVerdict:
+    """State of the storey that is worst off.
+
+    Attributes
+    ----------
+    storey
+        Its number, from 1.
+    drift
+        Its largest drift over height [-].
+    strength_share
+        Largest shear over the shear strength [-]; only an elastic model can exceed 1.
+    state
+        ``uncracked``, ``cracked``, ``beyond strength`` (of an elastic model), ``beyond yield``,
+        ``beyond the shear limit`` or ``beyond the rocking limit``.
+    credible
+        Whether the model may be used there: an elastic one up to the shear strength, a hysteretic
+        one up to the rocking limit, beyond which walls fall.
+    statement
+        One sentence for a report.
+    """
+
+    storey: int
+    drift: float
+    strength_share: float
+    state: str
+    credible: bool
+    statement: str
+
+
+def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftVerdict:
+    """Judge a response by the masonry law of the building."""
+    if building.model == "elastic":
+        return _judge_elastic(building, response)
+    return _judge_hysteretic(building, response)
+
+
+def _judge_elastic(building: ShearBuilding, response: BuildingResponse) -> DriftVerdict:
+    law = building.masonry
+    shear = np.asarray(building.stiffnesses) * np.asarray(building.heights) * response.peak_drift
+    shares = shear / shear_strengths(building)
+    worst = int(np.argmax(shares))
+    share, drift = float(shares[worst]), float(response.peak_drift[worst])
+    begin = (
+        f"{building.name}, elastic: storey {worst + 1} drifts {drift:.2%} of its height and carries "
+        f"{share:.2f} of its shear strength"
+    )
+    if share <= law.cracking:
+        state, end = "uncracked", "below cracking, so the elastic model holds"
+    elif share <= 1:
+        state, end = "cracked", "beyond cracking, so a cracked stiffness is the one to use"
+    else:
+        state = "beyond strength"
+        end = "far beyond cracking, so these are floor motions of a house that cannot break"
+    return DriftVerdict(worst + 1, drift, share, state, share <= 1, f"{begin}: {end}.")
+
+
+def _judge_hysteretic(building: ShearBuilding, response: BuildingResponse) -> DriftVerdict:
+    law = building.masonry
+    worst = int(np.argmax(response.peak_drift))
+    drift = float(response.peak_drift[worst])
+    elastic = float(building.stiffnesses[worst] * building.heights[worst] * drift)
+    share = min(1.0, elastic / float(shear_strengths(building)[worst]))
+    begin = f"{building.name}, hysteretic: storey {worst + 1} drifts {drift:.2%} of its height"
+    if share <= law.cracking:
+        state, end = "uncracked", "below cracking"
+    elif drift <= law.yield_drift:
+        state, end = "cracked", f"cracked but below yield ({law.yield_drift:.2%})"
+    elif drift <= law.shear_drift:
+        state, end = "beyond yield", f"between yield and the shear limit ({law.shear_drift:.2%})"
+    elif drift <= law.rocking_drift:
+        state = "beyond the shear limit"
+        end = f"between the shear and the rocking limit ({law.rocking_drift:.2%})"
+    else:
+        state = "beyond the rocking limit"
+        end = (
+            f"beyond the rocking limit ({law.rocking_drift:.2%}), where walls fall and floor motions "
+            "mean nothing"
+        )
+    credible = drift <= law.rocking_drift
+    return DriftVerdict(worst + 1, drift, share, state, credible, f"{begin}, {end}.")

@@ -1,0 +1,57 @@
+import numpy as np
+import pytest
+
+from rockfrag.building.drift import judge_drift
+from rockfrag.building.floors import respond
+from rockfrag.building.response import BuildingResponse
+from rockfrag.building.settings import make_building
+from rockfrag.records.motion import Motion
+
+NOISE = Motion(np.random.default_rng(5).normal(size=1000), 0.01, "noise")
+
+
+def shaken(building, pga):
+    motion = NOISE.after("scale", NOISE.acceleration * pga / NOISE.pga)
+    return judge_drift(building, respond(building, motion))
+
+
+def test_an_elastic_building_is_believed_up_to_its_strength(settings):
+    building = make_building(settings)
+    verdicts = [shaken(building, pga) for pga in (0.1, 0.5, 1.0, 2.0, 10.0)]
+    shares = [v.strength_share for v in verdicts]
+    assert shares == pytest.approx([shares[0] * pga / 0.1 for pga in (0.1, 0.5, 1.0, 2.0, 10.0)])
+    assert [v.credible for v in verdicts] == [share <= 1 for share in shares]
+    assert verdicts[0].state == "uncracked"
+    assert verdicts[-1].state == "beyond strength"
+    assert "cannot break" in verdicts[-1].statement
+
+
+def test_the_strength_share_is_the_base_shear_over_the_weight(settings):
+    # a storey that carries the weight times the base shear coefficient is at its strength
+    building = make_building(settings)
+    weight = 9.81 * building.mass
+    drift = np.zeros((6, 2))
+    drift[0, 1] = 0.12 * weight / building.stiffnesses[0] / building.heights[0]
+    response = BuildingResponse(np.zeros(2), np.zeros((7, 2)), drift)
+    verdict = judge_drift(building, response)
+    assert verdict.strength_share == pytest.approx(1)
+    assert verdict.storey == 1
+
+
+@pytest.mark.parametrize(
+    ("drift", "state", "credible"),
+    [
+        (1e-5, "uncracked", True),
+        (8e-4, "cracked", True),
+        (2e-3, "beyond yield", True),
+        (6e-3, "beyond the shear limit", True),
+        (9e-3, "beyond the rocking limit", False),
+    ],
+)
+def test_masonry_is_judged_by_the_drift_limits(settings, drift, state, credible):
+    building = make_building(settings | {"model": "hysteretic"})
+    drifts = np.zeros((6, 2))
+    drifts[2, 1] = -drift
+    verdict = judge_drift(building, BuildingResponse(np.zeros(2), np.zeros((7, 2)), drifts))
+    assert (verdict.storey, verdict.state, verdict.credible) == (3, state, credible)
+    assert verdict.statement.endswith(".")
