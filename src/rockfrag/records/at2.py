@@ -43,7 +43,7 @@ _COMPONENT = re.compile(
     r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
     re.IGNORECASE,
 )
-_DATE = re.compile(r"\b\d{1,2}/\d{1,2}/\d{2,4}\b")
+_AZIMUTH = re.compile(r"\bazimuth\s*=\s*(?P<azimuth>\d{1,3})", re.IGNORECASE)
 
 
 def _size_line(lines: list[str]) -> int:
@@ -143,6 +143,7 @@ def _facts(header: list[str]) -> dict[str, str]:
     """Take event, station and component from PEER's line ``event date, station, component``."""
     title = header[0].strip() if header else ""
     facts = {"title": title, "event": "", "station": "", "component": "", "agency": ""}
+    rotated = next((found for line in header if (found := _AZIMUTH.search(line))), None)
     for line in header[1:]:
         found = _COMPONENT.search(line.strip())
         before = line.strip()[: found.start()] if found else ""
@@ -156,10 +157,10 @@ def _facts(header: list[str]) -> dict[str, str]:
         return facts | {
             "event": ", ".join(parts[:first]).removeprefix("H1 for rotation:").strip(),
             "station": ", ".join(parts[first:]),
-            "component": found["component"],
+            "component": rotated["azimuth"] if rotated else found["component"],
             "agency": (found["agency"] or "").strip(),
         }
-    return facts
+    return facts | {"description": " ".join(header[1].split()) if header[1:] else ""}
 
 
 FORMAT = Format("AT2", _recognise, _parse)

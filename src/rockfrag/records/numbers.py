@@ -82,7 +82,7 @@ def _fast(body: bytes) -> NDArray[np.float64] | None:
         # numpy before 2.4 warns where later ones raise
         warnings.simplefilter("error", DeprecationWarning)
         try:
-            return np.fromstring(body, dtype=np.float64, sep=" ")  # type: ignore[arg-type]
+            return np.fromstring(body, dtype=np.float64, sep=" ")
         except (ValueError, DeprecationWarning):
             return None
 

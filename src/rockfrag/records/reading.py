@@ -1,4 +1,4 @@
-"""Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, none of it guessed."""
+"""Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, not guessed."""
 
 import hashlib
 import os
@@ -202,9 +202,8 @@ def _settled_unit(
         return asked
     peak = float(np.abs(samples - samples.mean()).max())
     candidates = ", ".join(
-        f"{peak * TO_SI[known] / STANDARD_GRAVITY:.3g} g if {name}"
+        f"{peak * TO_SI[asked_unit(name)] / STANDARD_GRAVITY:.3g} g if {name}"
         for name in ASKED_UNITS
-        if (known := asked_unit(name)) and name != "gal"
     )
     raise InputError(
         f"{record.name}: the file does not state its unit; give unit= "

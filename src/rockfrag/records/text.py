@@ -61,14 +61,14 @@ def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
 
 @dataclass(frozen=True)
 class TextFile:
-    """The bytes of a text file with Unix line ends, read through numbered lines.
+    r"""The bytes of a text file with Unix line ends, read through numbered lines.
 
     Attributes
     ----------
     name
         Name for messages.
     data
-        All bytes, UTF-8, ``\\n`` line ends.
+        All bytes, UTF-8, ``\n`` line ends.
     """
 
     name: str
@@ -119,6 +119,11 @@ class TextFile:
         if match is None:
             return -1
         return int(np.searchsorted(self._ends, match.start(), side="left"))
+
+    def until(self, pattern: re.Pattern[bytes], start: int) -> int:
+        """Return the first line from ``start`` that has the pattern, or the number of lines."""
+        found = self.find(pattern, start)
+        return len(self) if found < 0 else found
 
     def fail(self, what: str, line: int | None = None) -> NoReturn:
         """Raise an :class:`InputError` about a line (from zero) or the whole file."""
@@ -178,7 +183,7 @@ class TextFile:
         return values
 
     def table(self, start: int, columns: int, stop: int | None = None) -> NDArray[np.float64]:
-        """Parse lines as rows of numbers, shape (rows, columns); blank lines at the end are no rows.
+        """Parse lines as rows of numbers, shape (rows, columns); blank lines at the end do not count.
 
         Columns are separated by blanks, tabs, commas or semicolons; a comma beside semicolons is a
         decimal comma.
@@ -220,7 +225,8 @@ def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
     starts = filled.copy()
     starts[1:] &= ~filled[:-1]
     ends = np.append(np.flatnonzero(characters == ord("\n")), characters.size - 1)
-    return np.diff(np.cumsum(starts)[ends], prepend=0)
+    widths: NDArray[np.int64] = np.diff(np.cumsum(starts)[ends], prepend=0)
+    return widths
 
 
 def read_text(source: Source) -> TextFile:

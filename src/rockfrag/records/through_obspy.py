@@ -1,4 +1,4 @@
-"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET/KiK-net, Kinemetrics EVT."""
+"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, Kinemetrics EVT."""
 
 import glob
 from pathlib import Path
@@ -11,6 +11,8 @@ from obspy import Inventory, Trace, read_inventory
 
 from rockfrag.errors import InputError
 from rockfrag.records.channel import Channel
+from rockfrag.records.format import head_lines
+from rockfrag.records.plain import first_odd_row
 from rockfrag.records.text import HEAD_BYTES, MAX_LINE, read_head
 
 RECORDER_FORMATS = frozenset({"MSEED", "SAC", "KNET", "KINEMETRICS_EVT"})
@@ -46,6 +48,11 @@ def obspy_channels(path: Path) -> tuple[str, list[Channel]]:
     except TypeError as error:
         if "Unknown format" not in str(error):
             raise InputError(f"{path}: cannot be read ({error}).") from error
+        odd = first_odd_row(head_lines(path))
+        if odd is not None:
+            raise InputError(
+                f"{path}, line {odd + 1}: not a row of numbers like those above; the file is damaged."
+            ) from None
         raise InputError(
             f"{path}: no known record format; a plain text file needs one or two columns of "
             "numbers, or a first line with the number of samples and dt."

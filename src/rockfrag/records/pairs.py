@@ -1,0 +1,121 @@
+"""Volume 1 of the Caltech tradition: pairs of time and acceleration below a header in columns.
+
+Text header, 100 integers, 50 reals, then five pairs a line. The 28th integer and the line ``NO. OF
+POINTS`` have the number of pairs; ``UNITS … SEC AND G/10`` the unit. Film records were digitised at
+uneven intervals; they are interpolated linearly to 200 samples a second.
+"""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.records.blocks import reals
+from rockfrag.records.channel import Channel
+from rockfrag.records.numbers import NumberError, parse_columns, parse_separated
+from rockfrag.records.quantities import canonical_unit
+from rockfrag.records.text import TextFile
+from rockfrag.records.times import UNEVEN_STEP, check_rising, resolution_of, step_of_times
+
+_POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.IGNORECASE)
+_UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.IGNORECASE)
+_NUMBERS_ONLY = re.compile(r"^[\s\d.+\-]+$")
+_FIELD = 7
+_MAX_HEADER = 30
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Times [s] and accelerations of one channel, shape (n,) each."""
+
+    times: NDArray[np.float64]
+    values: NDArray[np.float64]
+    dt: float
+    even: bool
+    unit: str
+
+    def channel(self) -> Channel:
+        """Return them as a channel of equally spaced samples."""
+        if self.even:
+            return Channel(self.values.size, self.dt, self.values.copy, self.unit)
+        count = int(np.floor((self.times[-1] - self.times[0]) / self.dt * (1 + 1e-12))) + 1
+        even = np.interp(self.times[0] + np.arange(count) * self.dt, self.times, self.values)
+        step = {
+            "step": "interpolate linearly to even intervals",
+            "dt_s": self.dt,
+            "digitised_points": int(self.times.size),
+        }
+        return Channel(count, self.dt, even.copy, self.unit, details={"steps": (step,)})
+
+
+def is_pairs_header(text: TextFile, first: int) -> bool:
+    """Tell whether a header states pairs of time and acceleration."""
+    return any(_UNITS.search(line) for line in text.lines(first, first + _MAX_HEADER))
+
+
+def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
+    """Read the channel whose header starts at line ``first`` and which ends before ``stop``.
+
+    Raises
+    ------
+    InputError
+        If the header states no count or unit, the number of pairs is another, or times do not rise.
+    """
+    header = text.lines(first, first + _MAX_HEADER)
+    count = unit = None
+    at_numbers = 0
+    for number, line in enumerate(header):
+        points, units = _POINTS.search(line), _UNITS.search(line)
+        count = int(points["count"]) if points and count is None else count
+        unit = canonical_unit(units["unit"]) if units and unit is None else unit
+        if number > 8 and line.strip() and _NUMBERS_ONLY.match(line):
+            at_numbers = first + number
+            break
+    if count is None or unit is None or not at_numbers:
+        text.fail("no number of points, unit or numeric header below this line", first)
+    # 100 integers (16I5) and 50 reals (8F10) are seven lines each
+    reals(text, at_numbers + 7, at_numbers + 14, 10, 50)
+    values = _flat(text, at_numbers + 14, stop, 2 * count)
+    times, accelerations = values[0::2], values[1::2]
+    if times.size < 2:
+        text.fail("a record needs at least two points", at_numbers + 14)
+    falls = np.flatnonzero(np.diff(times) < 0)
+    if falls.size:
+        # rounding may make neighbours equal, never reverse them
+        check_rising(times, text, at_numbers + 14)
+    even = np.ptp(np.diff(times)) <= 1.01 * resolution_of(times) and _is_even(times)
+    dt = step_of_times(times, text, at_numbers + 14) if even else UNEVEN_STEP
+    return Pairs(times, accelerations, dt, bool(even), unit)
+
+
+def _is_even(times: NDArray[np.float64]) -> bool:
+    line = np.linspace(times[0], times[-1], times.size)
+    return bool((np.abs(times - line) <= 0.51 * resolution_of(times)).all())
+
+
+def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
+    """Return ``count`` numbers of fields that may touch: 10F7.3, the first one wider by a blank."""
+    body = text.data[text.offset(start) : text.offset(stop)]
+    try:
+        values = parse_separated(body)
+    except NumberError:
+        values = np.empty(0)
+    if values.size != count:
+        lines = [line.rstrip() for line in body.split(b"\n")]
+        longest = max((len(line) for line in lines), default=0)
+        shift = longest % _FIELD
+        try:
+            values = parse_columns([line[shift:] for line in lines if line.strip()], _FIELD)
+        except NumberError:
+            values = text.numbers(start, stop)
+    if values.size != count:
+        text.fail(
+            f"the header promises {count // 2} points but {values.size / 2:g} follow; "
+            "the file is cut short, or its header is wrong",
+            start,
+        )
+    return values
+
+
+__all__ = ["Pairs", "is_pairs_header", "read_pairs"]
