@@ -20,10 +20,18 @@ LANES = 32
 BLOCK = 16
 """Samples under one entry of the tables of extremes that rest is skipped with."""
 
-# Columns of the body table: critical angle of either pole and its tangent, p² dt² of either pole, and the
-# ratio e of angular velocities of an impact that ends rocking on it.
-ALPHA_R, ALPHA_L, TAN_R, TAN_L, KAPPA_R, KAPPA_L, E_FROM_R, E_FROM_L = range(8)
-BODY = 8
+# Columns of the body table, for the right pole and, POLE further on, for the left: critical angle, its
+# tangent, sine and cosine, p² dt² and the ratio e of angular velocities of an impact that ends rocking on it.
+ALPHA, TAN, SIN, COS, SWING, E_FROM = range(6)
+POLE = 6
+BODY = 2 * POLE
+
+
+@numba.njit(inline="always")
+def _at(side):
+    """Where the columns of a pole begin."""
+    return 0 if side > 0 else POLE
+
 
 # Columns of the results: verdict; sample at which it was certain; largest θ/θc; largest |θ'| per sample;
 # number of impacts; least distance from the unstable equilibrium.
@@ -116,7 +124,8 @@ def advance(x):
         lies = p <= x[ANGLE + i] - HALF_TURN
         x[FLAG + i] = 1.0 if touches | certain | grazes | lies else 0.0
         # the turning point of a parabola lies between the samples
-        low = psi + 0.5 * w * w / (w - v) if (w < 0.0) & (v > 0.0) else p
+        turn = psi + 0.5 * w * w / min(w - v, -1e-300)
+        low = turn if (w < 0.0) & (v > 0.0) else p
         x[LOW + i] = min(x[LOW + i], low)
         x[FAST + i] = max(x[FAST + i], 0.0 if touches else abs(v))
         x[NEAR + i] = min(x[NEAR + i], kappa * p * p + v * v)
@@ -167,9 +176,10 @@ def _flight(psi, w, angle, w1, w2, w3, w4, w5):
         d = _rate(w, w1, w2, w3, w4, w5, guess)
         step = f / d if d != 0.0 else 0.0
         guess -= step
-        if abs(step) <= 1e-15 or high - low <= 1e-15:
+        # the next step would be its square
+        if abs(step) <= 1e-8 or high - low <= 1e-15:
             break
-    return min(max(guess, low), high)
+    return min(max(guess, 0.0), 1.0)
 
 
 @kernel
@@ -205,31 +215,28 @@ def _dies_out(w, side, k, tau, end, factor, samples, b):
     If the ground stays below the threshold of rocking that long, the block is at rest afterwards,
     exactly, however the flights went; w² ≤ 0.04 κ D² keeps D within 2 % over a flight.
     """
-    here = ALPHA_R if side > 0 else ALPHA_L
-    there = ALPHA_L if side > 0 else ALPHA_R
-    e_next = b[E_FROM_R] if side > 0 else b[E_FROM_L]
-    e_back = b[E_FROM_L] if side > 0 else b[E_FROM_R]
-    kappa = b[KAPPA_R] if side > 0 else b[KAPPA_L]
-    kappa_there = b[KAPPA_L] if side > 0 else b[KAPPA_R]
-    loss = 1.0 - e_next * e_back
-    if loss <= 0.0:
-        return False
-    s, c = math.sin(b[here]), math.cos(b[here])
-    if w * w > 0.16 * kappa * s * s:
-        return False
-    s_there, c_there = math.sin(b[there]), math.cos(b[there])
+    here = _at(side)
+    there = POLE - here
+    kappa = b[here + SWING]
     a = factor * samples[k]
     a += tau * (factor * samples[k + 1] - a)
-    d = s + side * a * c
-    d_there = s_there - side * a * c_there
+    s, c = b[here + SIN], side * b[here + COS]
+    s_there, c_there = b[there + SIN], side * b[there + COS]
+    d = s + a * c
+    d_there = s_there - a * c_there
+    loss = 1.0 - b[here + E_FROM] * b[there + E_FROM]
+    if loss <= 0.0:
+        return False
+    flight = 2.06 * w / (kappa * loss)
+    back = b[here + E_FROM] * kappa / b[there + SWING]
     for ahead in range(32):
         a = factor * samples[k + ahead + 1] if k + ahead + 1 <= end else 0.0
-        d = min(d, s + side * a * c)
-        d_there = min(d_there, s_there - side * a * c_there)
+        d = min(d, s + a * c)
+        d_there = min(d_there, s_there - a * c_there)
         if d <= 0.0 or d_there <= 0.0 or w * w > 0.04 * kappa * d * d:
             return False
-        time = 2.0 * w * (1.0 / (kappa * d) + e_next / (kappa_there * d_there)) / loss
-        if 1.03 * time <= ahead + 1 - tau:
+        # flight × (1/D + e κ/κ' 1/D')
+        if flight * (d_there + back * d) <= (ahead + 1 - tau) * d * d_there:
             return True
     return False
 
@@ -247,25 +254,25 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
         now = first + ramp_all * tau
         if side == 0:
             # thesis eq. 2.1: the ground pushes the block over the other way
-            if now > b[TAN_L]:
+            if now > b[POLE + TAN]:
                 side = -1
-            elif now < -b[TAN_R]:
+            elif now < -b[TAN]:
                 side = 1
-            elif now + ramp_all * (1.0 - tau) > b[TAN_L]:
+            elif now + ramp_all * (1.0 - tau) > b[POLE + TAN]:
                 side = -1
-                tau = max(tau, (b[TAN_L] - first) / ramp_all)
-            elif now + ramp_all * (1.0 - tau) < -b[TAN_R]:
+                tau = max(tau, (b[POLE + TAN] - first) / ramp_all)
+            elif now + ramp_all * (1.0 - tau) < -b[TAN]:
                 side = 1
-                tau = max(tau, (-b[TAN_R] - first) / ramp_all)
+                tau = max(tau, (-b[TAN] - first) / ramp_all)
             else:
                 return 0.0, 0.0, 0
-            psi = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+            psi = b[_at(side) + ALPHA]
             w = 0.0
             now = first + ramp_all * tau
             if tau >= 1.0:
                 return psi, w, side
-        angle = b[ALPHA_R] if side > 0 else b[ALPHA_L]
-        full = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+        angle = b[_at(side) + ALPHA]
+        full = b[_at(side) + SWING]
         left = 1.0 - tau
         kappa = full * left * left
         rate = w * left
@@ -296,9 +303,9 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
         tally[IMPACTS] += 1.0
         events += 1
         tau += t * left
-        w = -v * (b[E_FROM_R] if side > 0 else b[E_FROM_L])
+        w = -v * (b[_at(side) + E_FROM])
         side = -side
-        psi = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+        psi = b[_at(side) + ALPHA]
         still = w > -1e-12 or events > MAX_IMPACTS_PER_SAMPLE
         if still or _dies_out(-w, side, k, min(tau, 1.0), end, factor, samples, b):
             side = 0
@@ -309,9 +316,10 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
 @kernel
 def _note(tally, psi, w, angle, kappa):
     """Keep the largest rotation and speed and the closest approach to balance."""
-    tally[RATIO] = max(tally[RATIO], (angle - psi) / angle)
+    tally[RATIO] = max(tally[RATIO], 1.0 - psi / angle)
     tally[SPEED] = max(tally[SPEED], abs(w))
-    tally[CLOSEST] = min(tally[CLOSEST], math.sqrt(psi * psi + w * w / kappa) / angle)
+    if abs(psi) < tally[CLOSEST] * angle:
+        tally[CLOSEST] = min(tally[CLOSEST], math.sqrt(psi * psi + w * w / kappa) / angle)
 
 
 @kernel
@@ -320,8 +328,8 @@ def _left_alone(psi, w, side, b, tally):
     for _ in range(64):
         if side == 0:
             return False
-        angle = b[ALPHA_R] if side > 0 else b[ALPHA_L]
-        kappa = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+        angle = b[_at(side) + ALPHA]
+        kappa = b[_at(side) + SWING]
         energy = 0.5 * w * w + kappa * math.cos(psi)
         if (psi > 0.0 and w <= 0.0) or psi <= 0.0:
             if psi > 0.0 and energy < kappa:
@@ -331,12 +339,12 @@ def _left_alone(psi, w, side, b, tally):
                 return True
         v = math.sqrt(max(0.0, 2.0 * (energy - kappa * math.cos(angle))))
         tally[SPEED] = max(tally[SPEED], v)
-        w = -v * (b[E_FROM_R] if side > 0 else b[E_FROM_L])
+        w = -v * (b[_at(side) + E_FROM])
         side = -side
-        psi = b[ALPHA_R] if side > 0 else b[ALPHA_L]
-        kappa = b[KAPPA_R] if side > 0 else b[KAPPA_L]
-        other = b[KAPPA_L] if side > 0 else b[KAPPA_R]
-        other_angle = b[ALPHA_L] if side > 0 else b[ALPHA_R]
+        psi = b[_at(side) + ALPHA]
+        kappa = b[_at(side) + SWING]
+        other = b[POLE - _at(side) + SWING]
+        other_angle = b[POLE - _at(side) + ALPHA]
         if 0.5 * w * w < kappa * (1.0 - math.cos(psi)) and 0.5 * w * w < other * (
             1.0 - math.cos(other_angle)
         ):
@@ -438,7 +446,7 @@ def lone_blocks(
                     psi, w, side = _sample(psi, w, side, 0.0, k, end, factor[i], samples, b, tally)
                     k += 1
                     if side != 0:
-                        angle = b[ALPHA_R] if side > 0 else b[ALPHA_L]
+                        angle = b[_at(side) + ALPHA]
                         done = psi <= angle - HALF_TURN
                 if done:
                     tally[OVERTURNED] = 1.0
@@ -450,8 +458,8 @@ def lone_blocks(
             while True:
                 if case >= 0 and not done:
                     if side == 0 and k < end:
-                        low = -b[TAN_R] / factor[i]
-                        high = b[TAN_L] / factor[i]
+                        low = -b[TAN] / factor[i]
+                        high = b[POLE + TAN] / factor[i]
                         if factor[i] < 0.0:
                             low, high = high, low
                         if samples[k] > high or samples[k] < low:
@@ -517,8 +525,8 @@ def lone_blocks(
             x[A1 + i] = signed[i] * samples[k]
             x[NEW_PSI + i] = psi
             x[NEW_RATE + i] = w
-            x[ANGLE + i] = b[ALPHA_R] if side > 0 else b[ALPHA_L]
-            x[KAPPA + i] = b[KAPPA_R] if side > 0 else b[KAPPA_L]
+            x[ANGLE + i] = b[_at(side) + ALPHA]
+            x[KAPPA + i] = b[_at(side) + SWING]
             bound = _bound(side, factor[i], ahead_high[k], ahead_low[k])
             x[BOUND + i] = bound
             x[CREST + i] = math.sqrt(1.0 + bound * bound)

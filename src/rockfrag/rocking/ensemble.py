@@ -214,7 +214,7 @@ def _refined(values: Array, times: int) -> Array:
     if times == 1:
         return closed
     at = np.arange((closed.size - 1) * times + 1) / times
-    return np.interp(at, np.arange(closed.size), closed)
+    return np.asarray(np.interp(at, np.arange(closed.size), closed))
 
 
 def _lone_blocks(
@@ -248,7 +248,8 @@ def _lone_blocks(
     for i, (body, e) in enumerate(zip(bodies, restitution, strict=True)):
         assert isinstance(body, Block)
         table[i] = _lane_row(body, e, g)
-        table[i, :, [lanes.KAPPA_R, lanes.KAPPA_L]] *= intervals[i] ** 2
+        for pole in (0, lanes.POLE):
+            table[i, :, pole + lanes.SWING] *= intervals[i] ** 2
     per_g = factors / g
     outcome = np.empty((math.prod(shape), lanes.RESULTS))
 
@@ -275,12 +276,12 @@ def _lane_row(body: Block, restitution: Restitution, g: float) -> Array:
     """Entries of the lanes' body table, with p² where p² dt² belongs."""
     row = np.empty(lanes.BODY)
     measured = lone_restitution(body, restitution)
-    for pole, alpha, tan, kappa, e in (
-        (+1, lanes.ALPHA_R, lanes.TAN_R, lanes.KAPPA_R, lanes.E_FROM_R),
-        (-1, lanes.ALPHA_L, lanes.TAN_L, lanes.KAPPA_L, lanes.E_FROM_L),
-    ):
-        row[alpha] = body.critical_angle(pole)
-        row[tan] = math.tan(row[alpha])
-        row[kappa] = body.frequency(pole, g) ** 2
-        row[e] = body.momentum_restitution(pole) if measured is None else measured
+    for pole, at in ((+1, 0), (-1, lanes.POLE)):
+        alpha = body.critical_angle(pole)
+        row[at + lanes.ALPHA] = alpha
+        row[at + lanes.TAN] = math.tan(alpha)
+        row[at + lanes.SIN] = math.sin(alpha)
+        row[at + lanes.COS] = math.cos(alpha)
+        row[at + lanes.SWING] = body.frequency(pole, g) ** 2
+        row[at + lanes.E_FROM] = body.momentum_restitution(pole) if measured is None else measured
     return row
