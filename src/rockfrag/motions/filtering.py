@@ -91,14 +91,14 @@ def resample(motion: Motion, dt_s: float) -> Motion:
         If the interval is not positive, has no such ratio, or is not shorter than the motion.
     """
     dt_s = positive("step resample", "dt_s", dt_s, "seconds")
+    if dt_s >= motion.dt * motion.acceleration.size:
+        raise InputError(f"step resample: dt_s {dt_s} is not shorter than motion {motion.name!r}.")
     ratio = Fraction(motion.dt / dt_s).limit_denominator(1000)
     if ratio.numerator > 1000 or abs(float(ratio) * dt_s / motion.dt - 1) > 1e-9:
         raise InputError(
             f"step resample: dt_s {dt_s} and the motion's dt {motion.dt} have no ratio of whole "
             "numbers up to 1000; choose a rounder dt_s."
         )
-    if dt_s >= motion.dt * motion.acceleration.size:
-        raise InputError(f"step resample: dt_s {dt_s} is not shorter than motion {motion.name!r}.")
     samples = resample_poly(motion.acceleration, ratio.numerator, ratio.denominator)
     return motion.after("resample", samples, dt=dt_s, dt_s=dt_s)
 

@@ -59,16 +59,22 @@ def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
         If a step or a parameter is not known, one is missing, or a value does not fit the motion.
     """
     # a misspelt last step is reported before the first one has cost anything
-    checked = [_checked(number, entry) for number, entry in enumerate(steps, start=1)]
-    for function, parameters in checked:
+    for function, parameters in _checked_steps(steps):
         motion = function(motion, **parameters)
     return motion
 
 
 def check_steps(steps: Sequence[Mapping[str, Any]]) -> None:
     """Raise InputError if :func:`process` would not know a step or one of its parameters."""
-    for number, entry in enumerate(steps, start=1):
-        _checked(number, entry)
+    _checked_steps(steps)
+
+
+def _checked_steps(
+    steps: Sequence[Mapping[str, Any]],
+) -> list[tuple[Callable[..., Motion], dict[str, Any]]]:
+    if isinstance(steps, str | Mapping) or not isinstance(steps, Sequence):
+        raise InputError(f"processing: a list of steps is needed, got {steps!r}.")
+    return [_checked(number, entry) for number, entry in enumerate(steps, start=1)]
 
 
 def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motion], dict[str, Any]]:
@@ -77,7 +83,7 @@ def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motio
             f"processing, entry {number}: {entry!r} is not a mapping with a key 'step'."
         )
     name = entry["step"]
-    if name not in STEPS:
+    if not isinstance(name, str) or name not in STEPS:
         raise InputError(
             f"processing, entry {number}: there is no step {name!r}; known are {', '.join(STEPS)}."
         )

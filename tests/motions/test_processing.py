@@ -1,0 +1,331 @@
+"""Named steps: what each does to a motion, what is recorded, what is refused."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from obspy import Trace
+from scipy.signal import butter, sosfilt, sosfreqz
+
+from rockfrag import motions as m
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion, read_motion_set, write_motion_set
+from rockfrag.units import STANDARD_GRAVITY as G
+
+
+def noise(seed: int = 0, count: int = 1000, dt: float = 0.01) -> Motion:
+    samples = np.random.default_rng(seed).standard_normal(count) * np.hanning(count)
+    return Motion(samples, dt, name="noise", provenance=({"step": "read"},))
+
+
+def tone(hertz: float, seconds: float = 40.0, dt: float = 0.01) -> Motion:
+    return Motion(np.sin(2 * np.pi * hertz * np.arange(round(seconds / dt)) * dt), dt)
+
+
+def middle(motion: Motion) -> np.ndarray:
+    third = motion.acceleration.size // 3
+    return motion.acceleration[third : 2 * third]
+
+
+# --- the chain
+
+
+def test_no_steps_leave_the_motion_alone():
+    motion = noise()
+    assert m.process(motion) is motion
+    assert m.process(motion, []) is motion
+
+
+def test_steps_are_taken_in_order_and_recorded(tmp_path):
+    steps = [
+        {"step": "pad", "before_s": 1, "after_s": 2},
+        {"step": "highpass", "corner_hz": 0.2, "order": 2},
+        {"step": "scale_to_pga", "pga_g": 0.3},
+    ]
+    processed = m.process(noise(), steps)
+    assert [entry["step"] for entry in processed.provenance] == [
+        "read",
+        *(s["step"] for s in steps),
+    ]
+    for given, recorded in zip(steps, processed.provenance[1:], strict=True):
+        assert given.items() <= recorded.items()
+    by_hand = m.scale_to_pga(m.highpass(m.pad(noise(), 1, 2), 0.2, 2), 0.3)
+    np.testing.assert_array_equal(processed.acceleration, by_hand.acceleration)
+    # the record of the steps survives the file between two stages
+    write_motion_set([processed], tmp_path / "motions.parquet")
+    assert read_motion_set(tmp_path / "motions.parquet")[0].provenance == tuple(
+        json.loads(json.dumps(processed.provenance))
+    )
+
+
+def test_recorded_steps_can_be_taken_again():
+    steps = [{"step": "taper", "duration_s": 1.0}, {"step": "bandpass", "low_hz": 1, "high_hz": 9}]
+    once = m.process(noise(), steps)
+    again = m.process(noise(), once.provenance[1:])
+    np.testing.assert_array_equal(once.acceleration, again.acceleration)
+
+
+@pytest.mark.parametrize(
+    ("steps", "message"),
+    [
+        ([{"step": "polish"}], "no step 'polish'; known are demean, baseline"),
+        ([{"step": ["demean"]}], "there is no step"),
+        ([{"order": 4}], "key 'step'"),
+        (["demean"], "key 'step'"),
+        ("demean", "list of steps"),
+        ({"step": "demean"}, "list of steps"),
+        ([{"step": "highpass", "corner": 1}], "no parameter 'corner'; known are corner_hz, order"),
+        ([{"step": "demean", "order": 1}], "known are none"),
+        ([{"step": "highpass"}], "needs corner_hz"),
+        ([{"step": "scale", "motion": 3}], "no parameter 'motion'"),
+    ],
+)
+def test_unknown_steps_and_parameters_are_refused_with_what_is_known(steps, message):
+    with pytest.raises(InputError, match=message):
+        m.process(noise(), steps)
+    with pytest.raises(InputError, match=message):
+        m.check_steps(steps)
+
+
+@pytest.mark.parametrize(
+    ("step", "message"),
+    [
+        ({"step": "highpass", "corner_hz": -1}, "positive number of hertz"),
+        ({"step": "highpass", "corner_hz": "0.1"}, "finite number of hertz"),
+        ({"step": "highpass", "corner_hz": True}, "finite number of hertz"),
+        ({"step": "highpass", "corner_hz": math.nan}, "finite number of hertz"),
+        ({"step": "highpass", "corner_hz": 1, "order": 0}, "whole number from 1 to 10"),
+        ({"step": "highpass", "corner_hz": 1, "order": 2.5}, "whole number from 1 to 10"),
+        ({"step": "lowpass", "corner_hz": 50.0}, "Nyquist frequency 50 Hz"),
+        ({"step": "bandpass", "low_hz": 5, "high_hz": 5}, "empty"),
+        ({"step": "bandpass", "low_hz": 5, "high_hz": 1}, "empty"),
+        ({"step": "bandpass", "low_hz": 5, "high_hz": 60}, "Nyquist"),
+        ({"step": "resample", "dt_s": 0}, "positive number of seconds"),
+        ({"step": "resample", "dt_s": 0.01 * math.pi}, "no ratio of whole numbers"),
+        ({"step": "resample", "dt_s": 100.0}, "not shorter than"),
+        ({"step": "interpolate", "dt_s": 0.02}, "not a whole fraction"),
+        ({"step": "interpolate", "dt_s": 0.003}, "not a whole fraction"),
+        ({"step": "interpolate", "dt_s": 1e-300}, "not a whole fraction"),
+        ({"step": "baseline", "order": 11}, "whole number from 0 to 10"),
+        ({"step": "displacement_baseline", "order": 1}, "whole number from 2 to 10"),
+        ({"step": "taper", "duration_s": 0}, "positive"),
+        ({"step": "taper", "duration_s": 6.0}, "does not fit"),
+        ({"step": "pad", "before_s": -1}, "must not be negative"),
+        ({"step": "pad", "after_s": 1e9}, "more than 10000000 samples"),
+        ({"step": "strong_part", "lower": 0.9, "upper": 0.1}, "lower ≤|0 ≤ lower < upper ≤ 1"),
+        ({"step": "strong_part", "upper": 1.5}, "0 ≤ lower < upper ≤ 1"),
+        ({"step": "bracketed_part", "threshold_g": 10}, "never reaches 10.0 g"),
+        ({"step": "trim", "start_s": 3, "end_s": 2}, "does not lie inside"),
+        ({"step": "trim", "start_s": 3, "end_s": 20}, "does not lie inside"),
+        ({"step": "scale", "factor": 0}, "positive"),
+        ({"step": "scale_to_pga", "pga_g": 0}, "positive number of g"),
+        ({"step": "scale_to_pgv", "pgv_cm_s": -1}, "positive number of cm/s"),
+        ({"step": "scale_to_sa", "sa_g": 1, "period_s": 0}, "positive number of seconds"),
+        ({"step": "scale_to_sa", "sa_g": 1, "period_s": 1, "damping": -1}, "not be negative"),
+        ({"step": "scale_to_arias", "arias_m_s": math.inf}, "finite number"),
+        ({"step": "compress_time", "factor": 0}, "positive"),
+    ],
+)
+def test_impossible_parameters_are_refused_in_one_sentence(step, message):
+    with pytest.raises(InputError, match=message) as refusal:
+        m.process(noise(), [step])
+    text = str(refusal.value)
+    assert text.startswith(f"step {step['step']}: ")
+    assert text.endswith(".")
+    assert "\n" not in text
+
+
+@pytest.mark.parametrize(
+    "step",
+    [
+        {"step": "scale_to_pga", "pga_g": 1},
+        {"step": "scale_to_pgv", "pgv_cm_s": 1},
+        {"step": "scale_to_sa", "sa_g": 1, "period_s": 1},
+        {"step": "scale_to_arias", "arias_m_s": 1},
+        {"step": "strong_part"},
+    ],
+)
+def test_motion_of_zeros_can_not_be_scaled_or_cut_to_its_strong_part(step):
+    with pytest.raises(InputError, match="zero throughout"):
+        m.process(Motion(np.zeros(100), 0.01, "still"), [step])
+
+
+@pytest.mark.parametrize("name", list(m.STEPS))
+def test_every_step_takes_or_refuses_a_motion_of_one_sample(name):
+    parameters = {
+        "taper": {"duration_s": 1.0},
+        "highpass": {"corner_hz": 1.0},
+        "lowpass": {"corner_hz": 1.0},
+        "bandpass": {"low_hz": 1.0, "high_hz": 2.0},
+        "resample": {"dt_s": 0.005},
+        "interpolate": {"dt_s": 0.005},
+        "trim": {"start_s": 0.0, "end_s": 1.0},
+        "scale": {"factor": 2.0},
+        "scale_to_pga": {"pga_g": 1.0},
+        "scale_to_pgv": {"pgv_cm_s": 1.0},
+        "scale_to_sa": {"sa_g": 1.0, "period_s": 1.0},
+        "scale_to_arias": {"arias_m_s": 1.0},
+        "compress_time": {"factor": 2.0},
+    }.get(name, {})
+    try:
+        processed = m.process(Motion([1.0], 0.01), [{"step": name, **parameters}])
+    except InputError as refusal:
+        assert str(refusal).startswith(f"step {name}: ")
+    else:
+        assert np.isfinite(processed.acceleration).all()
+
+
+# --- zero line and ends
+
+
+def test_demean_leaves_no_mean_and_says_what_it_took():
+    motion = Motion(np.array([1.0, 2.0, 6.0]), 0.01)
+    still = m.demean(motion)
+    assert still.acceleration.tolist() == [-2.0, -1.0, 3.0]
+    assert still.provenance[-1]["removed_m_s2"] == 3.0
+
+
+@pytest.mark.parametrize("order", [0, 1, 3, 6])
+def test_baseline_takes_out_a_polynomial_and_nothing_else(order):
+    motion = noise()
+    x = np.linspace(-1, 1, motion.acceleration.size)
+    drift = np.polynomial.polynomial.polyval(x, np.arange(1, order + 2) * 0.1)
+    clean = m.baseline(motion, order)
+    dirty = m.baseline(Motion(motion.acceleration + drift, motion.dt), order)
+    np.testing.assert_allclose(dirty.acceleration, clean.acceleration, atol=1e-12)
+
+
+def test_straight_baseline_is_obspys():
+    motion = noise()
+    expected = Trace(motion.acceleration.copy()).detrend("linear").data
+    np.testing.assert_allclose(m.baseline(motion, 1).acceleration, expected, atol=1e-12)
+
+
+def test_displacement_baseline_takes_out_the_drift_of_a_displacement():
+    # a displacement of 0.2 x² - 0.1 x³ on 10 s has a linear acceleration
+    x = np.linspace(0, 1, 1001)
+    drifting = Motion((0.4 - 0.6 * x) / 100, 0.01)
+    assert m.pgd(m.displacement_baseline(drifting)) < 1e-9 * m.pgd(drifting)
+
+
+def test_displacement_baseline_takes_a_smooth_line_from_the_acceleration():
+    motion = noise(count=4000)
+    straightened = m.displacement_baseline(motion, 6)
+    assert m.pgd(straightened) < 0.5 * m.pgd(motion)
+    taken = motion.acceleration - straightened.acceleration
+    # the second derivative of a polynomial of order six is one of order four
+    fit = np.polynomial.Polynomial.fit(motion.time, taken, 4)
+    np.testing.assert_allclose(fit(motion.time), taken, atol=1e-12)
+
+
+def test_taper_brings_the_ends_to_zero_and_leaves_the_middle():
+    tapered = m.taper(Motion(np.ones(1001), 0.01), 2.0)
+    assert tapered.acceleration[0] == tapered.acceleration[-1] == 0.0
+    assert (tapered.acceleration[200:801] == 1.0).all()
+    # half a cosine bell is at half its height in its middle
+    assert tapered.acceleration[100] == pytest.approx(0.5)
+
+
+def test_pads_change_nothing_but_the_time():
+    motion = noise()
+    padded = m.pad(motion, 1.5, 2.5)
+    assert padded.acceleration.size == motion.acceleration.size + 400
+    assert m.pgv(padded) == pytest.approx(m.pgv(motion))
+    assert m.arias(padded) == pytest.approx(m.arias(motion))
+
+
+# --- filters and sampling
+
+
+def test_filters_are_butterworth_forwards_and_backwards():
+    motion = noise()
+    sos = butter(4, [1.0, 10.0], "bandpass", fs=100.0, output="sos")
+    forwards = sosfilt(sos, motion.acceleration)
+    expected = sosfilt(sos, forwards[::-1])[::-1]
+    np.testing.assert_allclose(m.bandpass(motion, 1, 10).acceleration, expected, atol=1e-10)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("hertz", [0.5, 1.0, 3.0])
+def test_filters_have_the_square_of_the_butterworth_gain_and_no_delay(order, hertz):
+    motion = tone(hertz)
+    for name, step in (("highpass", m.highpass), ("lowpass", m.lowpass)):
+        sos = butter(order, 1.0, name, fs=100.0, output="sos")
+        _, gain = sosfreqz(sos, [hertz], fs=100.0)
+        filtered = step(motion, 1.0, order)
+        np.testing.assert_allclose(middle(filtered), abs(gain[0]) ** 2 * middle(motion), atol=2e-4)
+
+
+def test_corner_is_six_decibels_down():
+    filtered = m.highpass(tone(2.0), 2.0, 4)
+    np.testing.assert_allclose(middle(filtered), 0.5 * middle(tone(2.0)), atol=1e-4)
+
+
+def test_filtered_motion_with_pads_comes_to_rest():
+    # 1.5 × order / corner seconds of zeros in all (Converse & Brady)
+    motion = Motion(noise().acceleration + 0.02, 0.01)
+    filtered = m.highpass(m.pad(motion, 30.0, 30.0), 0.1, 4)
+    velocity, displacement = m.integrate(filtered.acceleration, filtered.dt)
+    assert abs(velocity[-1]) < 1e-3 * np.abs(velocity).max()
+    assert abs(displacement[-1]) < 0.02 * np.abs(displacement).max()
+
+
+@pytest.mark.parametrize("dt", [0.005, 0.02, 0.0125])
+def test_resampling_keeps_a_band_limited_signal(dt):
+    resampled = m.resample(tone(3.0), dt)
+    assert resampled.dt == dt
+    expected = np.sin(2 * np.pi * 3.0 * resampled.time)
+    np.testing.assert_allclose(middle(resampled), expected[middle_slice(expected)], atol=2e-3)
+
+
+def middle_slice(samples: np.ndarray) -> slice:
+    third = samples.size // 3
+    return slice(third, 2 * third)
+
+
+def test_resampling_does_not_alias():
+    # 40 Hz would appear as 10 Hz at 50 samples a second
+    assert np.abs(middle(m.resample(tone(40.0), 0.02))).max() < 0.01
+
+
+def test_interpolating_keeps_the_motion():
+    motion = noise()
+    fine = m.interpolate(motion, 0.002)
+    assert fine.acceleration.size == 5 * (motion.acceleration.size - 1) + 1
+    np.testing.assert_array_equal(fine.acceleration[::5], motion.acceleration)
+    for measure in (m.pga, m.pgv, m.pgd, lambda x: m.spectral_acceleration(x, 0.1)):
+        assert measure(fine) == pytest.approx(measure(motion), rel=1e-7)
+
+
+# --- selection and scaling
+
+
+def test_strong_part_holds_its_share_of_the_intensity():
+    motion = noise()
+    strong = m.strong_part(motion, 0.05, 0.95)
+    assert m.arias(strong) == pytest.approx(0.9 * m.arias(motion), rel=0.02)
+    assert len(strong.time) * 0.01 == pytest.approx(m.significant_duration(motion), abs=0.03)
+
+
+def test_bracketed_part_begins_and_ends_at_the_threshold():
+    motion = Motion(np.array([0.0, 0.1, 0.6, -0.1, -0.5, 0.3]) * G, 0.01)
+    kept = m.bracketed_part(motion, 0.5).acceleration / G
+    np.testing.assert_allclose(kept, [0.6, -0.1, -0.5])
+
+
+def test_trim_keeps_both_ends_of_its_window():
+    motion = Motion(np.arange(101.0), 0.1)
+    assert m.trim(motion, 2.0, 3.0).acceleration.tolist() == list(range(20, 31))
+    assert m.trim(motion, 0.0, 10.0).acceleration.size == 101
+
+
+def test_scaling_reaches_its_target():
+    motion = noise()
+    assert m.pga(m.scale_to_pga(motion, 0.4)) == pytest.approx(0.4 * G)
+    assert m.pgv(m.scale_to_pgv(motion, 30.0)) == pytest.approx(0.30)
+    assert m.arias(m.scale_to_arias(motion, 1.7)) == pytest.approx(1.7)
+    scaled = m.scale_to_sa(motion, 0.5, 0.8, 0.02)
+    assert m.spectral_acceleration(scaled, 0.8, 0.02) == pytest.approx(0.5 * G)
+    factor = scaled.provenance[-1]["factor"]
+    np.testing.assert_allclose(scaled.acceleration, factor * motion.acceleration)

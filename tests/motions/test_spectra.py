@@ -1,0 +1,169 @@
+"""Response spectra against closed forms and other ways of solving the same oscillator."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import expm
+from scipy.signal import StateSpace, lsim
+
+from rockfrag.errors import InputError
+from rockfrag.motions import (
+    fourier_amplitude,
+    half_sine,
+    interpolate,
+    oscillator_response,
+    pga,
+    pgd,
+    rectangular,
+    response_spectrum,
+    sine,
+)
+from rockfrag.motions.spectra import oscillator_matrix
+from rockfrag.records.motion import Motion
+
+
+def noise(seed: int, count: int = 400, dt: float = 0.02) -> Motion:
+    samples = np.random.default_rng(seed).standard_normal(count)
+    samples[-1] = 0.0
+    return Motion(samples, dt, name=f"noise {seed}")
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05, 0.9999, 1.0, 1.0001, 3.0])
+@pytest.mark.parametrize("angle", [1e-3, 0.1, 3.0])
+def test_propagator_is_the_exponential_of_the_system(damping, angle):
+    omega = 7.0
+    system = np.zeros((4, 4))
+    system[0, 1] = 1.0
+    system[1, :3] = -(omega**2), -2 * damping * omega, -1.0
+    system[2, 3] = 1.0
+    expected = expm(system * angle / omega)[:2]
+    unit = omega ** np.array([[0, -1, -2, -3], [1, 0, -1, -2]])
+    ours = oscillator_matrix(omega, damping, angle / omega)
+    np.testing.assert_allclose(ours / unit, expected / unit, atol=1e-12)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05, 1.0, 2.5])
+def test_history_is_that_of_scipys_linear_system(damping):
+    motion, omega = noise(1), 2 * math.pi / 0.7
+    u, v, total = oscillator_response(motion, 0.7, damping)
+    system = StateSpace(
+        [[0, 1], [-(omega**2), -2 * damping * omega]], [[0], [-1]], np.eye(2), np.zeros((2, 1))
+    )
+    _, states, _ = lsim(system, motion.acceleration, motion.time)
+    np.testing.assert_allclose(u, states[:, 0], atol=1e-10)
+    np.testing.assert_allclose(v, states[:, 1], atol=1e-9)
+    # the total acceleration is that of the relative motion and of the ground together
+    relative = -2 * damping * omega * v - omega**2 * u - motion.acceleration
+    np.testing.assert_allclose(total, relative + motion.acceleration, atol=1e-9)
+
+
+def test_suddenly_applied_acceleration_doubles_the_static_displacement():
+    omega = 2 * math.pi / 0.5
+    spectrum = response_spectrum(Motion(np.full(51, 2.0), 0.01), [0.5], damping=0.0)
+    assert spectrum.displacement[0] == pytest.approx(2 * 2.0 / omega**2, rel=2e-6)
+    assert spectrum.acceleration[0] == pytest.approx(4.0, rel=2e-6)
+    assert spectrum.velocity[0] == pytest.approx(2.0 / omega, rel=2e-6)
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.25, 0.4, 0.75, 1.0, 1.3])
+def test_half_sine_pulse_has_its_shock_spectrum(ratio):
+    """Chopra, Dynamics of Structures, section 4.8: undamped response to a half-sine pulse."""
+    period, duration = 1.0, ratio
+    pulse = half_sine(1.0, duration, dt=2e-4)
+    beta = period / (2 * duration)
+    if beta == 1.0:
+        largest = math.pi / 2
+    elif beta > 1:
+        largest = abs(2 * beta / (beta**2 - 1) * math.cos(math.pi / (2 * beta)))
+    else:
+        largest = max(
+            math.sin(2 * math.pi * k * beta / (1 + beta)) / (1 - beta)
+            for k in range(1, 1 + math.ceil((1 + 1 / beta) / 2))
+        )
+    ours = response_spectrum(pulse, [period], damping=0.0).pseudo_acceleration[0]
+    assert ours == pytest.approx(largest, rel=2e-5)
+
+
+def test_short_pulse_leaves_its_impulse_as_pseudo_velocity_after_the_record_has_ended():
+    pulse = rectangular(10.0, 0.002, dt=0.001)
+    spectrum = response_spectrum(pulse, [1.0, 2.0, 5.0], damping=0.0)
+    np.testing.assert_allclose(spectrum.pseudo_velocity, 0.02, rtol=1e-4)
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.2])
+def test_resonance_reaches_the_steady_state(damping):
+    spectrum = response_spectrum(sine(1.0, 0.5, 40, dt=0.001), [0.5], damping)
+    assert spectrum.pseudo_acceleration[0] == pytest.approx(1 / (2 * damping), rel=1e-4)
+    total = math.sqrt(1 + 4 * damping**2) / (2 * damping)
+    assert spectrum.acceleration[0] == pytest.approx(total, rel=1e-4)
+
+
+def test_stiff_oscillator_moves_with_the_ground_and_soft_one_stays_behind():
+    samples = noise(2).acceleration.copy()
+    samples[0] = 0.0
+    motion = Motion(samples, 0.02)
+    stiff = response_spectrum(motion, [5e-5])
+    assert stiff.pseudo_acceleration[0] == pytest.approx(pga(motion), rel=1e-3)
+    assert stiff.acceleration[0] == pytest.approx(pga(motion), rel=1e-3)
+    soft = response_spectrum(motion, [1e4], damping=0.0)
+    assert soft.displacement[0] >= pgd(motion) * (1 - 1e-6)
+    during = np.abs(oscillator_response(motion, 1e4, 0.0)[0]).max()
+    assert during == pytest.approx(pgd(motion), rel=1e-3)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10_000), st.floats(0.02, 3.0), st.sampled_from([0.0, 0.05, 0.5, 1.0, 2.0]))
+def test_peaks_do_not_depend_on_how_finely_the_lines_are_sampled(seed, period, damping):
+    # a last sample of zero, so that the line behind the record is the same one
+    motion = noise(seed, 60)
+    coarse = response_spectrum(motion, [period], damping)
+    fine = response_spectrum(interpolate(motion, motion.dt / 8), [period], damping)
+    for name in ("displacement", "velocity", "acceleration"):
+        assert getattr(coarse, name)[0] == pytest.approx(getattr(fine, name)[0], rel=1e-6)
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10_000), st.floats(0.05, 3.0))
+def test_peaks_are_never_below_the_samples(seed, period):
+    motion = noise(seed, 60)
+    spectrum = response_spectrum(motion, [period])
+    u, v, total = oscillator_response(motion, period)
+    assert spectrum.displacement[0] >= np.abs(u).max() * (1 - 1e-9)
+    assert spectrum.velocity[0] >= np.abs(v).max() * (1 - 1e-9)
+    assert spectrum.acceleration[0] >= np.abs(total).max() * (1 - 1e-9)
+
+
+def test_undamped_pseudo_and_true_acceleration_are_one():
+    spectrum = response_spectrum(noise(3), np.geomspace(0.05, 5, 20), damping=0.0)
+    np.testing.assert_allclose(spectrum.pseudo_acceleration, spectrum.acceleration, rtol=1e-9)
+
+
+def test_fourier_amplitude_of_whole_cycles_is_one_line():
+    motion = Motion(2.0 * np.sin(2 * np.pi * 5.0 * np.arange(400) * 0.01), 0.01)
+    frequency, amplitude = fourier_amplitude(motion)
+    assert frequency[np.argmax(amplitude)] == pytest.approx(5.0)
+    assert amplitude.max() == pytest.approx(2.0 * 4.0 / 2)
+    assert np.sort(amplitude)[-2] < 1e-9
+
+
+def test_fourier_amplitude_keeps_the_energy():
+    motion = noise(4, 401)
+    frequency, amplitude = fourier_amplitude(motion, 2001)
+    # Parseval: the frequencies above zero count twice in a one-sided spectrum of odd length
+    energy = (amplitude[0] ** 2 + 2 * (amplitude[1:] ** 2).sum()) * frequency[1]
+    assert energy == pytest.approx((motion.acceleration**2).sum() * motion.dt)
+
+
+@pytest.mark.parametrize("periods", [[], [0.0], [-1.0], [0.5, math.nan], [[0.1, 0.2]], math.inf])
+def test_impossible_periods_are_refused(periods):
+    with pytest.raises(InputError, match=r"response spectrum: .*period"):
+        response_spectrum(noise(5), periods)
+
+
+@pytest.mark.parametrize("damping", [-0.01, math.nan, math.inf])
+def test_impossible_damping_is_refused(damping):
+    with pytest.raises(InputError, match="damping"):
+        response_spectrum(noise(5), [1.0], damping)
