@@ -6,9 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import check_steps
+from rockfrag.records.catalogue import read_catalogue
+from rockfrag.records.fetching import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block
 from rockfrag.studies.amplitudes import Amplitudes
 from rockfrag.studies.configurations import Configuration, read_configurations, read_specimens
@@ -47,16 +51,14 @@ class Study:
         Folder under ``results/``, heading of the report, seed of every random number.
     source
         The configuration file.
-    catalogue
-        Path of the table of motions.
-    motions
-        Names of the motions used, or None for all of the catalogue.
+    catalogue_file, catalogue
+        Path of the table of motions, and its rows that are used, in order.
     processing
         Steps that each record goes through, in order.
     building
         Path of the building whose floors are shaken too, or None for ground motions alone.
-    specimens
-        Blocks by name.
+    specimens_file, configurations_file, specimens
+        Paths of the tables of bodies, and the blocks by name.
     configurations
         What is tested, in order.
     amplitudes
@@ -73,8 +75,8 @@ class Study:
     title: str
     seed: int
     source: Path
-    catalogue: Path
-    motions: tuple[str, ...] | None
+    catalogue_file: Path
+    catalogue: pd.DataFrame
     processing: tuple[Mapping[str, Any], ...]
     building: Path | None
     specimens_file: Path
@@ -90,6 +92,14 @@ class Study:
     def configuration(self, slug: str) -> Configuration:
         """Return the configuration whose file name is ``slug``."""
         return next(one for one in self.configurations if one.slug == slug)
+
+    def record_files(self, records: str) -> list[str]:
+        """Files that must exist before the records can be read, fetched ones under ``records``."""
+        wheels = self.catalogue["source"].isin(list(WHEELS))
+        fetched = [f"{records}/{name}/{PROVENANCE}" for name in self.catalogue["source"][wheels]]
+        folder = self.catalogue_file.parent
+        own = self.catalogue["file"][self.catalogue["source"] == "folder"]
+        return [*dict.fromkeys(fetched), *(str(folder / name.partition("#")[0]) for name in own)]
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
@@ -122,13 +132,14 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     building_file = None if building is None else _file(source, "building", building)
     if building_file is not None:
         read_building(building_file)
+    catalogue_file = _file(source, "motions.catalogue", motions["catalogue"])
     return Study(
         name=content["study"],
         title=content["title"],
         seed=content["seed"],
         source=source,
-        catalogue=_file(source, "motions.catalogue", motions["catalogue"]),
-        motions=tuple(motions["use"]) if "use" in motions else None,
+        catalogue_file=catalogue_file,
+        catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
         processing=processing,
         building=building_file,
         specimens_file=specimens_file,
@@ -152,6 +163,19 @@ def _file(source: Path, key: str, name: str) -> Path:
     if not path.is_file():
         raise InputError(f"{source}: key {key}: expected an existing file, found no {path}.")
     return path
+
+
+def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
+    if names is None:
+        return table
+    known = list(table["name"])
+    for i, name in enumerate(names):
+        if name not in known:
+            raise InputError(
+                f"{source}: key motions.use[{i}]: expected one of the motions {', '.join(known)}, "
+                f"found {name}."
+            )
+    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
 
 
 def _printed(source: Path, name: str | None) -> Path | None:
