@@ -19,6 +19,8 @@ from scipy import stats
 Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
+ROUNDING = 1e-12
+"""Differences of logarithms below this are rounding, not scatter [-]."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +118,8 @@ def t_estimate(values: npt.ArrayLike, confidence: float = CONFIDENCE) -> Estimat
     mean = float(x.mean())
     if x.size == 1:
         return Estimate(mean, math.nan, 1, math.nan, math.nan, math.nan)
-    if np.ptp(x) == 0:
-        value = float(x[0])
+    if np.ptp(x) < ROUNDING:
+        value = 0.0 if abs(mean) < ROUNDING else mean
         return Estimate(value, 0.0, x.size, value, value, 1.0 if value == 0 else 0.0)
     se = float(x.std(ddof=1) / math.sqrt(x.size))
     half = float(stats.t.ppf(0.5 + confidence / 2, x.size - 1)) * se

@@ -1,0 +1,121 @@
+"""Bootstrap over motions or events: intervals that bend with the data, and rank probabilities."""
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+from scipy import stats
+
+from rockfrag.pedestal.units import Array
+
+DRAWS = 9_999
+
+
+def bca_interval(
+    values: npt.ArrayLike,
+    seed: int,
+    *,
+    statistic: Callable[[Array], Array] = lambda x: np.mean(x, axis=-1),
+    confidence: float = 0.95,
+    draws: int = DRAWS,
+) -> tuple[float, float]:
+    """Bias-corrected and accelerated bootstrap interval (Efron 1987).
+
+    Parameters
+    ----------
+    values
+        One value per independent unit (the mean of d of a motion), shape (n,).
+    seed
+        Of the resampling.
+    statistic
+        Function of an array, along its last axis.
+
+    Returns
+    -------
+    tuple of float
+        Lower and upper limit; both the statistic itself when all values agree, NaN for one value.
+    """
+    x = np.asarray(values, dtype=float)
+    n = x.size
+    if n < 2:
+        return np.nan, np.nan
+    observed = float(statistic(x))
+    if np.ptp(x) == 0:
+        return observed, observed
+    indices = np.random.default_rng(seed).integers(0, n, size=(draws, n))
+    drawn = np.sort(statistic(x[indices]))
+    below = (np.sum(drawn < observed) + 0.5 * np.sum(drawn == observed)) / draws
+    bias = stats.norm.ppf(np.clip(below, 0.5 / draws, 1 - 0.5 / draws))
+    left_out = np.array([float(statistic(np.delete(x, i))) for i in range(n)])
+    deviation = left_out.mean() - left_out
+    acceleration = float(np.sum(deviation**3) / (6 * np.sum(deviation**2) ** 1.5))
+    tail = (1 - confidence) / 2
+    z = bias + stats.norm.ppf([tail, 1 - tail])
+    levels = stats.norm.cdf(bias + z / (1 - acceleration * z))
+    lower, upper = np.quantile(drawn, levels)
+    return float(lower), float(upper)
+
+
+def rank_probabilities(
+    table: pd.DataFrame,
+    factor: str,
+    cluster: str,
+    seed: int,
+    *,
+    value: str = "d",
+    within: bool = False,
+    draws: int = DRAWS,
+) -> pd.DataFrame:
+    """How often each level has the largest and the smallest mean in resampled data.
+
+    Parameters
+    ----------
+    table
+        Rows with the columns ``factor``, ``cluster``, ``value``.
+    factor
+        Levels that are ranked: tower, floor or event.
+    cluster
+        What is drawn with replacement: ``event`` or ``motion``; all rows of a drawn cluster come.
+    seed
+        Of the resampling.
+    within
+        Draw clusters separately inside each level (the motions of each event); otherwise the same
+        clusters for all levels, which keeps what the levels share.
+
+    Returns
+    -------
+    pandas.DataFrame
+        level, mean, p_largest, p_smallest; ties share their draw.
+    """
+    rng = np.random.default_rng(seed)
+    levels = sorted(table[factor].unique())
+    if within:
+        drawn = np.column_stack(
+            [
+                _resampled(rows.groupby(cluster)[value].mean().to_numpy(), rng, draws)
+                for _, rows in table.groupby(factor)
+            ]
+        )
+    else:
+        cells = table.pivot_table(index=cluster, columns=factor, values=value, aggfunc="mean")
+        grid = cells[levels].dropna().to_numpy()
+        chosen = rng.integers(0, len(grid), size=(draws, len(grid)))
+        drawn = grid[chosen].mean(axis=1)
+    return pd.DataFrame(
+        {
+            "level": levels,
+            "mean": table.groupby(factor)[value].mean()[levels].to_numpy(),
+            "p_largest": _share_of(drawn == drawn.max(axis=1, keepdims=True)),
+            "p_smallest": _share_of(drawn == drawn.min(axis=1, keepdims=True)),
+        }
+    )
+
+
+def _resampled(means: Array, rng: np.random.Generator, draws: int) -> Array:
+    chosen = rng.integers(0, len(means), size=(draws, len(means)))
+    return np.asarray(means[chosen].mean(axis=1), dtype=np.float64)
+
+
+def _share_of(extreme: npt.NDArray[np.bool_]) -> Array:
+    return np.asarray((extreme / extreme.sum(axis=1, keepdims=True)).mean(axis=0), dtype=float)

@@ -1,0 +1,240 @@
+"""Interval likelihood with a random effect of the pair: for steps and tests that never overturned.
+
+ln a = x β + δ [P] + u + e, with u ~ N(0, τ²) shared by the two tests of a pair and e ~ N(0, σ²) per
+test.  A test contributes the probability of its interval (lower, upper]; a censored one that of
+everything above its lower bound; an exact figure its density.  Integrating u out leaves a bivariate
+normal per pair, which is integrated exactly along one axis and by quadrature along the other.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy import optimize, stats
+from scipy.special import ndtr
+
+from rockfrag.errors import InputError
+from rockfrag.pedestal.pairs import KEY, SLENDERNESS, check_tests, slenderness_of
+from rockfrag.pedestal.units import ROUNDING, Array, Estimate, t_estimate
+
+NODES = 40
+FAR = 9.0
+"""Standard deviations beyond which the normal density is nothing."""
+
+
+@dataclass(frozen=True)
+class CensoredFit:
+    """Maximum of the interval likelihood.
+
+    Parameters
+    ----------
+    effect
+        δ = ln(P/NP) with the interval of the jackknife over events [-].
+    sd_pair, sd_test
+        τ and σ [-].
+    loglik
+        Log-likelihood at the maximum.
+    tests, censored
+        Numbers of tests used and of those that never overturned.
+    """
+
+    effect: Estimate
+    sd_pair: float
+    sd_test: float
+    loglik: float
+    tests: int
+    censored: int
+
+
+@dataclass(frozen=True)
+class _Design:
+    """Bounds and regressors: per test, and which two tests form a pair."""
+
+    lower: Array
+    upper: Array
+    x: Array
+    first: Array
+    second: Array
+    single: Array
+
+
+def fit_censored(
+    tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNESS
+) -> CensoredFit:
+    """Estimate the pedestal's effect from exact, interval- and right-censored tests.
+
+    Fixed effects are the tower (as ln of its slenderness), the floor, and the pedestal.  The
+    interval of the effect comes from leaving out one event at a time, since events were sampled, not
+    tests.
+
+    Parameters
+    ----------
+    tests
+        See `rockfrag.pedestal.pairs.check_tests`; lower_g and upper_g of a step protocol are used.
+
+    Raises
+    ------
+    InputError
+        As `check_tests`; if all tests of one side are censored, so that the likelihood
+        grows without bound.
+    """
+    clean = check_tests(tests)
+    for side, rows in clean.groupby("pedestal"):
+        if (rows["censored"] == "right").all():
+            raise InputError(
+                f"Interval likelihood: no test with pedestal = {side} overturned, so only a bound "
+                "of the effect exists; raise the shaker's limit or read the pairs' bounds."
+            )
+    if set(clean["pedestal"]) != {"P", "NP"}:
+        raise InputError("Interval likelihood: tests with and without pedestal are needed.")
+    clean = clean.assign(slenderness=slenderness_of(clean, slenderness))
+    if _sides_agree(clean):
+        raise InputError(
+            "Interval likelihood: the two tests of every pair gave the same figure, so there is no "
+            "scatter to model; the ratio is 1."
+        )
+    best, design = _maximum(clean)
+    effect = _jackknife(clean, best.x)
+    return CensoredFit(
+        effect=effect,
+        sd_pair=math.exp(best.x[-2]),
+        sd_test=math.exp(best.x[-1]),
+        loglik=-float(best.fun),
+        tests=len(design.lower),
+        censored=int((clean["censored"] == "right").sum()),
+    )
+
+
+def _sides_agree(clean: pd.DataFrame) -> bool:
+    """Whether no pair has two different figures."""
+    by_pair = clean[["lower_g", "upper_g"]].groupby([clean[name] for name in (*KEY, "repetition")])
+    ratio = by_pair.max().to_numpy() / by_pair.min().to_numpy()
+    return not bool(np.any(ratio > 1 + ROUNDING))
+
+
+def _jackknife(clean: pd.DataFrame, start: Array) -> Estimate:
+    """Pseudo-values over events; a subset on which a side is wholly censored is not usable."""
+    delta = float(start[0])
+    events = sorted(clean["event"].unique())
+    k = len(events)
+    if k < 2:
+        return Estimate(delta, math.nan, k, math.nan, math.nan, math.nan)
+    values = []
+    for event in events:
+        rest = clean[clean["event"] != event]
+        exact = rest[rest["censored"] == "none"]
+        if set(exact["pedestal"]) != {"P", "NP"}:
+            return Estimate(delta, math.nan, k, math.nan, math.nan, math.nan)
+        values.append(k * delta - (k - 1) * float(_maximum(rest, start)[0].x[0]))
+    spread = t_estimate(values)
+    shift = delta - spread.mean
+    p = spread.p
+    if spread.se > 0:
+        p = float(2 * stats.t.sf(abs(delta) / spread.se, k - 1))
+    return Estimate(delta, spread.se, k, spread.lower + shift, spread.upper + shift, p)
+
+
+def _design(clean: pd.DataFrame) -> _Design:
+    ln_slenderness = np.log(clean["slenderness"].to_numpy(dtype=float))
+    floors = pd.get_dummies(clean["floor"], drop_first=True).to_numpy(dtype=float)
+    columns = [(clean["pedestal"] == "P").to_numpy(dtype=float), np.ones(len(clean))]
+    if np.ptp(ln_slenderness) > 0:
+        columns.append(ln_slenderness - ln_slenderness.mean())
+    x = np.column_stack([*columns, floors])
+    with np.errstate(divide="ignore"):
+        lower = np.log(clean["lower_g"].to_numpy(dtype=float))
+    right = (clean["censored"] == "right").to_numpy()
+    upper = np.where(right, np.inf, np.log(clean["upper_g"].fillna(1.0).to_numpy(dtype=float)))
+    members = clean.reset_index(drop=True).groupby([*KEY, "repetition"]).indices
+    rows = [np.sort(index) for index in members.values()]
+    two = np.array([index for index in rows if len(index) == 2], dtype=int).reshape(-1, 2)
+    one = np.array([index[0] for index in rows if len(index) == 1], dtype=int)
+    return _Design(lower, upper, x, two[:, 0], two[:, 1], one)
+
+
+def _maximum(
+    clean: pd.DataFrame, start: Array | None = None
+) -> tuple[optimize.OptimizeResult, _Design]:
+    design = _design(clean)
+    if start is None or len(start) != design.x.shape[1] + 2:
+        start = _start(design)
+    bounds = [(None, None)] * design.x.shape[1] + [(math.log(1e-4), math.log(10.0))] * 2
+    found = optimize.minimize(
+        lambda parameters: -_loglik(parameters, design), start, method="L-BFGS-B", bounds=bounds
+    )
+    return found, design
+
+
+def _start(design: _Design) -> Array:
+    """Least squares on the figures; survived amplitudes count as they are."""
+    finite = np.isfinite(design.upper)
+    with np.errstate(invalid="ignore"):
+        middle = np.where(finite, (design.lower + design.upper) / 2, design.lower)
+    middle = np.where(np.isfinite(middle), middle, np.where(finite, design.upper, 0.0))
+    beta = np.linalg.lstsq(design.x, middle, rcond=None)[0]
+    scatter = math.log(max(float(np.std(middle - design.x @ beta)), 1e-3) / math.sqrt(2))
+    return np.array([*beta, scatter, scatter])
+
+
+def _loglik(parameters: Array, design: _Design) -> float:
+    """Log-likelihood of (β, ln τ, ln σ)."""
+    tau, sigma = np.exp(parameters[-2:])
+    sd = math.hypot(tau, sigma)
+    rho = float(tau**2 / sd**2)
+    mean = design.x @ parameters[:-2]
+    low, high = (design.lower - mean) / sd, (design.upper - mean) / sd
+    total = 0.0
+    if design.single.size:
+        total += float(np.sum(_log_single(low[design.single], high[design.single], sd)))
+    one, two = design.first, design.second
+    # the axis integrated by quadrature is the one with the exact figure, if there is one
+    swap = (low[two] == high[two]) & (low[one] != high[one])
+    first, second = np.where(swap, two, one), np.where(swap, one, two)
+    exact = low[first] == high[first]
+    residual = math.sqrt(1 - rho**2)
+    if exact.any():
+        z, a, b = low[first][exact], low[second][exact], high[second][exact]
+        total += float(np.sum(_log_density(z) - math.log(sd)))
+        conditional = _log_single((a - rho * z) / residual, (b - rho * z) / residual, residual * sd)
+        total += float(np.sum(conditional))
+    if (~exact).any():
+        a, b = low[first][~exact], high[first][~exact]
+        c, d = low[second][~exact], high[second][~exact]
+        total += float(np.sum(np.log(_rectangle(a, b, c, d, rho, residual))))
+    return total
+
+
+def _log_density(z: Array) -> Array:
+    """Log of the standard normal density."""
+    return np.asarray(-0.5 * z**2 - 0.5 * math.log(2 * math.pi), dtype=np.float64)
+
+
+def _log_single(low: Array, high: Array, sd: float) -> Array:
+    """Log of the normal density (exact figures) or of the probability of an interval."""
+    exact = low == high
+    probability = np.where(
+        low > 0,
+        ndtr(-low) - ndtr(-high),
+        ndtr(high) - ndtr(low),
+    )
+    interval = np.log(np.maximum(probability, 1e-300))
+    density = _log_density(low) - math.log(sd)
+    return np.asarray(np.where(exact, density, interval), dtype=np.float64)
+
+
+def _rectangle(a: Array, b: Array, c: Array, d: Array, rho: float, residual: float) -> Array:
+    """Probability of (a, b] x (c, d] under the standard bivariate normal, by Gauss-Legendre."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    # where the conditional probability of the other axis is nothing the integrand is, too
+    left = np.clip(a, -FAR, FAR)
+    right = np.clip(b, -FAR, FAR)
+    if rho > 0:
+        left = np.maximum(left, (np.maximum(c, -FAR) - FAR * residual) / rho)
+        right = np.minimum(right, (np.minimum(d, FAR) + FAR * residual) / rho)
+    half = np.maximum(right - left, 0.0) / 2
+    z = left[:, None] + half[:, None] * (nodes + 1)
+    inner = ndtr((d[:, None] - rho * z) / residual) - ndtr((c[:, None] - rho * z) / residual)
+    value = half * np.sum(weights * np.exp(_log_density(z)) * inner, axis=1)
+    return np.asarray(np.maximum(value, 1e-300), dtype=np.float64)

@@ -1,0 +1,289 @@
+"""The pedestal effect as tables: every scope with interval, equivalence, multiplicity and power."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
+from rockfrag.pedestal.censored import CensoredFit, fit_censored
+from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.exact import leave_one_event_out, sign_flip_test, wilcoxon_exact
+from rockfrag.pedestal.mixed import (
+    AMPLITUDE,
+    EFFECT,
+    EFFECT_BY_FLOOR,
+    MixedFit,
+    fit_mixed,
+    long_rows,
+)
+from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
+from rockfrag.pedestal.pairs import SLENDERNESS, Pairs, pair_tests
+from rockfrag.pedestal.power import detectable_ratio
+from rockfrag.pedestal.units import mean_effect, sampled_unit, unit_means
+
+SCOPES: Mapping[str, tuple[str, ...]] = {
+    "whole": (),
+    "floor": ("floor",),
+    "event": ("event",),
+    "tower": ("tower",),
+    "cell": ("floor", "tower"),
+}
+"""What is averaged together; each is a family for Holm's adjustment."""
+
+
+@dataclass(frozen=True)
+class PedestalStudy:
+    """Everything about P against NP for one table of tests.
+
+    Parameters
+    ----------
+    pairs
+        Tests sorted into pairs.
+    effects
+        See `effects_table`.
+    whole
+        Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark.
+    without_event
+        See `rockfrag.pedestal.exact.leave_one_event_out`.
+    ranks
+        factor, level, mean ratio, p_largest, p_smallest.
+    mixed
+        Coefficients of the three mixed models, all checked.
+    notes
+        In words: population, what was left out, what could not be fitted.
+    """
+
+    pairs: Pairs
+    effects: pd.DataFrame
+    whole: pd.DataFrame
+    without_event: pd.DataFrame
+    ranks: pd.DataFrame
+    mixed: pd.DataFrame
+    notes: tuple[str, ...]
+
+
+def population(table: pd.DataFrame) -> str:
+    """Say in words to what the inference applies."""
+    events = int(table["event"].nunique())
+    if events == 1:
+        return (
+            "one event: the inference is about further motions of this event on the tested floors, "
+            "not about other earthquakes"
+        )
+    smallest = 2.0 ** (1 - events)
+    return (
+        f"inference is about earthquakes of which these {events} are a sample, for the towers and "
+        f"floors tested; sign flips over {events} events give no p below {smallest:.3g}"
+    )
+
+
+def effects_table(table: pd.DataFrame) -> pd.DataFrame:
+    """Ratio P/NP for every scope.
+
+    Parameters
+    ----------
+    table
+        Complete pairs (`Pairs.table`).
+
+    Returns
+    -------
+    pandas.DataFrame
+        scope, level, pairs, unit, units, ratio, lower, upper [-] (95 %), p, p_holm (within the
+        scope), p_bh (over all rows), p_sign_flip, smallest_p, p_equivalence (±10 %), equivalent,
+        detectable_ratio (80 % power with the scatter and number of units at hand).
+    """
+    rows: list[dict[str, object]] = []
+    for scope, columns in SCOPES.items():
+        groups = table.groupby(list(columns)) if columns else [((), table)]
+        for key, part in groups:
+            effect = mean_effect(part)
+            unit = sampled_unit(part)
+            flips = sign_flip_test(unit_means(part, unit))
+            same = equivalence(effect)
+            rows.append(
+                {
+                    "scope": scope,
+                    "level": "/".join(str(name) for name in key) if columns else "all",
+                    "pairs": len(part),
+                    "unit": unit,
+                    "units": effect.units,
+                    "ratio": effect.ratio,
+                    "lower": effect.ratio_lower,
+                    "upper": effect.ratio_upper,
+                    "p": effect.p,
+                    "p_sign_flip": flips.p,
+                    "smallest_p": flips.smallest_p,
+                    "p_equivalence": same.p,
+                    "equivalent": same.shown(),
+                    "detectable_ratio": detectable_ratio(effect.units, effect.sd),
+                }
+            )
+    result = pd.DataFrame(rows)
+    result.insert(9, "p_holm", np.nan)
+    for scope in SCOPES:
+        here = result["scope"] == scope
+        result.loc[here, "p_holm"] = holm(result.loc[here, "p"])
+    result.insert(10, "p_bh", benjamini_hochberg(result["p"]))
+    return result
+
+
+def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -> pd.DataFrame:
+    events, motions = unit_means(table, "event"), unit_means(table, "motion")
+    effect = mean_effect(table)
+    ranks = wilcoxon_exact(motions)
+    flips = sign_flip_test(events, seed)
+    low, high = bca_interval(motions, seed)
+    rows: list[tuple[str, float, float, float, float, float, int, str]] = [
+        (
+            f"t on the means of {sampled_unit(table)}s",
+            effect.mean,
+            effect.lower,
+            effect.upper,
+            effect.p,
+            np.nan,
+            effect.units,
+            "holds its level in the crossed design; the verdicts rest on it",
+        ),
+        (
+            "exact signed ranks and Hodges-Lehmann on motions",
+            ranks.estimate,
+            ranks.lower,
+            ranks.upper,
+            ranks.p,
+            ranks.smallest_p,
+            ranks.units,
+            "treats motions of one event as independent",
+        ),
+        (
+            "sign flips over events",
+            effect.mean,
+            np.nan,
+            np.nan,
+            flips.p,
+            flips.smallest_p,
+            flips.units,
+            "exact" if flips.exact else f"drawn with seed {seed}",
+        ),
+        (
+            "BCa bootstrap over motions",
+            float(motions.mean()),
+            low,
+            high,
+            np.nan,
+            np.nan,
+            len(motions),
+            f"seed {seed}; treats motions of one event as independent",
+        ),
+    ]
+    if censored is not None:
+        one = censored.effect
+        rows.append(
+            (
+                "interval likelihood with a random effect of the pair",
+                one.mean,
+                one.lower,
+                one.upper,
+                one.p,
+                np.nan,
+                one.units,
+                f"{censored.tests} tests, {censored.censored} censored; jackknife over events",
+            )
+        )
+    names = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
+    result = pd.DataFrame(rows, columns=names)
+    for name in ("estimate", "lower", "upper"):
+        result[name] = np.exp(result[name])
+    return result
+
+
+def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
+    """Rank probabilities of d: towers over motions, floors over events, events over their motions.
+
+    Floors share the event and towers the motion, so they are drawn together.
+    """
+    parts = []
+    for factor, cluster, within in (
+        ("tower", "motion", False),
+        ("floor", "event", False),
+        ("event", "motion", True),
+    ):
+        ranks = rank_probabilities(table, factor, cluster, seed, within=within)
+        ranks.insert(0, "factor", factor)
+        parts.append(ranks.assign(mean=np.exp(ranks["mean"])))
+    return pd.concat(parts, ignore_index=True).rename(columns={"mean": "ratio"})
+
+
+def _mixed_fits(table: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
+    """Fit the three models; what the data cannot support is said and left out."""
+    frames: list[pd.DataFrame] = []
+    notes: list[str] = []
+    for formula, rows in (
+        (EFFECT, table),
+        (EFFECT_BY_FLOOR, table),
+        (AMPLITUDE, long_rows(table)),
+    ):
+        try:
+            fit: MixedFit = fit_mixed(rows, formula)
+        except InputError as error:
+            notes.append(str(error))
+            continue
+        notes.extend(f"mixed model {formula}: {note}" for note in fit.notes)
+        frames.append(
+            fit.coefficients.assign(
+                formula=formula,
+                sd_event=fit.sd_event,
+                sd_motion=fit.sd_motion,
+                sd_residual=fit.sd_residual,
+                balanced=fit.balanced,
+            )
+        )
+    return (pd.concat(frames, ignore_index=True) if frames else pd.DataFrame()), notes
+
+
+def study_pedestal(
+    tests: pd.DataFrame, *, seed: int, slenderness: Mapping[str, float] = SLENDERNESS
+) -> PedestalStudy:
+    """Do everything for one table of tests, simulated or measured alike.
+
+    Parameters
+    ----------
+    tests
+        See `rockfrag.pedestal.pairs.check_tests`.
+    seed
+        Of the bootstrap and of drawn sign flips.
+    slenderness
+        Height over width by tower [-].
+
+    Raises
+    ------
+    InputError
+        If the table cannot be used.
+    FitDisagreementError
+        If a mixed model contradicts the means of the data.
+    """
+    pairs = pair_tests(tests, slenderness)
+    if pairs.table.empty:
+        raise InputError(
+            "Table of tests: every pair has a test that never overturned, so no ratio is known; "
+            "raise the largest amplitude."
+        )
+    table = pairs.table
+    notes = [population(table), *pairs.notes()]
+    censored: CensoredFit | None = None
+    try:
+        censored = fit_censored(tests, slenderness)
+    except InputError as error:
+        notes.append(str(error))
+    mixed, mixed_notes = _mixed_fits(table)
+    return PedestalStudy(
+        pairs=pairs,
+        effects=effects_table(table),
+        whole=_whole_tests(table, censored, seed),
+        without_event=leave_one_event_out(table),
+        ranks=_ranks(table, seed),
+        mixed=mixed,
+        notes=tuple(notes + mixed_notes),
+    )

@@ -1,0 +1,49 @@
+"""The bootstrap draws whole motions or events, and is the same for the same seed."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
+from rockfrag.pedestal.pairs import pair_tests
+
+
+def test_bca_interval_agrees_with_scipy():
+    x = np.random.default_rng(1).gamma(2.0, 0.1, 12)
+    ours = bca_interval(x, seed=3, draws=40_000)
+    theirs = stats.bootstrap(
+        (x,), np.mean, method="BCa", n_resamples=40_000, rng=np.random.default_rng(9)
+    ).confidence_interval
+    assert ours == pytest.approx((theirs.low, theirs.high), abs=0.005)
+
+
+def test_bca_interval_is_reproducible_and_states_degenerate_cases():
+    x = [0.1, 0.2, 0.4, 0.35]
+    assert bca_interval(x, seed=1) == bca_interval(x, seed=1)
+    assert bca_interval([0.2, 0.2], seed=1) == (0.2, 0.2)
+    assert np.isnan(bca_interval([0.2], seed=1)).all()
+
+
+def test_clear_order_of_floors_is_found_with_certainty(tests_table):
+    tests = tests_table(1, floor_effect={"GF": 0.5, "F3": -0.5}, sd_pair=0.02)
+    ranks = rank_probabilities(pair_tests(tests).table, "floor", "event", 1).set_index("level")
+    assert ranks.loc["GF", "p_largest"] == ranks.loc["F3", "p_smallest"] == 1.0
+
+
+def test_what_levels_share_does_not_blur_their_order(tests_table):
+    """A large event effect moves all floors together, so the ranks must not notice it."""
+    table = pair_tests(tests_table(1)).table
+    shift = table["event"].map({"Friuli": 3.0, "Kobe": -3.0, "Loma Prieta": 1.0, "Northridge": 0.0})
+    same = rank_probabilities(table, "floor", "event", 1)
+    moved = rank_probabilities(table.assign(d=table["d"] + shift), "floor", "event", 1)
+    assert moved["p_largest"].tolist() == same["p_largest"].tolist()
+
+
+def test_probabilities_add_to_one_and_ties_share(tests_table):
+    table = pair_tests(tests_table(1)).table
+    for factor, cluster, within in (("tower", "motion", False), ("event", "motion", True)):
+        ranks = rank_probabilities(table, factor, cluster, 1, within=within)
+        assert ranks["p_largest"].sum() == pytest.approx(1)
+        assert ranks["p_smallest"].sum() == pytest.approx(1)
+    tied = rank_probabilities(table.assign(d=0.0), "tower", "motion", 1)
+    assert tied["p_largest"].tolist() == pytest.approx([1 / 3] * 3)

@@ -1,0 +1,77 @@
+"""Adjustments, equivalence and power agree with their definitions and with statsmodels."""
+
+import math
+
+import numpy as np
+import pytest
+from statsmodels.stats.multitest import multipletests
+from statsmodels.stats.power import TTestPower
+
+from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
+from rockfrag.pedestal.power import detectable_ratio, power_note, power_of_t, units_needed
+from rockfrag.pedestal.units import t_estimate
+
+P = np.array([0.01, 0.04, 0.03, 0.2, 0.6])
+
+
+@pytest.mark.parametrize(("ours", "name"), [(holm, "holm"), (benjamini_hochberg, "fdr_bh")])
+def test_adjusted_p_values_are_those_of_statsmodels(ours, name):
+    assert ours(P) == pytest.approx(multipletests(P, method=name)[1], abs=1e-15)
+
+
+def test_tests_that_could_not_be_made_do_not_count():
+    with_nan = holm([*P, math.nan])
+    assert np.isnan(with_nan[-1])
+    assert with_nan[:-1] == pytest.approx(holm(P))
+
+
+def test_p_values_outside_0_to_1_are_refused():
+    with pytest.raises(ValueError, match="outside 0 to 1"):
+        holm([0.2, 1.2])
+
+
+@pytest.mark.parametrize(("pairs", "percent"), [(36, 6.6), (12, 12.6), (9, 15.4)])
+def test_detectable_change_of_36_12_and_9_pairs(pairs, percent):
+    assert 100 * (detectable_ratio(pairs) - 1) == pytest.approx(percent, abs=0.05)
+
+
+def test_power_is_that_of_statsmodels():
+    ours = power_of_t(1.1, 0.134, 12)
+    theirs = TTestPower().power(effect_size=math.log(1.1) / 0.134, nobs=12, alpha=0.05)
+    assert ours == pytest.approx(theirs, rel=1e-9)
+
+
+def test_units_needed_are_the_fewest_with_the_power():
+    effect = t_estimate([0.1, -0.05, 0.08, 0.02])
+    n = int(units_needed(effect))
+    assert (
+        power_of_t(effect.ratio, effect.sd, n) >= 0.8 > power_of_t(effect.ratio, effect.sd, n - 1)
+    )
+    assert f"{n} events" in power_note(effect)
+
+
+def test_power_of_degenerate_data_is_stated():
+    assert detectable_ratio(1) == math.inf
+    assert detectable_ratio(4, sd=0.0) == 1.0
+    assert units_needed(t_estimate([0.1, -0.1])) == math.inf
+    assert "no power" in power_note(t_estimate([0.1]))
+
+
+def test_equivalence_needs_both_sides():
+    rng = np.random.default_rng(0)
+    near = rng.normal(0, 0.02, 12)
+    assert equivalence(t_estimate(near)).shown()
+    assert not equivalence(t_estimate(near + 0.2)).shown()
+    assert not equivalence(t_estimate(near - 0.2)).shown()
+    # few and scattered values: neither different from nothing nor equivalent to it
+    vague = t_estimate([0.3, -0.3, 0.2, -0.1])
+    assert vague.p > 0.05 and not equivalence(vague).shown()
+
+
+def test_equivalence_agrees_with_the_90_percent_interval():
+    for spread in np.linspace(0.02, 0.3, 30):
+        values = 0.02 + spread * np.array([-1.0, -0.3, 0.4, 0.9])
+        interval = t_estimate(values, confidence=0.90)
+        inside = -math.log(1.1) < interval.lower and interval.upper < math.log(1.1)
+        assert equivalence(t_estimate(values)).shown() == inside
