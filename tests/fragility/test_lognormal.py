@@ -153,4 +153,6 @@ def test_units_are_read_from_column_names():
     assert name_and_unit("pga_g") == ("PGA", "g")
     assert name_and_unit("amplitude_g") == ("PGA", "g")
     assert name_and_unit("pgv_cm_s") == ("PGV", "cm/s")
-    assert name_and_unit("slenderness") == ("SLENDERNESS", "")
+    assert name_and_unit("slenderness") == ("slenderness", "")
+    assert name_and_unit("sa_0_3s_g") == ("SA(0.3s)", "g")
+    assert name_and_unit("pgv_over_pga_s") == ("PGV/PGA", "s")

@@ -24,6 +24,19 @@ def wilson_interval(
     return np.clip(centre - half, 0.0, 1.0), np.clip(centre + half, 0.0, 1.0)
 
 
+def bin_codes(outcomes: Outcomes, bins: int = 10) -> NDArray[np.int64]:
+    """Put rows into numbered bins, shape (n,), with about equally many tests in each bin.
+
+    Equal values share a bin; up to ``bins`` different values keep a bin each.
+    """
+    values, level = np.unique(outcomes.im, return_inverse=True)
+    if values.size <= bins:
+        return np.asarray(level, dtype=np.int64)
+    trials = np.bincount(level, outcomes.trials)
+    middle = np.cumsum(trials) - 0.5 * trials
+    return np.asarray(middle[level] / outcomes.n * bins, dtype=np.int64)
+
+
 def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
     """Share of overturned tests in bins of about equal numbers of tests.
 
@@ -35,16 +48,7 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
         ``im`` (geometric mean), ``im_lower``, ``im_upper``, ``tests``, ``motions``, ``overturned``,
         ``share``, ``share_lower``, ``share_upper`` (binomial limits, tests taken as independent).
     """
-    values = np.unique(outcomes.im)
-    if values.size <= bins:
-        code = np.searchsorted(values, outcomes.im)
-    else:
-        order = np.argsort(outcomes.im, kind="stable")
-        passed = np.empty(outcomes.im.size)
-        passed[order] = np.cumsum(outcomes.trials[order]) - 0.5 * outcomes.trials[order]
-        code = np.minimum((passed / outcomes.n * bins).astype(np.int64), bins - 1)
-        # equal values belong together
-        code = pd.Series(code).groupby(outcomes.im).transform("min").to_numpy()
+    code = bin_codes(outcomes, bins)
     rows = []
     for k in np.unique(code):
         inside = code == k

@@ -24,6 +24,9 @@ FEWEST_GROUPS = 4
 FEWEST_BOOTSTRAP_GROUPS = 20
 """Fewest groups for which the bootstrap's coverage was found near its level."""
 
+MOST_BLOCKS = 100
+"""More groups than this are left out in random blocks, which costs little and changes little."""
+
 IntervalMethod = Literal["percentile", "bca", "jackknife"]
 Over = Literal["motion", "event"]
 WeightedFit = Callable[[Floats], Floats]
@@ -75,7 +78,7 @@ class Interval:
         predictors = self.replicates[:, :1] + self.replicates[:, 1:] * x
         centre = self.estimate[0] + self.estimate[1] * x
         if self.method == "jackknife":
-            half = _student(self.level, self.groups) * _jackknife_error(predictors)
+            half = _student(self.level, len(self.replicates)) * _jackknife_error(predictors)
             lower, upper = centre - half, centre + half
         else:
             tail = 0.5 - 0.5 * self.level
@@ -220,9 +223,9 @@ def resampled_interval(
         )
         return _none(estimate, level, groups, over, link, (*notes, reason))
     notes = (*notes, *_few_groups(method, groups, over))
-    deleted = fit(1.0 - np.eye(groups))
+    deleted = fit(_all_but_one(groups, seed))
     if method == "jackknife":
-        theta, beta = _jackknife_limits(estimate, deleted, level, groups)
+        theta, beta = _jackknife_limits(estimate, deleted, level)
         return Interval(
             theta, beta, level, method, groups, over, _pair(estimate), deleted, link, notes
         )
@@ -291,6 +294,14 @@ def _bca_tails(
     return tails[0], tails[1]
 
 
+def _all_but_one(groups: int, seed: int) -> Floats:
+    """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups."""
+    if groups <= MOST_BLOCKS:
+        return np.asarray(1.0 - np.eye(groups))
+    block = np.random.default_rng(seed).permutation(groups) % MOST_BLOCKS
+    return np.asarray(block != np.arange(MOST_BLOCKS)[:, None], dtype=np.float64)
+
+
 def _student(level: float, groups: int) -> float:
     return float(stats.t.ppf(0.5 + 0.5 * level, groups - 1))
 
@@ -303,8 +314,9 @@ def _jackknife_error(left_out: Floats) -> Floats:
 
 
 def _jackknife_limits(
-    estimate: Floats, deleted: Floats, level: float, groups: int
+    estimate: Floats, deleted: Floats, level: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
+    groups = len(deleted)
     factor = _student(level, groups)
     log_theta = float(_log_theta(estimate[None, :])[0])
     half = factor * float(_jackknife_error(_log_theta(deleted)))

@@ -26,6 +26,17 @@ _UNITS = {
 }
 _SUFFIX = re.compile(r"^(?P<name>.+?)_(?P<unit>g|cm_s|m_s2|m_s|cm|m|1_s|s|hz)$")
 
+_SPECTRAL = re.compile(r"^(?P<kind>sa|sv|sd)_(?P<whole>\d+)(_(?P<part>\d+))?s$")
+_NAMES = {
+    "arias": "Arias intensity",
+    "pgv_over_pga": "PGV/PGA",
+    "d5_75": "D5-75",
+    "d5_95": "D5-95",
+    "housner": "Housner intensity",
+    "uplift_ratio": "a/(g tan α)",
+    "velocity_ratio": "p PGV/(g tan α)",
+}
+
 
 @dataclass(frozen=True)
 class Outcomes:
@@ -89,17 +100,21 @@ class Outcomes:
 
 
 def name_and_unit(column: str) -> tuple[str, str]:
-    """Split a column name: ``pga_g`` into ``("PGA", "g")``, ``pgv_cm_s`` into ``("PGV", "cm/s")``.
+    """Split a column name: ``pga_g`` gives ``("PGA", "g")``, ``sa_0_3s_g`` ``("SA(0.3s)", "g")``.
 
-    A name without a known unit is returned whole, in capitals, with an empty unit.
+    A name without a known unit is returned whole, with an empty unit.
     """
     found = _SUFFIX.match(column)
-    if found is None:
-        return column.replace("_", " ").upper(), ""
-    name = found["name"]
-    if name in {"amplitude", "pga", "input"}:
-        return "PGA", _UNITS[found["unit"]]
-    return name.replace("_", " ").upper(), _UNITS[found["unit"]]
+    name, unit = (found["name"], _UNITS[found["unit"]]) if found else (column, "")
+    if name in {"amplitude", "input"}:
+        return "PGA", unit
+    spectral = _SPECTRAL.match(name)
+    if spectral:
+        period = f"{float(spectral['whole'] + '.' + (spectral['part'] or '0')):g}"
+        return f"{spectral['kind'].upper()}({period}s)", unit
+    if name in {"pga", "pgv", "pgd", "cav"}:
+        return name.upper(), unit
+    return _NAMES.get(name, name.replace("_", " ")), unit
 
 
 def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:

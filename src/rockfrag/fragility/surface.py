@@ -1,0 +1,124 @@
+"""Overturning as a function of several intensity measures, for example ln PGA and ln PGV."""
+
+import warnings as python_warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+import statsmodels.api as sm
+from numpy.typing import ArrayLike
+from scipy import optimize, special
+from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSeparationWarning
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.newton import fit_batch
+from rockfrag.fragility.outcomes import Floats, positive, verdicts
+
+
+@dataclass(frozen=True)
+class FragilitySurface:
+    """P(overturn | IM1, IM2, …) = Φ(c0 + c1 ln IM1 + c2 ln IM2 + …).
+
+    Attributes
+    ----------
+    coefficients
+        Intercept first, shape (k + 1,).
+    covariance
+        From the expected information, (k + 1) × (k + 1).
+    measures
+        Columns of the measures.
+    log_likelihood, aic, n, method
+        As in :class:`rockfrag.fragility.lognormal.FragilityFit`.
+    """
+
+    coefficients: tuple[float, ...]
+    covariance: tuple[tuple[float, ...], ...]
+    measures: tuple[str, ...]
+    log_likelihood: float
+    aic: float
+    n: int
+    method: str
+
+    def probability(self, *im: ArrayLike) -> Floats:
+        """Probability of overturning at values of the measures, in order; they broadcast."""
+        eta = np.asarray(self.coefficients[0], dtype=np.float64)
+        for slope, values in zip(self.coefficients[1:], im, strict=True):
+            eta = eta + slope * np.log(np.asarray(values, dtype=np.float64))
+        return np.asarray(special.ndtr(eta))
+
+
+def fit_surface(
+    table: pd.DataFrame,
+    measures: Sequence[str],
+    *,
+    overturned: str = "overturned",
+    source: str = "table",
+) -> FragilitySurface:
+    """Fit a probit surface in the logarithms of one or more measures, one row per test.
+
+    Under separation (found exactly, by linear programming) the likelihood is penalised and
+    ``method`` says so.
+
+    Raises
+    ------
+    InputError
+        If a value is missing or out of range, all tests agree, or measures are proportional.
+    """
+    logs = [np.log(positive(table, column, source)) for column in measures]
+    verdict = verdicts(table, overturned, source)
+    if verdict.min() == verdict.max():
+        raise InputError(
+            f"{source}, column {overturned!r}: all {verdict.size} tests have the verdict "
+            f"{verdict[0]:g}; a surface needs both."
+        )
+    design = np.column_stack([np.ones(verdict.size), *logs])
+    if np.linalg.matrix_rank(design) < design.shape[1]:
+        raise InputError(
+            f"{source}: the measures {', '.join(measures)} are proportional to each other (or "
+            "constant) in these tests; choose fewer."
+        )
+    method = "probit, maximum likelihood (GLM)"
+    if linearly_separable(design, verdict):
+        coefficients, information = _penalised(design, verdict)
+        method = "probit, penalised likelihood (Firth)"
+    else:
+        model = sm.GLM(verdict, design, family=sm.families.Binomial(sm.families.links.Probit()))
+        with python_warnings.catch_warnings():
+            python_warnings.simplefilter("error", PerfectSeparationWarning)
+            try:
+                coefficients = np.asarray(model.fit(tol=1e-12, maxiter=200).params)
+                information = -np.asarray(model.hessian(coefficients, observed=False))
+            except (PerfectSeparationError, PerfectSeparationWarning):
+                coefficients, information = _penalised(design, verdict)
+                method = "probit, penalised likelihood (Firth)"
+    eta = design @ coefficients
+    log_likelihood = float(special.log_ndtr(np.where(verdict > 0, eta, -eta)).sum())
+    covariance = np.linalg.inv(information)
+    return FragilitySurface(
+        tuple(float(value) for value in coefficients),
+        tuple(tuple(float(value) for value in row) for row in covariance),
+        tuple(measures),
+        log_likelihood,
+        2.0 * design.shape[1] - 2.0 * log_likelihood,
+        int(verdict.size),
+        method,
+    )
+
+
+def linearly_separable(design: Floats, verdict: Floats) -> bool:
+    """Tell whether a plane parts overturned from survived tests (ties on the plane allowed).
+
+    Solves for the direction c, |c| ≤ 1, that maximises Σ s x·c subject to s x·c ≥ 0, with s = ±1
+    the verdict; a maximum above zero means separation (Konis, 2007, thesis, Oxford, ch. 4).
+    """
+    signed = np.where(verdict > 0, 1.0, -1.0)[:, None] * design
+    found = optimize.linprog(
+        -signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=(-1.0, 1.0)
+    )
+    return bool(-found.fun > 1e-9)
+
+
+def _penalised(design: Floats, verdict: Floats) -> tuple[Floats, Floats]:
+    fit = fit_batch(design, verdict[None, :], np.ones((1, verdict.size)), penalised=True)
+    return fit.coefficients[0], fit.information[0]

@@ -1,0 +1,207 @@
+"""Fragility of every configuration of a sweep in every intensity measure, as one tidy table."""
+
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
+from rockfrag.fragility.outcomes import outcomes_from_table, positive
+from rockfrag.records.motion import Motion
+
+_SCALE_LINEARLY = (
+    "pga",
+    "pgv_cm_s",
+    "pgv_m_s",
+    "pgd",
+    "cav",
+    "sa_",
+    "sv_",
+    "sd_",
+    "housner",
+    "pulse_velocity",
+    "uplift_ratio",
+    "velocity_ratio",
+)
+_STAY = (
+    "pgv_over_pga",
+    "d5_",
+    "mean_period",
+    "predominant_period",
+    "pulse_period",
+    "pulse_explained",
+    "frequency_ratio",
+)
+
+
+def scale_power(measure: str) -> int:
+    """Power of the amplitude with which a measure grows: 1 for peaks, 2 for Arias, 0 for periods.
+
+    Raises
+    ------
+    InputError
+        If it is not known how the measure scales.
+    """
+    if measure.startswith("arias"):
+        return 2
+    if measure.startswith(_STAY):
+        return 0
+    if measure.startswith(_SCALE_LINEARLY):
+        return 1
+    raise InputError(
+        f"measure {measure!r}: it is not known how it grows with the amplitude of a scaled motion; "
+        f"choose one that starts with {', '.join(('arias', *_STAY, *_SCALE_LINEARLY))}."
+    )
+
+
+def with_measures(
+    sweep: pd.DataFrame, measures: pd.DataFrame, columns: Sequence[str]
+) -> pd.DataFrame:
+    """Add intensity measures of the scaled motions to the rows of a sweep.
+
+    Parameters
+    ----------
+    sweep
+        One row per test, with ``motion`` and ``amplitude_g`` (peak of the motion as scaled).
+    measures
+        One row per motion as recorded, with ``name`` and ``pga_g``.
+    columns
+        Measures to add; ``pga_g`` becomes the amplitude itself.
+
+    Raises
+    ------
+    InputError
+        If a motion or a column is missing, or a measure scales in an unknown way.
+    """
+    if measures["name"].duplicated().any():
+        twice = measures.loc[measures["name"].duplicated(), "name"].iloc[0]
+        raise InputError(f"measures: motion {twice!r} has two rows; leave one out.")
+    known = measures.set_index("name")
+    missing = sorted(set(sweep["motion"]) - set(known.index))
+    if missing:
+        raise InputError(f"measures: there is no row for motion {missing[0]!r}; add it.")
+    rows = known.loc[sweep["motion"]].reset_index()
+    amplitude = positive(sweep, "amplitude_g", "sweep")
+    factor = amplitude / positive(rows, "pga_g", "measures")
+    added = {
+        column: amplitude
+        if column == "pga_g"
+        else positive(rows, column, "measures") * factor ** scale_power(column)
+        for column in columns
+    }
+    return sweep.assign(**added)
+
+
+def record_set_hash(motions: Iterable[Motion]) -> str:
+    """SHA-256 of the names, intervals and samples of a set of motions, whatever their order."""
+    digest = hashlib.sha256()
+    for motion in sorted(motions, key=lambda motion: motion.name):
+        samples = np.ascontiguousarray(motion.acceleration, dtype="<f8")
+        head = f"{motion.name}\x00{motion.dt!r}\x00{samples.size}\x00"
+        digest.update(head.encode("utf-8"))
+        digest.update(samples.tobytes())
+    return digest.hexdigest()
+
+
+def table_hash(table: pd.DataFrame) -> str:
+    """SHA-256 of a table's text, for data that are no records; the order of the rows counts."""
+    text = table.to_csv(index=False, lineterminator="\n")
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def fragility_row(
+    fragility: Fragility, labels: Mapping[str, Any], estimator: str, record_set: str
+) -> dict[str, Any]:
+    """Return one row of the fragility table, see :func:`fragility_table`."""
+    fit, interval = fragility.fit, fragility.interval
+    return {
+        **labels,
+        "im": fit.im,
+        "unit": fit.unit,
+        "estimator": estimator,
+        "theta": fit.theta,
+        "theta_lower": interval.theta[0],
+        "theta_upper": interval.theta[1],
+        "beta": fit.beta,
+        "beta_lower": interval.beta[0],
+        "beta_upper": interval.beta[1],
+        "level": interval.level,
+        "interval_method": interval.method,
+        "resampled": interval.over,
+        "groups": interval.groups,
+        "se_log_theta": fit.se_log_theta,
+        "se_beta": fit.se_beta,
+        "log_likelihood": fit.log_likelihood,
+        "aic": fit.aic,
+        "link": fit.link,
+        "method": fit.method,
+        "n": fit.n,
+        "n_overturned": fit.n_overturned,
+        "n_motions": fit.n_motions,
+        "record_set_sha256": record_set,
+        "warnings": " ".join(fragility.warnings),
+    }
+
+
+def fragility_table(
+    sweep: pd.DataFrame,
+    columns: Sequence[str] = ("amplitude_g",),
+    *,
+    by: Sequence[str] = ("configuration",),
+    event: str | None = "event",
+    record_set: str = "",
+    level: float = 0.90,
+) -> pd.DataFrame:
+    """Fit every configuration of a sweep in every measure: the source of all exports.
+
+    Parameters
+    ----------
+    sweep
+        One row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``,
+        ``overturned``, the columns ``by`` and ``event``, and the measures
+        (:func:`with_measures`).
+    columns
+        Columns of the intensity measures.
+    by
+        Columns that tell the curves apart.
+    event
+        Column of the earthquake, whose resampling gives the limits; None resamples motions.
+    record_set
+        Hash of the motions (:func:`record_set_hash`).
+    level
+        Confidence level of the limits.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per curve: the columns ``by``, ``im``, ``unit``, ``estimator``
+        (``mean_probability`` for each measure; ``first_overturning`` and ``always_overturning``
+        for the amplitude), ``theta``, ``beta`` with limits, ``level``, ``interval_method``,
+        ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``, ``link``,
+        ``method``, ``n``, ``n_overturned``, ``n_motions``, ``record_set_sha256``, ``warnings``.
+    """
+    for column in by:
+        if column not in sweep:
+            raise InputError(f"sweep: there is no column {column!r}; correct the name.")
+    rows = []
+    for key, part in sweep.groupby(list(by), sort=True):
+        labels = dict(zip(by, key, strict=True))
+        for column in columns:
+            if column in ("amplitude_g", "pga_g"):
+                result = fit_incremental(part, amplitude=column, event=event, level=level)
+                readings = {
+                    "mean_probability": result.probability,
+                    "first_overturning": result.first,
+                    "always_overturning": result.always,
+                }
+            else:
+                outcomes = outcomes_from_table(part, column, event=event, source="sweep")
+                readings = {"mean_probability": fragility_of(outcomes, level=level)}
+            rows += [
+                fragility_row(fragility, labels, name, record_set)
+                for name, fragility in readings.items()
+            ]
+    return pd.DataFrame(rows)

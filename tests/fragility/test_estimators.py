@@ -1,0 +1,208 @@
+"""Every estimator returns the parameters that made its data."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import optimize, stats
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.censored import brackets_from_table, fit_brackets
+from rockfrag.fragility.estimators import fit_cloud, fit_incremental, fit_step_tests, fit_stripes
+from rockfrag.fragility.step_hazard import fit_step_hazard
+
+THETA, BETA = 0.35, 0.4
+
+
+def capacities(n, seed):
+    return np.exp(np.random.default_rng(seed).normal(np.log(THETA), BETA, n))
+
+
+def step_tests(capacity, step, limit=np.inf, start=0.05):
+    """Brackets of tests whose amplitude rises by the factor 1 + step from a random start."""
+    rng = np.random.default_rng(int(1000 * step))
+    rows = []
+    for k, a in enumerate(capacity):
+        levels = start * (1 + step) ** (np.arange(400) + rng.random())
+        levels = levels[levels <= limit]
+        upper = levels[levels >= a]
+        lower = levels[levels < a]
+        rows.append(
+            {
+                "test": k,
+                "motion": f"m{k}",
+                "event": f"e{k}",
+                "lower_g": lower[-1] if lower.size else 0.0,
+                "upper_g": upper[0] if upper.size else np.nan,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def shakes_of(tests, step):
+    """All shakes of the tests: the steps survived down to 0.05 g, and the last one."""
+    rows = []
+    for test in tests.itertuples():
+        level = test.lower_g
+        survived = []
+        while level > 0.05:
+            survived.append(level)
+            level /= 1 + step
+        verdicts = [(a, False) for a in survived[::-1]]
+        if np.isfinite(test.upper_g):
+            verdicts.append((test.upper_g, True))
+        rows += [
+            {"test": test.test, "motion": test.motion, "amplitude_g": a, "overturned": fell}
+            for a, fell in verdicts
+        ]
+    return pd.DataFrame(rows)
+
+
+def within(fit, sigmas=3.5):
+    """Both parameters lie within their standard errors of the truth."""
+    assert abs(np.log(fit.theta / THETA)) < sigmas * fit.se_log_theta
+    assert abs(fit.beta - BETA) < sigmas * fit.se_beta
+
+
+def test_clouds_recover_the_parameters():
+    rng = np.random.default_rng(1)
+    im = np.exp(rng.normal(np.log(0.3), 0.7, 4000))
+    table = pd.DataFrame(
+        {"pga_g": im, "overturned": im > capacities(4000, 2), "motion": range(4000)}
+    )
+    result = fit_cloud(table, "pga_g")
+    within(result.fit)
+    # with one test per motion the limits over motions must agree with the likelihood's own
+    half = 0.5 * np.log(result.interval.theta[1] / result.interval.theta[0])
+    assert half == pytest.approx(1.645 * result.fit.se_log_theta, rel=0.1)
+
+
+def test_stripes_recover_the_parameters_as_counts_and_as_single_tests():
+    levels = np.array([0.1, 0.2, 0.3, 0.4, 0.6, 0.9])
+    rng = np.random.default_rng(3)
+    counts = rng.binomial(500, stats.norm.cdf(np.log(levels / THETA) / BETA))
+    table = pd.DataFrame({"pga_g": levels, "overturned": counts, "trials": 500})
+    pooled = fit_stripes(table, "pga_g", trials="trials", motion=None)
+    within(pooled.fit)
+    single = pd.DataFrame(
+        [
+            {"pga_g": level, "overturned": k < count, "motion": f"{level}-{k}"}
+            for level, count in zip(levels, counts, strict=True)
+            for k in range(500)
+        ]
+    )
+    tests = fit_stripes(single, "pga_g")
+    assert tests.fit.theta == pytest.approx(pooled.fit.theta, rel=1e-8)
+    assert tests.fit.log_likelihood == pytest.approx(pooled.fit.log_likelihood, abs=1e-6)
+    assert tests.interval.groups == 3000
+
+
+@pytest.mark.parametrize("limit", [np.inf, 0.4])
+def test_step_protocols_recover_the_parameters_also_when_a_third_is_censored(limit):
+    tests = step_tests(capacities(800, 4), 0.10, limit)
+    result = fit_step_tests(tests)
+    within(result.fit)
+    assert (result.fit.n_overturned < 600) == (limit == 0.4)
+    assert result.interval.theta[0] < THETA < result.interval.theta[1]
+
+
+def test_ignoring_the_censoring_would_be_seen():
+    tests = step_tests(capacities(800, 4), 0.10, limit=0.4)
+    kept = fit_brackets(brackets_from_table(tests.dropna()))
+    assert kept.theta < 0.85 * THETA
+
+
+def test_brackets_of_all_kinds_agree_with_direct_maximisation():
+    rng = np.random.default_rng(5)
+    a = capacities(40, 6)
+    low, high = a * np.exp(-0.2 * rng.random(40)), a * np.exp(0.2 * rng.random(40))
+    low[:8], high[8:16] = 0.0, np.nan
+    low[16:20] = high[16:20] = a[16:20]
+    table = pd.DataFrame({"lower_g": low, "upper_g": high, "motion": range(40)})
+    fit = fit_brackets(brackets_from_table(table))
+
+    def minus_log_likelihood(p):
+        m, s = p[0], np.exp(p[1])
+        lower = np.where(low > 0, np.log(np.maximum(low, 1e-9)), -np.inf)
+        upper = np.where(np.isnan(high), np.inf, np.log(high))
+        share = stats.norm.cdf(upper, m, s) - stats.norm.cdf(lower, m, s)
+        density = stats.norm.pdf(np.log(a), m, s)
+        return -np.log(np.where(lower == upper, density, share)).sum()
+
+    best = optimize.minimize(
+        minus_log_likelihood,
+        [-1, -1],
+        method="Nelder-Mead",
+        options={"xatol": 1e-9, "fatol": 1e-11},
+    )
+    assert (fit.theta, fit.beta) == pytest.approx(tuple(np.exp(best.x)), rel=1e-6)
+    assert fit.log_likelihood == pytest.approx(-best.fun, abs=1e-8)
+
+
+def test_exact_amplitudes_give_the_mean_and_standard_deviation_of_their_logarithms():
+    a = capacities(20, 7)
+    fit = fit_brackets(brackets_from_table(pd.DataFrame({"lower_g": a, "upper_g": a}), motion=None))
+    assert fit.theta == pytest.approx(np.exp(np.log(a).mean()), rel=1e-9)
+    assert fit.beta == pytest.approx(np.log(a).std(), rel=1e-9)
+
+
+def test_brackets_without_resolution_or_without_overturning_are_stated():
+    shared_point = pd.DataFrame({"lower_g": [0.2, 0.25], "upper_g": [0.3, 0.35]})
+    fit = fit_brackets(brackets_from_table(shared_point, motion=None))
+    assert 0.25 < fit.theta < 0.3
+    assert "not resolved" in fit.warnings[0]
+    survived = pd.DataFrame({"lower_g": [0.2, 0.25], "upper_g": [np.nan, np.nan]})
+    fit = fit_brackets(brackets_from_table(survived, motion=None))
+    assert np.isnan(fit.theta) and "survived 0.2 g" in fit.warnings[0]
+    for low, high in ((0.3, 0.2), (-0.1, 0.2), (np.nan, 0.2), (0.0, np.nan)):
+        with pytest.raises(InputError, match="row 1"):
+            brackets_from_table(pd.DataFrame({"lower_g": [low], "upper_g": [high]}), motion=None)
+
+
+@pytest.mark.parametrize("step", [0.02, 0.20])
+def test_the_step_hazard_recovers_a_weibull_capacity_whatever_the_step(step):
+    theta, shape = 0.35, 3.0
+    exponent = np.random.default_rng(8).exponential(size=1200)
+    capacity = theta * (exponent / np.log(2)) ** (1 / shape)
+    tests = step_tests(np.maximum(capacity, 0.06), step)
+    fit = fit_step_hazard(shakes_of(tests[tests.lower_g > 0.05], step))
+    assert abs(np.log(fit.theta / theta)) < 3.5 * fit.se_log_theta
+    assert abs(fit.shape - shape) < 3.5 * fit.se_shape
+    assert fit.probability(fit.theta) == pytest.approx(0.5)
+    assert fit.beta == pytest.approx(np.pi / np.sqrt(6) / fit.shape)
+
+
+def test_a_step_protocol_must_rise_and_end_with_its_overturning():
+    good = pd.DataFrame(
+        {
+            "test": [1, 1, 1, 2, 2, 2],
+            "motion": list("aaabbb"),
+            "amplitude_g": [0.1, 0.2, 0.3, 0.1, 0.2, 0.4],
+            "overturned": [0, 0, 1, 0, 1, 0],
+        }
+    )
+    with pytest.raises(InputError, match="row 6"):
+        fit_step_hazard(good)
+    with pytest.raises(InputError, match="row 3"):
+        fit_step_hazard(good.iloc[:5].assign(amplitude_g=[0.1, 0.2, 0.2, 0.1, 0.2]))
+    with pytest.raises(InputError, match="0 of 2 shakes"):
+        fit_step_hazard(good.iloc[:2])
+
+
+def test_sweeps_with_survival_windows_separate_first_from_always():
+    levels = np.exp(np.arange(np.log(0.1), np.log(1.5), 0.05))
+    first = capacities(300, 9)
+    rows = []
+    for k, a in enumerate(first):
+        # one half survives again between 1.3 and 1.6 times its first overturning
+        window = (levels > 1.3 * a) & (levels < 1.6 * a) & (k % 2 == 0)
+        fell = (levels > a) & ~window
+        rows += [
+            {"motion": f"m{k}", "amplitude_g": level, "overturned": bool(over)}
+            for level, over in zip(levels, fell, strict=True)
+        ]
+    result = fit_incremental(pd.DataFrame(rows))
+    within(result.first.fit)
+    assert result.first.fit.theta < result.probability.fit.theta < result.always.fit.theta
+    assert result.share_with_windows == pytest.approx(0.5, abs=0.02)
+    widths = result.windows.query("windows == 1").window_width
+    assert widths.median() == pytest.approx(np.log(1.6 / 1.3), abs=0.03)
