@@ -21,9 +21,10 @@ BLOCK = 16
 """Samples under one entry of the tables of extremes that rest is skipped with."""
 
 # Columns of the body table, for the right pole and, POLE further on, for the left: critical angle, its
-# tangent, sine and cosine, p² dt² and the ratio e of angular velocities of an impact that ends rocking on it.
-ALPHA, TAN, SIN, COS, SWING, E_FROM = range(6)
-POLE = 6
+# tangent, sine and cosine, p² dt², the ratio e of angular velocities of an impact that ends rocking on it,
+# 1/θc and 1/(p² dt² θc²).
+ALPHA, TAN, SIN, COS, SWING, E_FROM, PER_ALPHA, PER_SWING = range(8)
+POLE = 8
 BODY = 2 * POLE
 
 
@@ -65,9 +66,8 @@ def _sine_cosine(x):
 
 
 @numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
-def _rates(psi, w, kappa, a, ramp):
-    """Taylor coefficients 1 to 5 of ψ' over a step, and sin ψ, cos ψ at its start."""
-    s0, c0 = _sine_cosine(psi)
+def _rates(s0, c0, w, kappa, a, ramp):
+    """Taylor coefficients 1 to 5 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0."""
     w1 = kappa * (s0 + a * c0)
     s1 = c0 * w
     c1 = -s0 * w
@@ -81,7 +81,7 @@ def _rates(psi, w, kappa, a, ramp):
     s4 = 0.25 * (c0 * w3 + c1 * w2 + c2 * w1 + c3 * w)
     c4 = -0.25 * (s0 * w3 + s1 * w2 + s2 * w1 + s3 * w)
     w5 = 0.2 * kappa * (s4 + a * c4 + ramp * c3)
-    return w1, w2, w3, w4, w5, s0, c0
+    return w1, w2, w3, w4, w5
 
 
 @numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
@@ -99,21 +99,45 @@ def _rate(w, w1, w2, w3, w4, w5, t):
 
 
 # Rows of the lanes, in one flat array so that the compiler sees that rows do not overlap.
-(PSI, RATE, ANGLE, KAPPA, A0, A1, BOUND, CREST, NEW_PSI, NEW_RATE, FLAG, LOW, FAST, NEAR) = (
-    LANES * row for row in range(14)
-)
-ROWS = 14
+(
+    PSI,
+    RATE,
+    ANGLE,
+    KAPPA,
+    A0,
+    A1,
+    BOUND,  # the most that A can be from here on, and √(1 + bound²)
+    CREST,
+    NEW_PSI,
+    NEW_RATE,
+    FLAG,
+    PER_ANGLE,  # 1/θc and 1/(κ θc²)
+    PER_SPEED,
+    LOW,  # extremes of the case so far: ψ/θc, ψ', distance from balance squared
+    FAST,
+    NEAR,
+) = (LANES * row for row in range(16))
+ROWS = 16
+
+QUIET, TOUCHES, CERTAIN_FALL = 0.0, 1.0, 2.0
 
 
 @kernel
 def advance(x):
-    """Advance every lane by one sample; flag those that need a closer look."""
+    """Advance every lane by one sample; flag those that need a closer look.
+
+    A fall is certain, whatever the ground does, in this case.  Let tan φ = ``BOUND``, the most that A can
+    be in the rest of the motion.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side
+    grows with ψ: a block that the constant A = tan φ cannot bring back is brought back by no smaller A.
+    With ψ' < 0 that pendulum passes its upper equilibrium ψ = -φ if ψ'²/2 ≥ κ (1 - cos(ψ + φ)) / cos φ.
+    """
     for i in range(LANES):
         psi = x[PSI + i]
         w = x[RATE + i]
         kappa = x[KAPPA + i]
         a = x[A0 + i]
-        w1, w2, w3, w4, w5, s, c = _rates(psi, w, kappa, a, x[A1 + i] - a)
+        s, c = _sine_cosine(psi)
+        w1, w2, w3, w4, w5 = _rates(s, c, w, kappa, a, x[A1 + i] - a)
         p = psi + _travel(w, w1, w2, w3, w4, w5, 1.0)
         v = _rate(w, w1, w2, w3, w4, w5, 1.0)
         x[NEW_PSI + i] = p
@@ -122,68 +146,55 @@ def advance(x):
         grazes = (w > 0.0) & (v < 0.0)
         touches = p >= x[ANGLE + i]
         lies = p <= x[ANGLE + i] - HALF_TURN
-        x[FLAG + i] = 1.0 if touches | certain | grazes | lies else 0.0
+        flag = TOUCHES if touches | grazes | lies else QUIET
+        x[FLAG + i] = CERTAIN_FALL if certain else flag
         # the turning point of a parabola lies between the samples
         turn = psi + 0.5 * w * w / min(w - v, -1e-300)
-        low = turn if (w < 0.0) & (v > 0.0) else p
+        low = (turn if (w < 0.0) & (v > 0.0) else p) * x[PER_ANGLE + i]
         x[LOW + i] = min(x[LOW + i], low)
         x[FAST + i] = max(x[FAST + i], 0.0 if touches else abs(v))
-        x[NEAR + i] = min(x[NEAR + i], kappa * p * p + v * v)
+        x[NEAR + i] = min(x[NEAR + i], low * low + v * v * x[PER_SPEED + i])
 
 
 @kernel
-def _falls(psi, w, kappa, bound):
-    """Whether the block falls whatever the ground does, as long as A stays below ``bound``.
+def _flight(gap, w, w1, w2, w3, w4, w5):
+    """Time within (0, 1] at which ψ reaches the angle of impact, ``gap`` below it; 2 if it never left it.
 
-    Let tan φ = bound.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side grows with ψ:
-    a block that the constant A = tan φ cannot bring back is brought back by no smaller A.  With ψ' < 0 that
-    pendulum passes its upper equilibrium ψ = -φ if ψ'²/2 ≥ κ (1 - cos(ψ + φ)) / cos φ, or is beyond it.
+    The angle is passed at time 1.
     """
-    if w >= 0.0:
-        return False
-    barrier = math.sqrt(1.0 + bound * bound) - math.cos(psi) + bound * math.sin(psi)
-    return 0.5 * w * w >= kappa * barrier or psi <= -math.atan(bound)
-
-
-@kernel
-def _flight(psi, w, angle, w1, w2, w3, w4, w5):
-    """Time within (0, 1] at which ψ reaches the angle of impact, given that it is beyond it at 1; else 2."""
-    gap = psi - angle
     low = 0.0
-    guess = -1.0
+    high = 1.0
     if gap >= 0.0:
         # just left this pole: look behind the root at 0
         gap = 0.0
-        if w1 > 0.0:
-            guess = -2.0 * w / w1
-        low = min(1e-3, 0.5 * guess) if guess > 0.0 else 1e-3
-        while gap + _travel(w, w1, w2, w3, w4, w5, low) >= 0.0:
+        guess = -2.0 * w / w1 if w1 > 0.0 else 0.5
+        low = min(1e-3, 0.5 * guess)
+        while _travel(w, w1, w2, w3, w4, w5, low) >= 0.0:
             low *= 0.1
             if low < 1e-13:
                 return 2.0
-    high = 1.0
-    if not low < guess < high:
+    else:
         over = gap + _travel(w, w1, w2, w3, w4, w5, 1.0)
         guess = 1.0 - over / max(1e-300, _rate(w, w1, w2, w3, w4, w5, 1.0))
     for _ in range(100):
         if not low < guess < high:
             guess = 0.5 * (low + high)
         f = gap + _travel(w, w1, w2, w3, w4, w5, guess)
+        d = _rate(w, w1, w2, w3, w4, w5, guess)
         if f < 0.0:
             low = guess
         else:
             high = guess
-        d = _rate(w, w1, w2, w3, w4, w5, guess)
         step = f / d if d != 0.0 else 0.0
         guess -= step
-        # the next step would be its square
-        if abs(step) <= 1e-8 or high - low <= 1e-15:
+        # the error after this step is of the order of its square
+        if abs(step) <= 1e-7 or high - low <= 1e-15:
             break
     return min(max(guess, 0.0), 1.0)
 
 
 @kernel
-def _graze(psi, w, angle, w1, w2, w3, w4, w5):
+def _graze(gap, w, w1, w2, w3, w4, w5):
     """Time of impact of a ψ that rises and falls again within a step; 2 if it stays clear."""
     low = 0.0
     high = 1.0
@@ -193,13 +204,13 @@ def _graze(psi, w, angle, w1, w2, w3, w4, w5):
             low = t
         else:
             high = t
-    if psi - angle + _travel(w, w1, w2, w3, w4, w5, low) < 0.0:
+    if gap + _travel(w, w1, w2, w3, w4, w5, low) < 0.0:
         return 2.0
     high = low
     low = 0.0
     while high - low > 1e-15:
         t = 0.5 * (low + high)
-        if psi - angle + _travel(w, w1, w2, w3, w4, w5, t) < 0.0:
+        if gap + _travel(w, w1, w2, w3, w4, w5, t) < 0.0:
             low = t
         else:
             high = t
@@ -229,15 +240,22 @@ def _dies_out(w, side, k, tau, end, factor, samples, b):
         return False
     flight = 2.06 * w / (kappa * loss)
     back = b[here + E_FROM] * kappa / b[there + SWING]
-    for ahead in range(32):
-        a = factor * samples[k + ahead + 1] if k + ahead + 1 <= end else 0.0
-        d = min(d, s + a * c)
-        d_there = min(d_there, s_there - a * c_there)
+    most = a
+    least = a
+    for ahead in range(1, 33):
+        # flight × (1/D + e κ/κ' 1/D') with the least D and D' so far
+        d = s + (least if c > 0.0 else most) * c
+        d_there = s_there - (most if c > 0.0 else least) * c_there
         if d <= 0.0 or d_there <= 0.0 or w * w > 0.04 * kappa * d * d:
             return False
-        # flight × (1/D + e κ/κ' 1/D')
-        if flight * (d_there + back * d) <= (ahead + 1 - tau) * d * d_there:
+        time = flight * (d_there + back * d)
+        if ahead > 1 and time <= (ahead - 1 - tau) * d * d_there:
             return True
+        if time > (32.0 - tau) * d * d_there:
+            return False
+        a = factor * samples[k + ahead] if k + ahead <= end else 0.0
+        most = max(most, a)
+        least = min(least, a)
     return False
 
 
@@ -271,22 +289,27 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
             now = first + ramp_all * tau
             if tau >= 1.0:
                 return psi, w, side
-        angle = b[_at(side) + ALPHA]
-        full = b[_at(side) + SWING]
+        j = _at(side)
+        angle = b[j + ALPHA]
+        full = b[j + SWING]
         left = 1.0 - tau
-        kappa = full * left * left
         rate = w * left
-        w1, w2, w3, w4, w5, _, _ = _rates(psi, rate, kappa, side * now, side * ramp_all * left)
+        gap = psi - angle
+        if gap >= 0.0:
+            s, c = b[j + SIN], b[j + COS]
+        else:
+            s, c = _sine_cosine(psi)
+        w1, w2, w3, w4, w5 = _rates(s, c, rate, full * left * left, side * now, side * ramp_all * left)
         p = psi + _travel(rate, w1, w2, w3, w4, w5, 1.0)
         v = _rate(rate, w1, w2, w3, w4, w5, 1.0)
         t = 2.0
         if p >= angle:
-            t = _flight(psi, rate, angle, w1, w2, w3, w4, w5)
+            t = _flight(gap, rate, w1, w2, w3, w4, w5)
             if t > 1.0:
                 # it never left the ground
                 return 0.0, 0.0, 0
         elif rate > 0.0 and v < 0.0:
-            t = _graze(psi, rate, angle, w1, w2, w3, w4, w5)
+            t = _graze(gap, rate, w1, w2, w3, w4, w5)
         if t > 1.0:
             _note(tally, p, v / left, angle, full)
             if rate < 0.0 and v > 0.0:
@@ -295,7 +318,7 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
                 _note(tally, low, 0.0, angle, full)
             return p, v / left, side
         v = max(0.0, _rate(rate, w1, w2, w3, w4, w5, t)) / left
-        if psi >= angle:
+        if gap >= 0.0:
             # the highest point of a flight that begins and ends in this step
             low = psi + _travel(rate, w1, w2, w3, w4, w5, 0.5 * t)
             _note(tally, low, v, angle, full)
@@ -303,7 +326,7 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
         tally[IMPACTS] += 1.0
         events += 1
         tau += t * left
-        w = -v * (b[_at(side) + E_FROM])
+        w = -v * b[j + E_FROM]
         side = -side
         psi = b[_at(side) + ALPHA]
         still = w > -1e-12 or events > MAX_IMPACTS_PER_SAMPLE
@@ -430,24 +453,22 @@ def lone_blocks(
             if case >= 0:
                 tally = results[case - first]
                 b = table[case // (n_scales * n_motions), (case // n_scales) % n_motions]
-                _fold(x, i, tally)
                 psi = x[PSI + i]
                 w = x[RATE + i]
                 kappa = x[KAPPA + i]
-                bound = _bound(side, factor[i], ahead_high[k], ahead_low[k])
-                if _falls(psi, w, kappa, bound):
-                    surplus = max(0.0, w * w - 2.0 * kappa * (1.0 - math.cos(psi)))
-                    if psi <= 0.0:
-                        surplus = w * w + kappa * psi * psi
-                    near = math.sqrt(surplus / kappa) / x[ANGLE + i]
+                if x[FLAG + i] == CERTAIN_FALL:
+                    # at the latest it passes balance at the speed that energy leaves it
+                    near = w * w / kappa + min(psi * abs(psi), 0.0) * -1.0
+                    if psi > 0.0:
+                        near -= 2.0 * (1.0 - math.cos(psi))
+                    near = math.sqrt(max(0.0, near)) / x[ANGLE + i]
                     tally[CLOSEST] = min(tally[CLOSEST], near)
                     done = True
                 else:
                     psi, w, side = _sample(psi, w, side, 0.0, k, end, factor[i], samples, b, tally)
                     k += 1
                     if side != 0:
-                        angle = b[_at(side) + ALPHA]
-                        done = psi <= angle - HALF_TURN
+                        done = psi <= b[_at(side) + ALPHA] - HALF_TURN
                 if done:
                     tally[OVERTURNED] = 1.0
                     tally[CERTAIN] = k - starts[i]
@@ -484,6 +505,8 @@ def lone_blocks(
                         break
                 if done or case < 0:
                     if case >= 0:
+                        if cases[i] == case:
+                            _take_over(x, i, tally)
                         busy -= 1
                         case = -1
                         cases[i] = -1
@@ -515,24 +538,28 @@ def lone_blocks(
                 x[CREST + i] = 10.0
                 x[BOUND + i] = 0.0
                 continue
-            cases[i] = case
+            if cases[i] != case:
+                cases[i] = case
+                x[LOW + i] = 1.0
+                x[FAST + i] = 0.0
+                x[NEAR + i] = math.inf
             sides[i] = side
             ends[i] = end
             moves[i] = 1
             # the commit below moves every lane on by one
             where[i] = k - 1 if not filling else k
             signed[i] = side * factor[i]
+            j = _at(side)
             x[A1 + i] = signed[i] * samples[k]
             x[NEW_PSI + i] = psi
             x[NEW_RATE + i] = w
-            x[ANGLE + i] = b[_at(side) + ALPHA]
-            x[KAPPA + i] = b[_at(side) + SWING]
+            x[ANGLE + i] = b[j + ALPHA]
+            x[KAPPA + i] = b[j + SWING]
+            x[PER_ANGLE + i] = b[j + PER_ALPHA]
+            x[PER_SPEED + i] = b[j + PER_SWING]
             bound = _bound(side, factor[i], ahead_high[k], ahead_low[k])
             x[BOUND + i] = bound
             x[CREST + i] = math.sqrt(1.0 + bound * bound)
-            x[LOW + i] = psi
-            x[FAST + i] = abs(w)
-            x[NEAR + i] = x[KAPPA + i] * psi * psi + w * w
         for i in range(LANES):
             x[PSI + i] = x[NEW_PSI + i]
             x[RATE + i] = x[NEW_RATE + i]
@@ -551,10 +578,8 @@ def _bound(side, factor, most, least):
 
 
 @kernel
-def _fold(x, i, tally):
-    """Take a lane's extremes, kept between two looks at it, over into its tally."""
-    angle = x[ANGLE + i]
-    tally[RATIO] = max(tally[RATIO], (angle - x[LOW + i]) / angle)
+def _take_over(x, i, tally):
+    """Take a lane's extremes over into the tally of its case."""
+    tally[RATIO] = max(tally[RATIO], 1.0 - x[LOW + i])
     tally[SPEED] = max(tally[SPEED], x[FAST + i])
-    near = math.sqrt(x[NEAR + i] / x[KAPPA + i]) / angle
-    tally[CLOSEST] = min(tally[CLOSEST], near)
+    tally[CLOSEST] = min(tally[CLOSEST], math.sqrt(x[NEAR + i]))

@@ -250,6 +250,7 @@ def _lone_blocks(
         table[i] = _lane_row(body, e, g)
         for pole in (0, lanes.POLE):
             table[i, :, pole + lanes.SWING] *= intervals[i] ** 2
+            table[i, :, pole + lanes.PER_SWING] /= intervals[i] ** 2
     per_g = factors / g
     outcome = np.empty((math.prod(shape), lanes.RESULTS))
 
@@ -283,5 +284,7 @@ def _lane_row(body: Block, restitution: Restitution, g: float) -> Array:
         row[at + lanes.SIN] = math.sin(alpha)
         row[at + lanes.COS] = math.cos(alpha)
         row[at + lanes.SWING] = body.frequency(pole, g) ** 2
+        row[at + lanes.PER_ALPHA] = 1 / alpha
+        row[at + lanes.PER_SWING] = 1 / (row[at + lanes.SWING] * alpha**2)
         row[at + lanes.E_FROM] = body.momentum_restitution(pole) if measured is None else measured
     return row
