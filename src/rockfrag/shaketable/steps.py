@@ -36,7 +36,7 @@ class LinearSteps:
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
         count = _count((limit_g - self.start_g) / self.step_g - phase)
-        return self.start_g + self.step_g * (phase + np.arange(count))
+        return np.asarray(self.start_g + self.step_g * (phase + np.arange(count)))
 
 
 @dataclass(frozen=True)

@@ -141,8 +141,8 @@ def read_sweep(
 
     Returns
     -------
-    Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which the sweeps first
-    appear, then by reading and repetition.
+    Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
+    the sweeps first appear, then by reading and repetition.
 
     Raises
     ------

@@ -1,0 +1,128 @@
+import math
+from pathlib import Path
+
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.shaketable.measured import read_measured
+from rockfrag.shaketable.tests_table import COLUMNS
+
+TEMPLATE = Path(__file__).resolve().parents[2] / "config" / "experiment" / "tests-template.csv"
+
+HEADER = (
+    "test,tower,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
+)
+# synthetic: round numbers that nobody measured
+ROWS = (
+    "a,T1,NP,Kobe,GF,0.40,0.42,none,statue,1,",
+    'b,T1,P,Kobe,F3,0.30,0.33,none,pedestal,1,"loud, and late"',
+    "b,T1,P,Kobe,F3,0.33,0.36,none,statue,2,",
+    "c,T1,NP,Loma Prieta,GF,0.40,,right,,1,limit of the shaker",
+)
+
+
+@pytest.fixture
+def table(tmp_path):
+    """Writer of a measured table, which returns its path."""
+
+    def write(*rows, header=HEADER):
+        path = tmp_path / "measured.csv"
+        path.write_text("\n".join(["# synthetic", header, *rows]) + "\n", encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_a_measured_table_becomes_a_table_of_tests(table):
+    tests = read_measured(table(*ROWS))
+    assert tuple(tests.columns) == COLUMNS
+    assert tests["test"].tolist() == ["a", "b", "b", "c"]
+    assert tests["amplitude_g"].tolist()[:3] == [0.40, 0.30, 0.33]
+    assert tests["motion"].tolist()[0] == "Kobe_GF"
+    assert tests["remark"].tolist()[1] == "loud, and late"
+    assert set(tests["reading"]) == {"measured"}
+    last = tests.iloc[3]
+    assert last["censored"] == "right"
+    assert math.isnan(last["upper_g"]) and math.isnan(last["amplitude_g"])
+
+
+def test_amplitudes_in_metres_per_second_squared_are_read_as_g(table):
+    header = HEADER.replace("_g", "_m_s2")
+    tests = read_measured(table("a,T1,NP,Kobe,GF,3.924,4.905,none,statue,1,", header=header))
+    assert tests.loc[0, ["lower_g", "upper_g", "amplitude_g"]].tolist() == pytest.approx(
+        [0.4, 0.5, 0.4]
+    )
+
+
+def test_the_laboratory_may_report_another_figure_and_motion(table):
+    header = HEADER + ",amplitude_g,motion"
+    tests = read_measured(
+        table("a,T1,NP,Kobe,GF,0.4,0.5,none,statue,1,,0.45,KAK090", header=header)
+    )
+    assert tests.loc[0, "amplitude_g"] == 0.45
+    assert tests.loc[0, "motion"] == "KAK090"
+
+
+def test_the_template_is_an_empty_table():
+    tests = read_measured(TEMPLATE)
+    assert len(tests) == 0
+    assert tuple(tests.columns) == COLUMNS
+    assert tests["lower_g"].dtype == "float64"
+
+
+@pytest.mark.parametrize(
+    ("row", "place"),
+    [
+        ("a,T1,NP,Kobe,GF,0.4O,0.42,none,statue,1,", r"line 3, column lower_g: .* '0.4O'"),
+        ("a,T1,NP,Kobe,GF,0.45,0.42,none,statue,1,", "line 3, column upper_g: must not be below"),
+        ("a,T1,NP,Kobe,GF,-0.1,0.42,none,statue,1,", "column lower_g: must be zero or more"),
+        ("a,T1,NP,Kobe,GF,nan,0.42,none,statue,1,", "column lower_g: must be zero or more"),
+        ("a,T1,NP,Kobe,GF,,0.42,none,statue,1,", "column lower_g: is empty"),
+        ("a,T1,NP,Kobe,GF,0.4,,none,statue,1,", "column upper_g: is empty"),
+        ("a,T1,NP,Kobe,GF,0.4,0.5,right,,1,", "column upper_g: must be empty"),
+        ("a,T1,NP,Kobe,GF,0.4,0.5,left,,1,", "column censored: must be one of none, right"),
+        ("a,T1,yes,Kobe,GF,0.4,0.5,none,statue,1,", "column pedestal: must be one of P, NP"),
+        ("a,T1,NP,Kobe,GF,0.4,0.5,none,,1,", "column overturned_body: names what overturned"),
+        ("a,T1,NP,Kobe,GF,0.4,0.5,none,pedestal,1,", "column overturned_body: is pedestal in"),
+        ("a,T1,NP,Kobe,GF,0.4,0.5,none,statue,one,", "column repetition: must be a number"),
+        ("a,T1,NP,Kobe,GF,0.4,0.5,none,statue,0,", "column repetition: must be a whole number"),
+        (",T1,NP,Kobe,GF,0.4,0.5,none,statue,1,", "column test: is empty"),
+        ("a,T1,NP,Kobe,GF,0.4,0.5,none,statue,1,a,b", "line 3: has 12 fields"),
+    ],
+)
+def test_a_wrong_field_is_named_by_line_and_column(table, row, place):
+    with pytest.raises(InputError, match=place) as refused:
+        read_measured(table(row))
+    assert str(refused.value).endswith(".")
+
+
+def test_the_same_repetition_twice_is_refused(table):
+    with pytest.raises(InputError, match=r"line 4, column test: 'a', repetition 1, is on line 3"):
+        read_measured(table(ROWS[0], ROWS[0]))
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        (HEADER.replace("event,", ""), "column 'event' is missing"),
+        (HEADER + ",colour", "column 'colour' is unknown"),
+        (HEADER + ",remark", "column 'remark' occurs twice"),
+        (HEADER.replace("upper_g", "upper_m_s2"), "either lower_g and upper_g or"),
+    ],
+)
+def test_a_wrong_header_is_refused(table, header, message):
+    with pytest.raises(InputError, match=message):
+        read_measured(table(header=header))
+
+
+def test_files_that_hold_no_table_are_refused(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        read_measured(tmp_path / "absent.csv")
+    empty = tmp_path / "empty.csv"
+    empty.write_text("# nothing\n", encoding="utf-8")
+    with pytest.raises(InputError, match="holds no table"):
+        read_measured(empty)
+    latin = tmp_path / "latin.csv"
+    latin.write_bytes("# Erschütterung\n".encode("latin-1"))
+    with pytest.raises(InputError, match="not UTF-8"):
+        read_measured(latin)
