@@ -30,10 +30,12 @@ def synthetic_tests(
             by_motion = rng.normal(0, sd_motion)
             level = level_event + rng.normal(0, 0.1)
             for tower, amplitude in TOWERS.items():
-                d = effect + by_event + by_motion + rng.normal(0, sd_pair)
+                # the scatter of d is shared evenly by the two tests of a pair
+                noise, own = rng.normal(0, sd_pair / np.sqrt(2), 2)
+                d = effect + by_event + by_motion + own
                 d += (floor_effect or {}).get(floor, 0.0)
-                ln_np = np.log(amplitude) + level + rng.normal(0, 0.1)
-                for pedestal, ln_a in (("NP", ln_np), ("P", ln_np + d)):
+                common = np.log(amplitude) + level + rng.normal(0, 0.1)
+                for pedestal, ln_a in (("NP", common - noise), ("P", common + d)):
                     rows.append(
                         {
                             "test": f"{tower}-{pedestal}-{event}-{floor}",

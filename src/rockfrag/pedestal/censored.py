@@ -2,8 +2,9 @@
 
 ln a = x β + δ [P] + u + e, with u ~ N(0, τ²) shared by the two tests of a pair and e ~ N(0, σ²) per
 test.  A test contributes the probability of its interval (lower, upper]; a censored one that of
-everything above its lower bound; an exact figure its density.  Integrating u out leaves a bivariate
-normal per pair, which is integrated exactly along one axis and by quadrature along the other.
+everything above its lower bound; an exact figure its density.  Both sides are taken to scatter
+alike.  Integrating u out leaves a bivariate normal per pair, which is integrated exactly along one
+axis and by quadrature along the other.
 """
 
 import math
@@ -105,6 +106,15 @@ def fit_censored(
         tests=len(design.lower),
         censored=int((clean["censored"] == "right").sum()),
     )
+
+
+def most_likely_effect(
+    tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNESS
+) -> float:
+    """Return δ of `fit_censored` alone, without the checks and the interval [-]."""
+    clean = check_tests(tests)
+    clean = clean.assign(slenderness=slenderness_of(clean, slenderness))
+    return float(_maximum(clean)[0].x[0])
 
 
 def _sides_agree(clean: pd.DataFrame) -> bool:
