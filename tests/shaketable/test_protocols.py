@@ -13,9 +13,11 @@ from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.sweeps import (
     always_overturning,
     first_overturning,
-    read_sweep,
     step_protocol,
     survival_windows,
+)
+from rockfrag.shaketable.sweeps import (
+    tests_from_sweep as read_sweep,
 )
 from rockfrag.shaketable.tests_table import COLUMNS
 

@@ -116,7 +116,7 @@ def step_protocol(
     return climb(amplitudes[nearest], verdict.__getitem__)
 
 
-def read_sweep(
+def tests_from_sweep(
     sweep: pd.DataFrame,
     protocol: Protocol,
     *,
