@@ -90,9 +90,10 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
         for period in periods
     )
     step = math.log(PERIOD_RATIO)
+    longest = motion.time[-1] / cycles
     refined = minimize_scalar(
         lambda log_period: -_fit(velocity, motion.dt, math.exp(log_period), cycles)[0],
-        bounds=(math.log(period) - step, math.log(period) + step),
+        bounds=(math.log(period) - step, min(math.log(period) + step, math.log(longest))),
         method="bounded",
         options={"xatol": 1e-4},
     )
@@ -132,17 +133,20 @@ def _fit(
 ) -> tuple[float, int, float, float]:
     """Best place of a pulse: explained sum of squares, middle sample, even and odd amplitude."""
     half = math.floor(cycles * period / 2 / dt)
+    if 2 * half + 1 > velocity.size:
+        return 0.0, 0, 0.0, 0.0
     phase = 2 * np.pi / period * dt * np.arange(-half, half + 1)
     envelope = (1 + np.cos(phase / cycles)) / 2
     even, odd = envelope * np.cos(phase), envelope * np.sin(phase)
-    along_even = correlate(velocity, even, mode="same", method="fft")
-    along_odd = correlate(velocity, odd, mode="same", method="fft")
+    # "valid" keeps to the places where the whole pulse lies inside the record
+    along_even = correlate(velocity, even, mode="valid", method="fft")
+    along_odd = correlate(velocity, odd, mode="valid", method="fft")
     norms = float(even @ even), float(odd @ odd)
     gain = along_even**2 / norms[0] + along_odd**2 / norms[1]
     best = int(np.argmax(gain))
     return (
         float(gain[best]),
-        best,
+        best + half,
         float(along_even[best]) / norms[0],
         float(along_odd[best]) / norms[1],
     )

@@ -26,7 +26,7 @@ LOWEST_FREQUENCY = 0.3
 """The filter frequency of the evolutionary process never falls below this [Hz] (Rezaeian & Der
 Kiureghian 2010)."""
 
-ITERATIONS = 30
+ITERATIONS = 50
 """Corrections of the Fourier amplitudes on the way to a spectrum-compatible motion."""
 
 
@@ -152,7 +152,7 @@ def spectrum_compatible(
 
     Returns
     -------
-    Motion with the metadata ``misfit_rms`` (of ln actual/target) and ``misfit_max`` over 30 periods
+    Motion with the metadata ``misfit_rms`` (of ln actual/target) and ``misfit_max`` over 60 periods
     a decade.
 
     Raises
@@ -166,7 +166,7 @@ def spectrum_compatible(
     given, wanted = _target(who, periods, target_g, dt)
     shape, spread = _envelope(who, d5_95_s, mid_s)
     decades = math.log10(given[-1] / given[0])
-    control = np.geomspace(given[0], given[-1], math.ceil(30 * decades) + 1)
+    control = np.geomspace(given[0], given[-1], math.ceil(60 * decades) + 1)
     target = np.exp(np.interp(np.log(control), np.log(given), np.log(wanted)))
 
     quiet = float(given[-1])

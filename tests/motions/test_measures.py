@@ -1,0 +1,71 @@
+"""The table of measures: a row per motion, units in the names."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag import motions as m
+from rockfrag.errors import InputError
+from rockfrag.files import write_table
+from rockfrag.records.motion import Motion
+from rockfrag.units import STANDARD_GRAVITY as G
+
+COLUMNS = [
+    *("name", "event", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),
+    *("cav_m_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
+    *("sa_0_3s_g", "sv_0_3s_cm_s", "sd_0_3s_cm", "sa_1_0s_g", "sv_1_0s_cm_s", "sd_1_0s_cm"),
+    *("housner_cm", "pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
+]
+
+
+def noise(name: str, seed: int) -> Motion:
+    samples = np.random.default_rng(seed).standard_normal(600) * np.hanning(600)
+    return Motion(samples, 0.01, name, metadata={"event": "Nowhere", "floor": "GF"})
+
+
+def test_table_has_a_row_per_motion_in_the_order_given(tmp_path):
+    table = m.measure_motions([noise("b", 1), noise("a", 2)])
+    assert list(table.columns) == COLUMNS
+    assert table["name"].tolist() == ["b", "a"]
+    assert set(table["floor"]) == {"GF"}
+    assert table.select_dtypes("number").notna().all(axis=None)
+    write_table(table, tmp_path / "measures.csv", tmp_path / "measures.parquet")
+
+
+def test_units_are_those_of_the_names():
+    motion = noise("one", 3)
+    row = m.measure_motion(motion)
+    assert row["pga_g"] * G == pytest.approx(m.pga(motion))
+    assert row["pgv_cm_s"] / 100 == pytest.approx(m.pgv(motion))
+    assert row["pgd_cm"] / 100 == pytest.approx(m.pgd(motion))
+    assert row["housner_cm"] / 100 == pytest.approx(m.housner_intensity(motion))
+    assert row["sa_0_3s_g"] * G == pytest.approx(m.spectral_acceleration(motion, 0.3))
+    assert row["sd_0_3s_cm"] / 100 == pytest.approx(m.spectral_displacement(motion, 0.3))
+    omega = 2 * math.pi / 0.3
+    assert row["sa_0_3s_g"] * G == pytest.approx(row["sd_0_3s_cm"] / 100 * omega**2)
+
+
+def test_periods_name_their_columns():
+    row = m.measure_motion(noise("one", 4), periods=(0.05, 2, 1.25), damping=0.02)
+    names = [key for key in row if key.startswith("sa_")]
+    assert names == ["sa_0_05s_g", "sa_2_0s_g", "sa_1_25s_g"]
+    assert not [key for key in m.measure_motion(noise("one", 4), periods=()) if "sa_" in key]
+
+
+def test_motion_of_zeros_has_nan_where_nothing_is_defined():
+    row = m.measure_motion(Motion(np.zeros(50), 0.01, "still"))
+    undefined = {key for key, value in row.items() if isinstance(value, float) and value != value}
+    assert undefined == {
+        *("pgv_over_pga_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
+        *("pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
+    }
+
+
+def test_motion_of_one_sample_is_measured():
+    assert m.measure_motion(Motion([1.0], 0.01, "one"))["pga_g"] == pytest.approx(1 / G)
+
+
+def test_motions_of_one_name_are_refused():
+    with pytest.raises(InputError, match="two motions are called 'a'"):
+        m.measure_motions([noise("a", 1), noise("a", 2)])

@@ -1,0 +1,127 @@
+"""Idealised pulses against their closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rockfrag import motions as m
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
+
+DT = 0.002
+
+
+def at_the_end(motion: Motion) -> tuple[float, float]:
+    velocity, displacement = m.integrate(motion.acceleration, motion.dt)
+    return float(velocity[-1]), float(displacement[-1])
+
+
+PULSES = {
+    "sine": lambda a, t: m.sine(a, t, 3, DT),
+    "one_sine": lambda a, t: m.one_sine(a, t, DT),
+    "one_cosine": lambda a, t: m.one_cosine(a, t, DT),
+    "half_sine": lambda a, t: m.half_sine(a, t, DT),
+    "rectangular": lambda a, t: m.rectangular(a, t, DT),
+    "ricker_symmetric": lambda a, t: m.ricker_symmetric(a, t, DT),
+    "ricker_antisymmetric": lambda a, t: m.ricker_antisymmetric(a, t, DT),
+    "mavroeidis_papageorgiou": lambda a, t: m.mavroeidis_papageorgiou(a, t, 2.0, 30.0, DT),
+}
+
+
+@pytest.mark.parametrize("name", list(PULSES))
+@settings(max_examples=15, deadline=None)
+@given(amplitude=st.floats(-5, 5), period=st.floats(0.1, 3.0))
+def test_every_pulse_starts_and_ends_at_zero_and_says_what_it_is(name, amplitude, period):
+    pulse = PULSES[name](amplitude, period)
+    assert pulse.acceleration[0] == pulse.acceleration[-1] == 0.0
+    assert pulse.dt <= DT * (1 + 1e-9)
+    assert pulse.name == pulse.provenance[0]["step"] == pulse.metadata["kind"] == name
+    assert pulse.metadata["synthetic"] is True
+    if name != "mavroeidis_papageorgiou":
+        assert m.pga(pulse) <= abs(amplitude) * (1 + 1e-12)
+        assert m.pga(pulse) == pytest.approx(abs(amplitude), rel=2e-3)
+
+
+def test_one_sine_is_a_forward_displacement():
+    velocity, displacement = at_the_end(m.one_sine(3.0, 0.8, DT))
+    assert velocity == pytest.approx(0.0, abs=1e-12)
+    assert displacement == pytest.approx(3.0 * 0.8**2 / (2 * math.pi), rel=1e-4)
+
+
+def test_one_cosine_goes_forward_and_back():
+    pulse = m.one_cosine(3.0, 0.8, DT)
+    assert at_the_end(pulse) == pytest.approx((0.0, 0.0), abs=1e-9)
+    assert m.pgd(pulse) == pytest.approx(2 * 3.0 * (0.8 / (2 * math.pi)) ** 2, rel=1e-3)
+
+
+@pytest.mark.parametrize("duration", [0.1, 0.3331, 1.0])
+def test_rectangle_leaves_exactly_its_impulse(duration):
+    pulse = m.rectangular(2.0, duration, 0.01)
+    assert at_the_end(pulse)[0] == pytest.approx(2.0 * duration, rel=1e-12)
+
+
+def test_half_sine_leaves_its_impulse():
+    velocity, _ = at_the_end(m.half_sine(2.0, 0.5, DT))
+    assert velocity == pytest.approx(2 * 2.0 * 0.5 / math.pi, rel=1e-4)
+
+
+@pytest.mark.parametrize("wavelet", [m.ricker_symmetric, m.ricker_antisymmetric])
+def test_ricker_wavelets_come_to_rest_and_have_their_period_in_the_spectrum(wavelet):
+    pulse = wavelet(2.0, 0.7, DT)
+    assert at_the_end(pulse) == pytest.approx((0.0, 0.0), abs=1e-8)
+    frequency, amplitude = m.fourier_amplitude(pulse, 200_000)
+    assert 1 / frequency[np.argmax(amplitude)] == pytest.approx(0.7, rel=0.01)
+
+
+def test_symmetry_of_ricker_wavelets_is_what_they_are_called_for():
+    even = m.ricker_symmetric(2.0, 0.7, DT).acceleration
+    odd = m.ricker_antisymmetric(2.0, 0.7, DT).acceleration
+    np.testing.assert_allclose(even, even[::-1], atol=1e-12)
+    np.testing.assert_allclose(odd, -odd[::-1], atol=1e-12)
+
+
+@pytest.mark.parametrize("cycles", [1.0, 1.5, 2.7])
+@pytest.mark.parametrize("phase_deg", [0.0, 45.0, 90.0, -120.0])
+def test_velocity_pulse_integrates_to_its_definition(cycles, phase_deg):
+    pulse = m.mavroeidis_papageorgiou(0.6, 1.2, cycles, phase_deg, 0.001)
+    velocity, _ = m.integrate(pulse.acceleration, pulse.dt)
+    t = pulse.time - cycles * 1.2 / 2
+    envelope = 0.6 / 2 * (1 + np.cos(2 * np.pi * t / (cycles * 1.2)))
+    expected = envelope * np.cos(2 * np.pi * t / 1.2 + math.radians(phase_deg))
+    np.testing.assert_allclose(velocity, expected, atol=0.6 * 2e-5)
+
+
+@pytest.mark.parametrize(("start", "end"), [(1.0, 16.0), (16.0, 1.0)])
+def test_sweep_passes_its_octaves_at_the_stated_rate(start, end):
+    sweep = m.sine_sweep(1.5, start, end, 8.0, 0.002)
+    assert sweep.time[-1] == pytest.approx(4 / 8 * 60)
+    # zero crossings per second in the middle of the sweep, where the frequency is the geometric mean
+    near = np.abs(sweep.time - 15.0) < 1.0
+    crossings = np.flatnonzero(np.diff(np.sign(sweep.acceleration[near])) != 0).size
+    assert crossings / 2 / 2.0 == pytest.approx(math.sqrt(start * end), rel=0.1)
+    assert m.pga(sweep) == pytest.approx(1.5, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("pulse", "message"),
+    [
+        (lambda: m.sine(1.0, 0.5, 0), "cycles must be a whole number"),
+        (lambda: m.sine(math.nan, 0.5, 1), "amplitude must be a finite number"),
+        (lambda: m.one_sine(1.0, -0.5), "period must be a positive number of seconds"),
+        (lambda: m.one_sine(1.0, 0.5, 0.0), "dt must be a positive number of seconds"),
+        (lambda: m.one_sine(1.0, 0.5, 0.6), "choose another dt"),
+        (lambda: m.one_sine(1.0, 0.5, 1e-300), "choose another dt"),
+        (lambda: m.rectangular(1.0, 0.0), "duration must be a positive number of seconds"),
+        (lambda: m.mavroeidis_papageorgiou(1.0, 1.0, 0.5), "cycles must be one or more"),
+        (lambda: m.sine_sweep(1.0, 5.0, 5.0, 1.0), "nothing is swept"),
+        (lambda: m.sine_sweep(1.0, 0.0, 5.0, 1.0), "start_hz must be a positive number"),
+        (lambda: m.sine_sweep(1.0, 1.0, 500.0, 1.0), "give a smaller dt"),
+        (lambda: m.sine_sweep(1.0, 1.0, 5.0, -1.0), "octaves_per_minute must be a positive"),
+    ],
+)
+def test_impossible_pulses_are_refused(pulse, message):
+    with pytest.raises(InputError, match=message):
+        pulse()
