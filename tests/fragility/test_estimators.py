@@ -65,9 +65,9 @@ def within(fit, sigmas=3.5):
 
 def test_clouds_recover_the_parameters():
     rng = np.random.default_rng(1)
-    im = np.exp(rng.normal(np.log(0.3), 0.7, 4000))
+    im = np.exp(rng.normal(np.log(0.3), 0.7, 1500))
     table = pd.DataFrame(
-        {"pga_g": im, "overturned": im > capacities(4000, 2), "motion": range(4000)}
+        {"pga_g": im, "overturned": im > capacities(1500, 2), "motion": range(1500)}
     )
     result = fit_cloud(table, "pga_g")
     within(result.fit)

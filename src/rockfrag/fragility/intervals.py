@@ -135,13 +135,20 @@ def verdict_fitter(
     np.add.at(total, (codes, column), outcomes.trials)
     design = np.column_stack([np.ones(values.size), values])
 
+    whole = fit_batch(
+        design, fell.sum(axis=0)[None], total.sum(axis=0)[None], link=link, penalised=True
+    )
+    start = whole.coefficients[0] if np.isfinite(whole.coefficients).all() else None
+
     def fit(weights: Floats) -> Floats:
         y, m = weights @ fell, weights @ total
         apart = separated(values, y, m)
         result = np.empty((len(weights), 2))
         for chosen, penalised in ((apart, True), (~apart, False)):
             if chosen.any():
-                batch = fit_batch(design, y[chosen], m[chosen], link=link, penalised=penalised)
+                batch = fit_batch(
+                    design, y[chosen], m[chosen], link=link, penalised=penalised, start=start
+                )
                 result[chosen] = batch.coefficients
         result[y.sum(axis=1) == 0, 0] = -np.inf
         result[y.sum(axis=1) == m.sum(axis=1), 0] = np.inf

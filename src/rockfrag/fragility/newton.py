@@ -69,6 +69,7 @@ def fit_batch(
     *,
     link: Link = "probit",
     penalised: bool = False,
+    start: Floats | None = None,
     tolerance: float = 1e-9,
     most_steps: int = 100,
 ) -> BatchFit:
@@ -86,10 +87,12 @@ def fit_batch(
         Add half the logarithm of the determinant of the information to the log-likelihood (Firth,
         1993, Biometrika 80: 27-38). The maximum is then finite under separation also (Kosmidis and
         Firth, 2021, Biometrika 108: 71-82).
+    start
+        Coefficients to start from, shape (k,), for example those of all the data.
     """
     batch, columns = failures.shape[0], design.shape[1]
     mixed = (failures.sum(axis=1) > 0) & (failures.sum(axis=1) < trials.sum(axis=1))
-    coefficients = np.zeros((batch, columns))
+    coefficients = np.zeros((batch, columns)) if start is None else np.tile(start, (batch, 1))
     coefficients[~mixed] = np.nan
     objective = np.full(batch, -np.inf)
     log_likelihood = np.zeros(batch)

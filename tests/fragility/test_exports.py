@@ -1,0 +1,152 @@
+"""Exports carry the same curve in the units and parameters that other programs read."""
+
+import json
+from xml.etree import ElementTree
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.nrml import lognormal_moments, write_nrml
+from rockfrag.fragility.simcenter import write_simcenter
+from rockfrag.fragility.sweeps import (
+    fragility_table,
+    record_set_hash,
+    scale_power,
+    with_measures,
+)
+from rockfrag.records.motion import Motion
+
+CURVES = pd.DataFrame(
+    {
+        "configuration": ["T1", "P&T1"],
+        "im": ["PGA", "PGV"],
+        "unit": ["g", "m/s"],
+        "theta": [0.5, 0.3],
+        "beta": [0.4, 0.5],
+    }
+)
+
+
+def synthetic_sweep():
+    """Two configurations under six synthetic motions of three events, at common amplitudes."""
+    rng = np.random.default_rng(1)
+    rows = []
+    for name, theta in (("T1", 0.5), ("T2", 0.3)):
+        for k in range(6):
+            capacity = theta * np.exp(0.3 * rng.normal())
+            rows += [
+                {
+                    "configuration": name,
+                    "motion": f"m{k}",
+                    "event": f"e{k // 2}",
+                    "amplitude_g": a,
+                    "overturned": a > capacity,
+                }
+                for a in np.geomspace(0.05, 2.0, 75)
+            ]
+    return pd.DataFrame(rows)
+
+
+def test_nrml_moments_are_those_of_the_lognormal_distribution():
+    expected = stats.lognorm(s=0.4, scale=0.5)
+    assert lognormal_moments(0.5, 0.4) == pytest.approx((expected.mean(), expected.std()))
+
+
+def test_nrml_gives_back_median_and_dispersion_in_its_own_units(tmp_path):
+    path = tmp_path / "model.xml"
+    write_nrml(CURVES, path)
+    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
+    root = ElementTree.parse(path).getroot()
+    assert root.find(".//n:limitStates", space).text == "overturned"
+    functions = {f.get("id"): f for f in root.findall(".//n:fragilityFunction", space)}
+    for name, imt, theta, beta in (("T1", "PGA", 0.5, 0.4), ("P&T1", "PGV", 30.0, 0.5)):
+        params = functions[name].find("n:params", space)
+        mean, deviation = float(params.get("mean")), float(params.get("stddev"))
+        found = np.sqrt(np.log1p((deviation / mean) ** 2))
+        assert functions[name].find("n:imls", space).get("imt") == imt
+        assert found == pytest.approx(beta)
+        assert mean / np.exp(found**2 / 2) == pytest.approx(theta)
+
+
+def test_nrml_refuses_what_openquake_cannot_compute(tmp_path):
+    path = tmp_path / "model.xml"
+    with pytest.raises(InputError, match="Arias intensity is no intensity measure"):
+        write_nrml(CURVES.assign(im="Arias intensity"), path)
+    with pytest.raises(InputError, match="floor F3"):
+        write_nrml(CURVES.assign(floor="F3"), path)
+    with pytest.raises(InputError, match="'T1' has no lognormal curve"):
+        write_nrml(CURVES.assign(theta=np.nan), path)
+    with pytest.raises(InputError, match="'P&T1' has two curves"):
+        write_nrml(pd.concat([CURVES, CURVES]), path)
+    assert not path.exists()
+
+
+def test_simcenter_rows_carry_theta_and_beta_and_their_story(tmp_path):
+    csv, story = tmp_path / "damage.csv", tmp_path / "damage.json"
+    write_simcenter(CURVES.assign(floor=["GF", "F3"]), csv, story)
+    table = pd.read_csv(csv)
+    assert list(table.columns) == [
+        "ID",
+        "Incomplete",
+        "Demand-Type",
+        "Demand-Unit",
+        "Demand-Offset",
+        "Demand-Directional",
+        "LS1-Family",
+        "LS1-Theta_0",
+        "LS1-Theta_1",
+        "LS1-DamageStateWeights",
+    ]
+    rows = table.set_index("ID")
+    assert rows.loc["ROCKFRAG.T1", "Demand-Type"] == "Peak Ground Acceleration"
+    assert rows.loc["ROCKFRAG.P_T1", "Demand-Type"] == "Peak Floor Velocity"
+    assert rows.loc["ROCKFRAG.P_T1", "Demand-Unit"] == "mps"
+    assert tuple(rows.loc["ROCKFRAG.T1", ["LS1-Theta_0", "LS1-Theta_1"]]) == (0.5, 0.4)
+    told = json.loads(story.read_text())
+    assert set(told) == {"_GeneralInformation", *rows.index}
+    assert told["ROCKFRAG.T1"]["LimitStates"]["LS1"]["DS1"]["Description"] == "Overturned"
+    with pytest.raises(InputError, match="no demand of this export"):
+        write_simcenter(CURVES.assign(unit="furlong"), csv, story)
+
+
+def test_the_tidy_table_has_every_reading_with_limits_over_events(tmp_path):
+    table = fragility_table(synthetic_sweep(), record_set="abc")
+    assert list(table.configuration) == ["T1"] * 3 + ["T2"] * 3
+    assert set(table.estimator) == {"mean_probability", "first_overturning", "always_overturning"}
+    assert (table.resampled == "event").all() and (table.groups == 3).all()
+    assert table.warnings.str.contains("3 events the coverage").all()
+    assert (table.theta_lower < table.theta).all() and (table.theta < table.theta_upper).all()
+    assert (table.record_set_sha256 == "abc").all()
+    first = table[table.estimator == "first_overturning"].set_index("configuration")
+    write_nrml(table[table.estimator == "first_overturning"], tmp_path / "model.xml")
+    # without survival windows first and always are the same amplitude
+    always = table[table.estimator == "always_overturning"].set_index("configuration")
+    assert first.theta.to_numpy() == pytest.approx(always.theta.to_numpy(), rel=1e-12)
+    assert first.loc["T1", "theta"] == pytest.approx(0.5, rel=0.35)
+
+
+def test_measures_of_a_scaled_motion_follow_their_power_of_the_amplitude():
+    sweep = pd.DataFrame({"motion": ["m", "m"], "amplitude_g": [0.2, 0.4], "overturned": [0, 1]})
+    measures = pd.DataFrame(
+        {"name": ["m"], "pga_g": [0.1], "pgv_cm_s": [10.0], "arias_m_s": [1.0], "d5_95_s": [8.0]}
+    )
+    rows = with_measures(sweep, measures, ["pga_g", "pgv_cm_s", "arias_m_s", "d5_95_s"])
+    assert rows.pga_g.tolist() == [0.2, 0.4]
+    assert rows.pgv_cm_s.tolist() == pytest.approx([20.0, 40.0])
+    assert rows.arias_m_s.tolist() == pytest.approx([4.0, 16.0])
+    assert rows.d5_95_s.tolist() == [8.0, 8.0]
+    assert scale_power("pgv_over_pga_s") == 0 and scale_power("sa_0_3s_g") == 1
+    with pytest.raises(InputError, match="not known how it grows"):
+        scale_power("colour")
+    with pytest.raises(InputError, match="no row for motion 'm'"):
+        with_measures(sweep, measures.assign(name="other"), ["pga_g"])
+
+
+def test_the_hash_of_a_record_set_sees_every_sample_and_no_order():
+    a, b = (Motion(np.array([0.0, 1.0, k]), 0.01, name=f"m{k}") for k in (2, 3))
+    changed = Motion(np.array([0.0, 1.0, 3.0 + 1e-12]), 0.01, name="m3")
+    assert record_set_hash([a, b]) == record_set_hash([b, a])
+    assert record_set_hash([a, changed]) != record_set_hash([a, b])

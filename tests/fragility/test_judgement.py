@@ -1,0 +1,220 @@
+"""Goodness of fit, choice of the measure, three states, surface, split of the variance."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.goodness import goodness_of_fit
+from rockfrag.fragility.lognormal import fit_lognormal
+from rockfrag.fragility.measures import area_under_curve, recommend_measure
+from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.states import fit_three_states
+from rockfrag.fragility.surface import fit_surface, linearly_separable
+from rockfrag.fragility.variance import split_variance
+
+
+def cloud(n, seed, probability):
+    rng = np.random.default_rng(seed)
+    im = np.exp(rng.normal(np.log(0.35), 0.8, n))
+    table = pd.DataFrame({"pga_g": im, "overturned": rng.random(n) < probability(im)})
+    return outcomes_from_table(table, "pga_g", motion=None)
+
+
+def lognormal(im):
+    return stats.norm.cdf(np.log(im / 0.35) / 0.4)
+
+
+def test_a_true_curve_passes_and_a_wrong_shape_fails():
+    right = cloud(800, 1, lognormal)
+    assert goodness_of_fit(right, fit_lognormal(right), replicates=200).p_value > 0.05
+    wrong = cloud(800, 1, lambda im: np.where(im > 1.0, 0.5, lognormal(im)))
+    judged = goodness_of_fit(wrong, fit_lognormal(wrong), replicates=200)
+    assert judged.p_value < 0.01
+    assert "does not describe" in judged.words
+
+
+def test_p_values_of_true_curves_are_uniform():
+    values = []
+    for seed in range(40):
+        data = cloud(150, 100 + seed, lognormal)
+        values.append(goodness_of_fit(data, fit_lognormal(data), replicates=60).p_value)
+    assert stats.kstest(values, "uniform").pvalue > 0.01
+
+
+def test_the_calibration_curve_lies_on_the_diagonal_for_a_true_curve():
+    data = cloud(5000, 2, lognormal)
+    table = goodness_of_fit(data, fit_lognormal(data), replicates=20).calibration
+    assert table.predicted.to_numpy() == pytest.approx(table.observed.to_numpy(), abs=0.06)
+    assert table.tests.sum() == 5000
+    inside = table.predicted.between(table.observed_lower, table.observed_upper)
+    assert inside.mean() >= 0.7
+
+
+def test_sweeps_are_judged_as_motions_with_one_capacity_each():
+    rng = np.random.default_rng(3)
+    levels = np.geomspace(0.1, 1.2, 20)
+    capacity = 0.35 * np.exp(0.4 * rng.normal(size=30))
+    table = pd.DataFrame(
+        [
+            {"motion": k, "pga_g": level, "overturned": level > a}
+            for k, a in enumerate(capacity)
+            for level in levels
+        ]
+    )
+    data = outcomes_from_table(table, "pga_g")
+    judged = goodness_of_fit(data, fit_lognormal(data), replicates=200)
+    assert judged.dependence == "motions"
+    assert judged.p_value > 0.05
+
+
+def test_the_area_under_the_curve_is_the_share_of_ordered_pairs():
+    table = pd.DataFrame({"pga_g": [1, 2, 3, 3, 4], "overturned": [0, 1, 0, 1, 1]})
+    data = outcomes_from_table(table, "pga_g", motion=None)
+    # pairs (overturned, survived): 2>1, 2<3, 3>1, 3=3, 4>1, 4>3
+    assert area_under_curve(data) == pytest.approx((1 + 0 + 1 + 0.5 + 1 + 1) / 6)
+
+
+def test_a_measure_that_leaves_out_duration_is_found_insufficient():
+    rng = np.random.default_rng(4)
+    n = 600
+    pga = np.exp(rng.normal(np.log(0.35), 0.7, n))
+    duration = rng.uniform(5.0, 40.0, n)
+    effective = pga * (duration / 15.0) ** 0.4
+    table = pd.DataFrame(
+        {
+            "pga_g": pga,
+            "effective_g": effective,
+            "duration_s": duration,
+            "overturned": effective > 0.35 * np.exp(0.3 * rng.normal(size=n)),
+            "motion": np.arange(n),
+        }
+    )
+    choice = recommend_measure(table, ["pga_g", "effective_g"], given=["duration_s"], replicates=50)
+    assert choice.recommended == "effective_g"
+    found = choice.table.set_index("measure")["p_duration_s"]
+    assert found["pga_g"] < 1e-3
+    assert found["effective_g"] > 0.01
+    worse = recommend_measure(table, ["pga_g"], given=["duration_s"], replicates=20)
+    assert "not sufficient" in worse.words and worse.pair is None
+
+
+def test_proportional_measures_are_equals_and_make_no_surface():
+    data = cloud(300, 5, lognormal)
+    table = pd.DataFrame({"a_g": data.im, "b_g": 2.0 * data.im, "overturned": data.overturned})
+    choice = recommend_measure(table, ["a_g", "b_g"], motion=None, replicates=20)
+    assert "do not tell it from" in choice.words
+    assert choice.pair is None
+    with pytest.raises(InputError, match="proportional"):
+        fit_surface(table, ["a_g", "b_g"])
+
+
+def test_a_surface_recovers_the_parameters_that_made_it():
+    rng = np.random.default_rng(6)
+    pga, pgv = np.exp(rng.normal(np.log(0.4), 0.6, 4000)), np.exp(rng.normal(3.0, 0.6, 4000))
+    truth = np.array([-3.0, 1.5, 1.5])
+    eta = truth[0] + truth[1] * np.log(pga) + truth[2] * np.log(pgv)
+    table = pd.DataFrame({"pga_g": pga, "pgv_cm_s": pgv, "overturned": rng.normal(size=4000) < eta})
+    fit = fit_surface(table, ["pga_g", "pgv_cm_s"])
+    errors = np.sqrt(np.diag(fit.covariance))
+    assert (np.abs(np.array(fit.coefficients) - truth) < 3.5 * errors).all()
+    expected = stats.norm.cdf(truth @ [1.0, np.log(0.5), np.log(30.0)])
+    assert fit.probability(0.5, 30.0) == pytest.approx(expected, abs=0.05)
+
+
+def test_separation_by_a_plane_is_found_although_no_single_measure_separates():
+    rng = np.random.default_rng(7)
+    x, y = rng.normal(size=(2, 60))
+    table = pd.DataFrame(
+        {"pga_g": np.exp(x), "pgv_cm_s": np.exp(y), "overturned": (x + y > 0).astype(float)}
+    )
+    design = np.column_stack([np.ones(60), x, y])
+    assert linearly_separable(design, table.overturned.to_numpy())
+    assert not linearly_separable(design, (rng.random(60) < 0.5).astype(float))
+    fit = fit_surface(table, ["pga_g", "pgv_cm_s"])
+    assert "penalised" in fit.method
+    assert np.isfinite(fit.coefficients).all() and np.abs(fit.coefficients[1]) < 50
+
+
+def test_three_states_sum_to_one_and_rocking_starts_at_the_threshold():
+    rng = np.random.default_rng(8)
+    velocity = np.exp(rng.normal(np.log(24.0), 0.5, 1200))
+    peak = velocity / 60.0 * np.exp(0.3 * rng.normal(size=1200))
+    capacity = 0.5 * np.exp(0.3 * rng.normal(size=1200))
+    table = pd.DataFrame(
+        {
+            "amplitude_g": peak,
+            "pgv_cm_s": velocity,
+            "overturned": (peak > capacity) & (peak > 0.25),
+            "motion": np.arange(1200),
+        }
+    )
+    by_peak = fit_three_states(table, 0.25)
+    states = by_peak.probabilities([0.1, 0.25, 0.251, 0.5, 2.0])
+    assert states.no_rocking.tolist() == [1.0, 1.0, 0.0, 0.0, 0.0]
+    assert states[["no_rocking", "safe_rocking", "overturned"]].sum(axis=1).to_numpy() == (
+        pytest.approx(1.0)
+    )
+    assert states.overturned.iloc[3] == pytest.approx(0.5, abs=0.05)
+    by_velocity = fit_three_states(table, 0.25, "pgv_cm_s")
+    # the peak follows the velocity with a scatter of 0.3, so P(rock) is lognormal about 15 cm/s
+    assert by_velocity.rock is not None
+    assert by_velocity.rock.fit.theta == pytest.approx(15.0, rel=0.05)
+    assert by_velocity.rock.fit.beta == pytest.approx(0.3, abs=0.04)
+    table.loc[0, ["amplitude_g", "overturned"]] = [0.2, True]
+    with pytest.raises(InputError, match=r"row 1.*below the 0.25 g"):
+        fit_three_states(table, 0.25)
+
+
+def crossed(motions, samples, seed, sd=(0.4, 0.2, 0.1)):
+    rng = np.random.default_rng(seed)
+    by_motion, by_sample = sd[0] * rng.normal(size=motions), rng.normal(size=(2, samples))
+    rows = []
+    for i in range(motions):
+        for j in range(samples):
+            log_a = np.log(0.35) + by_motion[i] + sd[1] * (0.8 * by_sample[0, j])
+            log_a += sd[1] * 0.6 * by_sample[1, j] + sd[2] * rng.normal()
+            rows.append(
+                {
+                    "motion": f"m{i}",
+                    "sample": j,
+                    "restitution": by_sample[0, j],
+                    "width": by_sample[1, j],
+                    "amplitude_g": np.exp(log_a),
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def test_the_variance_splits_into_the_parts_that_made_it():
+    split = split_variance(crossed(300, 300, 9), parameters=["restitution", "width"])
+    part = split.table.set_index("component")["standard_deviation"]
+    assert part["motion"] == pytest.approx(0.4, rel=0.12)
+    assert part["parameters"] == pytest.approx(0.2, rel=0.12)
+    assert part["motion x parameters"] == pytest.approx(0.1, rel=0.05)
+    assert part["parameters: restitution"] == pytest.approx(0.16, rel=0.12)
+    assert part["parameters: width"] == pytest.approx(0.12, rel=0.12)
+    assert part["fit"] == pytest.approx(part["motion"] / np.sqrt(300), rel=0.02)
+    shares = split.table.set_index("component")["share"]
+    assert shares[["motion", "parameters", "motion x parameters"]].sum() == pytest.approx(1.0)
+
+
+def test_variance_components_are_unbiased_in_small_ensembles():
+    splits = [split_variance(crossed(6, 5, 100 + k)).table for k in range(120)]
+    mean = pd.concat(splits).groupby("component")["variance"].mean()
+    assert mean["motion"] == pytest.approx(0.16, rel=0.15)
+    assert mean["parameters"] == pytest.approx(0.04, rel=0.15)
+    assert mean["motion x parameters"] == pytest.approx(0.01, rel=0.1)
+
+
+def test_a_component_that_is_nothing_but_chance_is_zero_and_said():
+    table = crossed(8, 8, 10, sd=(0.4, 0.0, 0.3))
+    notes = [split_variance(crossed(8, 8, k, sd=(0.4, 0.0, 0.3))).warnings for k in range(10)]
+    assert any("parameters was estimated as -" in " ".join(note) for note in notes)
+    with pytest.raises(InputError, match="every motion needs every sample"):
+        split_variance(table.iloc[1:])
+    with pytest.raises(InputError, match=r"row 65.*twice"):
+        split_variance(pd.concat([table, table.iloc[:1]]))
+    with pytest.raises(InputError, match="never varies"):
+        split_variance(table.assign(mass=1.0), parameters=["mass"])
