@@ -25,20 +25,10 @@ PRINTED_TABLES = ("table_3_1.csv", "table_3_3.csv", "table_4_1.csv")
 
 @dataclass(frozen=True)
 class FragilitySettings:
-    """How fragility is estimated: measures, bootstrap samples over motions, level of intervals."""
+    """How fragility is estimated: in which measures, and at which level the intervals are."""
 
     measures: tuple[str, ...]
-    bootstrap: int
     confidence: float
-
-
-@dataclass(frozen=True)
-class PedestalSettings:
-    """How the pedestal's effect is estimated; a change within ±``equivalence_percent`` is none."""
-
-    bootstrap: int
-    confidence: float
-    equivalence_percent: float
 
 
 @dataclass(frozen=True)
@@ -65,8 +55,8 @@ class Study:
         Peaks of the input motion.
     protocol_step_percent
         By how much the laboratory raises the amplitude from one run to the next [%].
-    fragility, pedestal
-        Settings of the statistics.
+    fragility
+        Settings of the fragility curves.
     printed
         Folder of printed tables to compare with, or None.
     """
@@ -86,7 +76,6 @@ class Study:
     amplitudes: Amplitudes
     protocol_step_percent: float
     fragility: FragilitySettings
-    pedestal: PedestalSettings
     printed: Path | None
 
     def configuration(self, slug: str) -> Configuration:
@@ -150,10 +139,8 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         protocol_step_percent=float(content["protocol"]["step_percent"]),
         fragility=FragilitySettings(
             measures=tuple(content["fragility"]["measures"]),
-            bootstrap=content["fragility"]["bootstrap"],
             confidence=content["fragility"]["confidence"],
         ),
-        pedestal=PedestalSettings(**content["pedestal"]),
         printed=_printed(source, content.get("printed")),
     )
 

@@ -1,0 +1,41 @@
+# What all rules share: the study, its folder, and the fingerprint of the source that computes a stage.
+import json
+import os
+import sys
+
+from rockfrag.errors import InputError
+from rockfrag.studies import study_from
+from rockfrag.studies.digest import source_digest
+from rockfrag.studies.pedestal import PEDESTAL_TABLES
+
+STUDY_FILE = os.path.relpath(workflow.configfiles[-1])
+
+try:
+    STUDY = study_from(config, STUDY_FILE)
+except InputError as error:
+    # nothing has run yet: one sentence, no traceback, exit status 1
+    sys.exit(str(error))
+
+RESULTS = f"results/{STUDY.name}"
+RECORDS = "resources/records"
+CONFIGURATIONS = [one.slug for one in STUDY.configurations]
+
+
+wildcard_constraints:
+    source="[a-z0-9-]+",
+    configuration="|".join(map(re.escape, CONFIGURATIONS)),
+
+
+def tables(*names):
+    """Both forms of result tables: CSV for people, Parquet for programs."""
+    return [f"{RESULTS}/{name}.{ending}" for name in names for ending in ("csv", "parquet")]
+
+
+def figures(*names):
+    """Both forms of figures."""
+    return [f"{RESULTS}/figures/{name}.{ending}" for name in names for ending in ("svg", "png")]
+
+
+def settings(*keys):
+    """Parts of the configuration that a rule depends on, as a parameter that triggers a rerun."""
+    return json.dumps({key: config.get(key) for key in keys}, sort_keys=True)

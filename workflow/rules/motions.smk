@@ -1,0 +1,51 @@
+# Motions: records processed, felt by the floors of a building, and measured.
+
+
+rule process_records:
+    input:
+        f"{RESULTS}/motions/records.parquet",
+    output:
+        f"{RESULTS}/motions/ground.parquet",
+    log:
+        f"{RESULTS}/logs/process_records.log",
+    params:
+        study=STUDY_FILE,
+        settings=settings("motions"),
+        code=source_digest("motions"),
+    conda:
+        "../envs/rockfrag.yaml"
+    script:
+        "../scripts/process_records.py"
+
+
+rule shake_building:
+    input:
+        motions=f"{RESULTS}/motions/ground.parquet",
+        building=[] if STUDY.building is None else str(STUDY.building),
+    output:
+        f"{RESULTS}/motions/floors.parquet",
+    log:
+        f"{RESULTS}/logs/shake_building.log",
+    params:
+        study=STUDY_FILE,
+        settings=settings("building"),
+        code=source_digest("building"),
+    conda:
+        "../envs/rockfrag.yaml"
+    script:
+        "../scripts/shake_building.py"
+
+
+rule measure_motions:
+    input:
+        f"{RESULTS}/motions/floors.parquet",
+    output:
+        tables("measures"),
+    log:
+        f"{RESULTS}/logs/measure_motions.log",
+    params:
+        code=source_digest("motions"),
+    conda:
+        "../envs/rockfrag.yaml"
+    script:
+        "../scripts/measure_motions.py"

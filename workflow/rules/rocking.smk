@@ -1,0 +1,38 @@
+# Rocking: every configuration under every motion at every amplitude, then read as a laboratory would.
+
+
+rule sweep_amplitudes:
+    input:
+        motions=f"{RESULTS}/motions/floors.parquet",
+        specimens=str(STUDY.specimens_file),
+        configurations=str(STUDY.configurations_file),
+    output:
+        tables("sweep/{configuration}"),
+    log:
+        f"{RESULTS}/logs/sweep_{{configuration}}.log",
+    params:
+        study=STUDY_FILE,
+        settings=settings("bodies", "amplitudes"),
+        code=source_digest("rocking"),
+    conda:
+        "../envs/rockfrag.yaml"
+    threads: 1
+    script:
+        "../scripts/sweep_amplitudes.py"
+
+
+rule apply_protocol:
+    input:
+        expand(f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS),
+    output:
+        tables("tests"),
+    log:
+        f"{RESULTS}/logs/apply_protocol.log",
+    params:
+        study=STUDY_FILE,
+        settings=settings("amplitudes", "protocol"),
+        code=source_digest("shaketable"),
+    conda:
+        "../envs/rockfrag.yaml"
+    script:
+        "../scripts/apply_protocol.py"

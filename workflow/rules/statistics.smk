@@ -1,0 +1,37 @@
+# Statistics: fragility curves, the pedestal's effect, and the thesis's statements.
+
+
+rule fit_fragility:
+    input:
+        sweeps=expand(f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS),
+        measures=f"{RESULTS}/measures.parquet",
+        motions=f"{RESULTS}/motions/floors.parquet",
+    output:
+        tables("fragility", "survival_windows"),
+    log:
+        f"{RESULTS}/logs/fit_fragility.log",
+    params:
+        study=STUDY_FILE,
+        settings=settings("fragility"),
+        code=source_digest("fragility"),
+    conda:
+        "../envs/rockfrag.yaml"
+    script:
+        "../scripts/fit_fragility.py"
+
+
+rule estimate_pedestal:
+    input:
+        f"{RESULTS}/tests.parquet",
+    output:
+        tables(*[f"pedestal/{name}" for name in PEDESTAL_TABLES]),
+    log:
+        f"{RESULTS}/logs/estimate_pedestal.log",
+    params:
+        study=STUDY_FILE,
+        settings=settings("bodies", "seed"),
+        code=source_digest("pedestal"),
+    conda:
+        "../envs/rockfrag.yaml"
+    script:
+        "../scripts/estimate_pedestal.py"

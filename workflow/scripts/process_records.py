@@ -1,0 +1,13 @@
+"""Take every record through the study's processing steps."""
+
+from rockfrag.motions import process
+from rockfrag.records.motion import read_motion_set, write_motion_set
+from rockfrag.studies import study_from
+from rockfrag.studies.log import logged
+
+with logged(snakemake.log[0], "process") as log:
+    study = study_from(snakemake.config, snakemake.params.study)
+    motions = [process(one, study.processing) for one in read_motion_set(snakemake.input[0])]
+    write_motion_set(motions, snakemake.output[0])
+    steps = ", ".join(step["step"] for step in study.processing) or "none, as stored"
+    log.info("%d records, steps: %s", len(motions), steps)
