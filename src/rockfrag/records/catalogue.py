@@ -69,8 +69,8 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
         _check_row(row, f"{path}, row {number}")
     twice = table["name"][table["name"].duplicated()]
     if not twice.empty:
-        row = int(twice.index[0]) + 2
-        raise InputError(f"{path}, row {row}, column 'name': {twice.iloc[0]!r} is there twice.")
+        first = int(twice.index[0]) + 2
+        raise InputError(f"{path}, row {first}, column 'name': {twice.iloc[0]!r} is there twice.")
     for column in _NUMBERS:
         table[column] = pd.to_numeric(table[column].replace("", None)).astype(float)
     return table

@@ -194,7 +194,7 @@ def _channel(section: Section, samples: NDArray[np.float64], unit: str, header: 
         found = re.search(r"Code\s*:\s*(\w+)-(\w+)\s*(.*)$", line)
         if found:
             network, station, name = found[1], found[2], found[3].strip()
-        found = re.search(r"Sta\s+Cha\w*\s*:\s*\d+\s*:\s*(.*?)\s*(?:\(|Location|$)", line)
+        found = re.search(r"Sta\s+Cha\w*\s*:?\s*\d+\s*:\s*(.*?)\s*(?:\(|Location|$)", line)
         if found:
             component = re.sub(r"\s*deg\w*$", "", found[1], flags=re.IGNORECASE)
     azimuth = header.azimuth

@@ -64,7 +64,7 @@ class Motion:
     @property
     def time(self) -> NDArray[np.float64]:
         """Time of each sample [s], shape (n,), from zero."""
-        return np.arange(self.acceleration.size) * self.dt
+        return np.arange(self.acceleration.size, dtype=np.float64) * self.dt
 
     @property
     def pga(self) -> float:
@@ -113,11 +113,11 @@ def read_motion_set(path: str | os.PathLike[str]) -> list[Motion]:
     table = pd.read_parquet(path)
     return [
         Motion(
-            acceleration=np.asarray(row.acceleration_m_s2, dtype=np.float64),
-            dt=row.dt_s,
-            name=row.name,
-            metadata=json.loads(row.metadata),
-            provenance=tuple(json.loads(row.provenance)),
+            acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),
+            dt=row["dt_s"],
+            name=row["name"],
+            metadata=json.loads(row["metadata"]),
+            provenance=tuple(json.loads(row["provenance"])),
         )
-        for row in table.itertuples(index=False)
+        for row in table.to_dict("records")
     ]

@@ -106,9 +106,9 @@ def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float
         longest = max((len(line) for line in lines), default=0)
         shift = longest % _FIELD
         try:
-            values = parse_columns([line[shift:] for line in lines if line.strip()], _FIELD)
-        except NumberError:
-            values = text.numbers(start, stop)
+            values = parse_columns([line[shift:] for line in lines], _FIELD)
+        except NumberError as error:
+            text.fail(str(error), start + error.line)
     if values.size != count:
         text.fail(
             f"the header promises {count // 2} points but {values.size / 2:g} follow; "

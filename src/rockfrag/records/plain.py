@@ -93,7 +93,7 @@ def _layout(lines: list[str]) -> _Layout | None:
             if not _COMMENT.match(line):
                 words.append(line.strip())
             continue
-        if len(words) > _MAX_WORDS and titles != _titles(words[-1], []):
+        if len(words) > _MAX_WORDS and not _titles(words[-1], []):
             return None
         name = words[0] if words else ""
         counted = _COUNT_AND_STEP.match(line)
@@ -108,7 +108,9 @@ def _layout(lines: list[str]) -> _Layout | None:
 def _is_count_line(match: re.Match[str], below: str) -> bool:
     """Tell ``npts dt`` from the first row of two columns: the next row is no time 0 + dt."""
     npts, dt = int(match["npts"]), _number(match["dt"])
-    return npts >= 2 and 0 < dt <= 1 and (_width(below) != 2 or _first_number(below) < npts)
+    if npts < 2 or not 0 < dt <= 1 or not _ROW.match(below):
+        return False
+    return _width(below) != 2 or _first_number(below) < npts
 
 
 def _titles(line: str, before: list[str]) -> list[str]:

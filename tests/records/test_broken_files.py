@@ -1,0 +1,244 @@
+"""A damaged file gives one clear error that names it, within bounded time and memory."""
+
+import os
+import re
+import time
+import tracemalloc
+
+import numpy as np
+import obspy
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from rockfrag.errors import InputError
+from rockfrag.records.formats import FORMATS, identify
+from rockfrag.records.reading import read_motion, read_record
+
+QUICK = settings(
+    max_examples=6,
+    deadline=None,
+    database=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+LONG = settings(QUICK, max_examples=150)
+
+
+def read_all(path):
+    """Read every channel, in any unit."""
+    record = read_record(path)
+    return [channel.samples() for channel in record.channels]
+
+
+def outcome(path):
+    """Samples of a file, or None where reading gave the one clear error."""
+    for candidate in FORMATS:
+        assert candidate.is_format(str(path)) in (True, False)
+    try:
+        samples = read_all(path)
+    except InputError as error:
+        message = str(error)
+        assert path.name in message
+        assert message.endswith(".")
+        assert "\n" not in message
+        assert len(message) < 600
+        return None
+    for values in samples:
+        assert np.isfinite(values).all()
+    return samples
+
+
+def check_truncated(built, folder, data):
+    content = built.path.read_bytes().rstrip(b"\x1a")
+    size = data.draw(st.integers(0, len(content) - 1))
+    path = folder / built.path.name
+    path.write_bytes(content[:size])
+    samples = outcome(path)
+    if samples is None:
+        return
+    # what is left is shorter by whole samples or channels, or lost digits of the very last one
+    whole = read_all(built.path)
+    for left, right in zip(samples, whole, strict=False):
+        common = min(left.size, right.size) - 1
+        np.testing.assert_array_equal(left[:common], right[:common])
+
+
+def check_flipped(built, folder, data):
+    content = bytearray(built.path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    path = folder / built.path.name
+    path.write_bytes(bytes(content))
+    outcome(path)
+
+
+@QUICK
+@given(data=st.data())
+def test_a_truncated_file_gives_an_error_or_all_whole_samples(built, tmp_path, data):
+    check_truncated(built, tmp_path, data)
+
+
+@QUICK
+@given(data=st.data())
+def test_flipped_bytes_give_an_error_or_finite_samples(built, tmp_path, data):
+    check_flipped(built, tmp_path, data)
+
+
+@pytest.mark.slow
+@LONG
+@given(data=st.data())
+def test_many_damaged_files(built, tmp_path, data):
+    check_truncated(built, tmp_path, data)
+    check_flipped(built, tmp_path, data)
+
+
+@QUICK
+@given(text=st.text(max_size=300), blob=st.binary(max_size=300))
+def test_no_plugin_raises_on_anything(tmp_path, text, blob):
+    path = tmp_path / "anything"
+    for content in (text.encode("utf-8", errors="surrogatepass"), blob):
+        path.write_bytes(content)
+        for candidate in FORMATS:
+            assert candidate.is_format(str(path)) in (True, False)
+        with pytest.raises(InputError) if identify(path) is None else _either():
+            read_motion(path, unit="g", channel="1")
+
+
+class _either:
+    """A context in which an InputError may or may not come."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, value, trace):
+        return kind is not None and issubclass(kind, InputError)
+
+
+def lines_of(built):
+    return built.path.read_bytes().rstrip(b"\x1a").splitlines(keepends=True)
+
+
+def last_number_line(built):
+    """Number (from zero) of the last line that is a row of samples."""
+    lines = lines_of(built)
+    return max(
+        i for i, line in enumerate(lines) if re.fullmatch(rb"[-+\d.eE\s,;]*\d[-+\d.eE\s,;]*", line)
+    )
+
+
+@pytest.mark.parametrize("bad", [b"1e400", b"nan", b"0x1p3", b"1_0", b"*****", b"1.2.3"])
+def test_a_value_that_is_no_finite_number_is_named_with_its_line(built, tmp_path, bad):
+    lines = lines_of(built)
+    number = last_number_line(built)
+    lines[number] = b" " + bad + b"\n"
+    path = tmp_path / built.path.name
+    path.write_bytes(b"".join(lines))
+    with pytest.raises(InputError, match=rf"line {number + 1}\b") as caught:
+        read_motion(path, unit=None if built.unit else "g", channel="1")
+    assert path.name in str(caught.value)
+
+
+def test_text_that_is_not_utf8_is_named_with_its_line(built, tmp_path):
+    lines = lines_of(built)
+    number = last_number_line(built)
+    lines[number] = b" \xff\xfe" + lines[number]
+    path = tmp_path / built.path.name
+    path.write_bytes(b"".join(lines))
+    with pytest.raises(InputError, match=rf"line {number + 1}\b"):
+        read_motion(path, unit=None if built.unit else "g", channel="1")
+
+
+def test_a_header_that_is_not_utf8_is_refused(builders, tmp_path):
+    path = builders["esm"](tmp_path).path
+    path.write_bytes(path.read_bytes().replace("Ελλάς".encode(), b"Forl\xec"))
+    with pytest.raises(InputError, match=r"line 9: byte 0xec is not UTF-8"):
+        read_motion(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        ("at2_peer", b"NPTS=  %d"),
+        ("cosmos_v1", b"   %d  acceleration pts"),
+        ("csmip_v2", b" %d POINTS OF ACCEL DATA"),
+        ("csmip_v1_pairs", b"NO. OF POINTS =  %d"),
+        ("smc", b"%10d"),
+        ("esm", b"NDATA: %d"),
+        ("plain_one_column", b"%d 0.0100"),
+        ("renadic", b"NO. OF POINTS =  %d"),
+    ],
+)
+@pytest.mark.parametrize("wrong", [42, 44, 0, 10**9])
+def test_a_wrong_count_in_the_header_is_refused(builders, tmp_path, name, count, wrong):
+    path = builders[name](tmp_path).path
+    content = path.read_bytes()
+    assert count % 43 in content
+    path.write_bytes(content.replace(count % 43, count % wrong))
+    with pytest.raises(InputError, match=path.name):
+        read_motion(path, unit="g" if "plain" in name else None, channel="1")
+
+
+def test_empty_folder_and_dangling_link_say_what_they_are(tmp_path):
+    empty = tmp_path / "empty.AT2"
+    empty.touch()
+    link = tmp_path / "link.AT2"
+    link.symlink_to(tmp_path / "nothing")
+    for path, words in ((empty, "empty"), (tmp_path, "folder"), (link, "leads to nothing")):
+        with pytest.raises(InputError, match=words):
+            read_motion(path)
+        assert identify(path) is None
+    with pytest.raises(InputError, match="no such file"):
+        read_motion(tmp_path / "absent.AT2")
+
+
+@pytest.mark.parametrize(
+    "header", ["", "PEER\nA, B, 090\nIN UNITS OF G\nNPTS= 3, DT= .01 SEC\n", "0 0\n1 1\n2 2\n"]
+)
+def test_an_endless_line_of_digits_is_not_slurped(tmp_path, header):
+    """64 MiB of digits stand for more: the file is read in blocks and given up in the first."""
+    path = tmp_path / "digits.txt"
+    with path.open("wb") as file:
+        file.write(header.encode())
+        for _ in range(64):
+            file.write(b"1" * 2**20)
+    tracemalloc.start()
+    start = time.perf_counter()
+    with pytest.raises(InputError, match=r"digits\.txt, line \d+: the line is longer"):
+        read_motion(path, unit="g")
+    for candidate in FORMATS:
+        candidate.is_format(str(path))
+    assert time.perf_counter() - start < 2.0
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 16 * 2**20
+
+
+def test_a_file_too_large_for_a_record_is_refused_unread(tmp_path):
+    path = tmp_path / "huge.AT2"
+    with path.open("wb") as file:
+        file.write(b"PEER\nA, B, 090\nIN UNITS OF G\nNPTS= 3, DT= .01 SEC\n")
+        file.truncate(10**9)
+    with pytest.raises(InputError, match="too many for a record"):
+        read_motion(path)
+    with pytest.raises(InputError, match="too many for a record"):
+        obspy.read(path, format="AT2")
+
+
+def test_a_broken_file_gives_the_clear_error_through_obspy_too(built, tmp_path):
+    lines = lines_of(built)
+    number = last_number_line(built)
+    lines[number] = b" 1e400\n"
+    path = tmp_path / built.path.name
+    path.write_bytes(b"".join(lines))
+    with pytest.raises(InputError, match=rf"line {number + 1}\b"):
+        obspy.read(path, format=built.format)
+
+
+def test_a_file_without_permission_gives_the_error(tmp_path, builders):
+    path = builders["at2_peer"](tmp_path).path
+    path.chmod(0)
+    if os.access(path, os.R_OK):
+        pytest.skip("this user may read everything")
+    with pytest.raises(InputError, match=path.name):
+        read_motion(path)

@@ -1,0 +1,149 @@
+"""Every dialect of every format gives the samples, the interval and the facts that it was built from."""
+
+import gzip
+import io
+
+import numpy as np
+import obspy
+import pytest
+from obspy import UTCDateTime
+from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
+
+from rockfrag.errors import InputError
+from rockfrag.records.formats import FORMATS
+from rockfrag.records.quantities import TO_SI
+from rockfrag.records.reading import read_motion, read_record
+
+
+def claims(source):
+    """Names of all ObsPy plugins, its own included, that claim a file."""
+    found = []
+    for name, entry in ENTRY_POINTS["waveform"].items():
+        group = f"obspy.plugin.waveform.{entry.name}"
+        is_format = buffered_load_entry_point(entry.dist.name, group, "isFormat")
+        if is_format(source):
+            found.append(name)
+    return found
+
+
+def test_each_format_is_a_plugin():
+    assert {candidate.name for candidate in FORMATS} <= set(ENTRY_POINTS["waveform"])
+
+
+def test_exactly_one_plugin_claims_a_file(built):
+    assert claims(str(built.path)) == [built.format]
+
+
+def test_samples_interval_and_facts_are_read(built):
+    stream = obspy.read(built.path)
+    assert len(stream) == len(built.samples)
+    for trace, samples, component in zip(stream, built.samples, built.components, strict=True):
+        assert trace.stats._format == built.format
+        assert trace.stats.station == built.station
+        assert trace.stats.delta == pytest.approx(built.dt, rel=1e-14)
+        assert trace.stats.rockfrag.unit == built.unit
+        assert trace.stats.rockfrag.component == component
+        np.testing.assert_allclose(trace.data, samples, rtol=0, atol=built.tolerance)
+        if built.start_time is None:
+            assert not trace.stats.rockfrag.start_time_stated
+        else:
+            assert trace.stats.starttime == UTCDateTime(built.start_time)
+
+
+def test_a_file_object_gives_the_same(built):
+    content = built.path.read_bytes()
+    stream = obspy.read(io.BytesIO(content))
+    for trace, expected in zip(stream, obspy.read(built.path), strict=True):
+        np.testing.assert_array_equal(trace.data, expected.data)
+
+
+def test_a_compressed_file_gives_the_same(built, tmp_path):
+    packed = tmp_path / f"{built.path.name}.gz"
+    packed.write_bytes(gzip.compress(built.path.read_bytes()))
+    expected = obspy.read(built.path)
+    assert [t.stats.npts for t in obspy.read(packed)] == [t.stats.npts for t in expected]
+    unit = None if built.unit else "g"
+    motion = read_motion(packed, unit=unit, channel="1")
+    np.testing.assert_array_equal(
+        motion.acceleration, read_motion(built.path, unit=unit, channel="1").acceleration
+    )
+
+
+def test_the_head_alone_has_the_same_facts_and_no_samples(built):
+    for head, whole in zip(
+        obspy.read(built.path, headonly=True), obspy.read(built.path), strict=True
+    ):
+        assert head.data.size == 0
+        assert head.stats.npts == whole.stats.npts
+        assert head.stats.delta == whole.stats.delta
+        assert head.stats.starttime == whole.stats.starttime
+
+
+def test_a_window_of_time_is_cut_out(built):
+    whole = obspy.read(built.path)[0]
+    start, end = whole.stats.starttime + 5 * built.dt, whole.stats.starttime + 9 * built.dt
+    cut = obspy.read(built.path, starttime=start, endtime=end)[0]
+    np.testing.assert_array_equal(cut.data, whole.data[5:10])
+
+
+def test_motions_are_in_metres_per_second_squared(built):
+    unit = None if built.unit else "cm/s2"
+    for number, samples in enumerate(built.samples, start=1):
+        motion = read_motion(built.path, unit=unit, channel=str(number))
+        factor = TO_SI[built.unit or "cm/s2"]
+        np.testing.assert_allclose(
+            motion.acceleration, samples * factor, rtol=0, atol=built.tolerance * factor + 1e-15
+        )
+        assert motion.dt == built.dt
+        assert motion.metadata["format"] == built.format
+        assert motion.metadata["start_time"] == built.start_time
+        assert motion.provenance[0]["sha256"] == read_record(built.path).sha256
+
+
+@pytest.mark.parametrize(
+    ("kind", "unit"), [("VELOCITY", "cm/s"), ("DISPLACEMENT", "cm"), ("ACCELERATION", "cm/s")]
+)
+def test_an_esm_file_of_another_quantity_is_refused(tmp_path, texts, kind, unit):
+    path = tmp_path / "velocity.ASC"
+    path.write_text(texts["esm"](np.ones(43), kind, unit, "20190728_160905.700"))
+    with pytest.raises(InputError, match="not acceleration"):
+        obspy.read(path)
+
+
+@pytest.mark.parametrize("kind", ["3 VELOCITY", "4 DISPLACEMENT", "5 RESPONSE SPECTRA"])
+def test_an_smc_file_of_another_quantity_is_refused(tmp_path, texts, kind):
+    path = tmp_path / "other.smc"
+    path.write_text(texts["smc"](np.ones(43), 0, False, kind))
+    with pytest.raises(InputError, match="not acceleration"):
+        read_motion(path)
+
+
+@pytest.mark.parametrize(
+    ("words", "unit"), [("VELOCITY TIME HISTORY", "CM/S"), ("DISPLACEMENT TIME HISTORY", "CM")]
+)
+def test_a_peer_file_of_another_quantity_is_refused(builders, tmp_path, words, unit):
+    path = builders["at2_peer"](tmp_path).path
+    text = path.read_text().replace(
+        "ACCELERATION TIME HISTORY IN UNITS OF G", f"{words} IN UNITS OF {unit}"
+    )
+    path.write_text(text)
+    with pytest.raises(InputError, match="not acceleration"):
+        obspy.read(path)
+
+
+def test_a_cosmos_file_of_velocity_or_counts_is_refused(tmp_path, texts):
+    path = tmp_path / "velocity.V2c"
+    numbers = "".join(f"{value:15.6E}\n" for value in range(43))
+    header = texts["cosmos_header"](90, 10.0, 0)
+    path.write_text(
+        header + " 43 velocity pts, approx 1 secs, units=cm/sec(05),Format=(1E15.6)\n" + numbers
+    )
+    with pytest.raises(InputError, match="velocity, not acceleration"):
+        obspy.read(path)
+    path.write_text(
+        header
+        + " 43 acceleration pts, approx 1 secs, units=counts (50),Format=(1E15.6)\n"
+        + numbers
+    )
+    with pytest.raises(InputError, match="raw counts"):
+        obspy.read(path)
