@@ -69,3 +69,26 @@ def test_motion_of_one_sample_is_measured():
 def test_motions_of_one_name_are_refused():
     with pytest.raises(InputError, match="two motions are called 'a'"):
         m.measure_motions([noise("a", 1), noise("a", 2)])
+
+
+def test_pair_has_the_measures_of_its_rotation():
+    first, second = noise("first", 6), noise("second", 7)
+    row = m.measure_pair(first, second, periods=(0.5,))
+    assert list(row) == [
+        f"rotd{p}_{name}" for name in ("pga_g", "pgv_cm_s", "sa_0_5s_g") for p in (50, 100)
+    ]
+    assert row["rotd50_pga_g"] * G == pytest.approx(m.rotd50(first, second, m.pga))
+    assert row["rotd100_pgv_cm_s"] / 100 == pytest.approx(m.rotd100(first, second, m.pgv))
+    sa = m.rotd100(first, second, lambda motion: m.spectral_acceleration(motion, 0.5))
+    assert row["rotd100_sa_0_5s_g"] * G == pytest.approx(sa)
+
+
+def test_rocking_table_has_a_row_per_motion_and_block():
+    motions = [noise("a", 8), noise("b", 9)]
+    blocks = {"T1": (0.32, 6.0), "T3": (0.20, 5.0)}
+    table = m.measure_rocking(motions, blocks)
+    assert table["name"].tolist() == ["a", "a", "b", "b"]
+    assert table["block"].tolist() == ["T1", "T3", "T1", "T3"]
+    last = m.rocking_measures(motions[1], *blocks["T3"])
+    assert table.iloc[3][list(last)].to_dict() == pytest.approx(last)
+    assert m.measure_rocking([], blocks).empty

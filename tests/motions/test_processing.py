@@ -98,6 +98,8 @@ def test_unknown_steps_and_parameters_are_refused_with_what_is_known(steps, mess
         ({"step": "highpass", "corner_hz": 1, "order": 0}, "whole number from 1 to 10"),
         ({"step": "highpass", "corner_hz": 1, "order": 2.5}, "whole number from 1 to 10"),
         ({"step": "lowpass", "corner_hz": 50.0}, "Nyquist frequency 50 Hz"),
+        ({"step": "lowpass", "corner_hz": 49.9999999}, "Nyquist frequency 50 Hz"),
+        ({"step": "lowpass", "corner_hz": 10**400}, "finite number of hertz"),
         ({"step": "bandpass", "low_hz": 5, "high_hz": 5}, "empty"),
         ({"step": "bandpass", "low_hz": 5, "high_hz": 1}, "empty"),
         ({"step": "bandpass", "low_hz": 5, "high_hz": 60}, "Nyquist"),
@@ -329,3 +331,11 @@ def test_scaling_reaches_its_target():
     assert m.spectral_acceleration(scaled, 0.8, 0.02) == pytest.approx(0.5 * G)
     factor = scaled.provenance[-1]["factor"]
     np.testing.assert_allclose(scaled.acceleration, factor * motion.acceleration)
+
+
+def test_start_time_moves_with_the_first_sample():
+    motion = Motion(np.ones(1001), 0.01, metadata={"start_time": "2016-11-13T11:03:00.000000Z"})
+    assert m.pad(motion, 1.5).metadata["start_time"] == "2016-11-13T11:02:58.500000Z"
+    assert m.trim(motion, 2.25, 4.0).metadata["start_time"] == "2016-11-13T11:03:02.250000Z"
+    unknown = Motion(np.ones(1001), 0.01, metadata={"start_time": None})
+    assert m.trim(unknown, 2.25, 4.0).metadata["start_time"] is None

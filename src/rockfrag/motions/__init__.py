@@ -24,7 +24,13 @@ from rockfrag.motions.intensity import (
     uplift_ratio,
     velocity_ratio,
 )
-from rockfrag.motions.measures import measure_motion, measure_motions, rocking_measures
+from rockfrag.motions.measures import (
+    measure_motion,
+    measure_motions,
+    measure_pair,
+    measure_rocking,
+    rocking_measures,
+)
 from rockfrag.motions.processing import STEPS, check_steps, process
 from rockfrag.motions.pulse_extraction import StrongestPulse, pulse_motion, strongest_pulse
 from rockfrag.motions.pulses import (
@@ -38,7 +44,7 @@ from rockfrag.motions.pulses import (
     sine,
     sine_sweep,
 )
-from rockfrag.motions.rotation import over_directions, rotate, rotd, rotd50, rotd100
+from rockfrag.motions.rotation import rotate, rotd, rotd50, rotd100
 from rockfrag.motions.scaling import (
     compress_time,
     scale,
@@ -85,10 +91,11 @@ __all__ = [
     "mean_period",
     "measure_motion",
     "measure_motions",
+    "measure_pair",
+    "measure_rocking",
     "one_cosine",
     "one_sine",
     "oscillator_response",
-    "over_directions",
     "pad",
     "peak_displacement",
     "peak_velocity",

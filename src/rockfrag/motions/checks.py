@@ -21,9 +21,15 @@ def number(owner: str, name: str, value: Any, unit: str = "") -> float:
     InputError
         If it is anything else, a truth value or a text that looks like a number included.
     """
-    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"{owner}: {name} must be a finite number{_of(unit)}, got {value!r}.")
-    return float(value)
+    try:
+        as_float = float(value)
+    except OverflowError:
+        as_float = math.inf
+    if not math.isfinite(as_float):
+        raise InputError(f"{owner}: {name} must be a finite number{_of(unit)}, got {as_float}.")
+    return as_float
 
 
 def positive(owner: str, name: str, value: Any, unit: str = "") -> float:

@@ -5,8 +5,11 @@ provenance.  Velocity and displacement are never stored: they always follow from
 exact integration, so the three are consistent after any step.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.polynomial import Polynomial
+from obspy import UTCDateTime
 from scipy.signal.windows import tukey
 
 from rockfrag.errors import InputError
@@ -120,9 +123,19 @@ def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
             f"dt {motion.dt:g} s; give less."
         )
     counts = [round(seconds / motion.dt) for seconds in (before_s, after_s)]
-    return motion.after(
+    padded = motion.after(
         "pad", np.pad(motion.acceleration, counts), before_s=before_s, after_s=after_s
     )
+    return starting_later(padded, -counts[0] * motion.dt)
+
+
+def starting_later(motion: Motion, seconds: float) -> Motion:
+    """Move the ``start_time`` of the metadata, where there is one, with the first sample."""
+    start = motion.metadata.get("start_time")
+    if not start:
+        return motion
+    moved = str(UTCDateTime(start) + seconds)
+    return replace(motion, metadata={**motion.metadata, "start_time": moved})
 
 
 def _enough_samples(step: str, motion: Motion, least: int) -> None:

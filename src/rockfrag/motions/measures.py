@@ -1,14 +1,16 @@
 """Tables of intensity measures, a row per motion, with the unit in the name of each column."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.motions import intensity
 from rockfrag.motions.checks import positive
 from rockfrag.motions.pulse_extraction import strongest_pulse
+from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
@@ -114,6 +116,77 @@ def rocking_measures(motion: Motion, alpha: float, p: float) -> dict[str, float]
         "uplift_ratio": intensity.uplift_ratio(motion, alpha),
         "velocity_ratio": intensity.velocity_ratio(motion, alpha, p),
         "frequency_ratio": intensity.frequency_ratio(strongest_pulse(motion).period, p),
+    }
+
+
+def measure_rocking(
+    motions: Iterable[Motion], blocks: Mapping[str, tuple[float, float]]
+) -> pd.DataFrame:
+    """Table of :func:`rocking_measures`, a row per motion and block.
+
+    Parameters
+    ----------
+    motions
+        What to measure.
+    blocks
+        Critical angle [rad] and frequency parameter p [1/s] of each block by its name.
+
+    Returns
+    -------
+    Table with the columns ``name``, ``block``, ``uplift_ratio``, ``velocity_ratio`` and
+    ``frequency_ratio``.
+    """
+    return pd.DataFrame(
+        [
+            {"name": motion.name, "block": block, **rocking_measures(motion, alpha, p)}
+            for motion in motions
+            for block, (alpha, p) in blocks.items()
+        ],
+        columns=["name", "block", "uplift_ratio", "velocity_ratio", "frequency_ratio"],
+    )
+
+
+def measure_pair(
+    first: Motion,
+    second: Motion,
+    periods: Sequence[float] = SPECTRAL_PERIODS,
+    damping: float = 0.05,
+) -> dict[str, float]:
+    """Give measures of two perpendicular components that do not depend on their directions.
+
+    Parameters
+    ----------
+    first, second
+        Perpendicular components, sampled at the same times.
+    periods
+        Periods of the spectral measures [s].
+    damping
+        Damping of the spectral measures [-].
+
+    Returns
+    -------
+    ``rotd50_pga_g``, ``rotd100_pga_g``, ``rotd50_pgv_cm_s``, ``rotd100_pgv_cm_s`` and for each
+    period such as 0.3 s ``rotd50_sa_0_3s_g``, ``rotd100_sa_0_3s_g``; Boore (2010).
+
+    Raises
+    ------
+    InputError
+        If the components do not fit together, a period is not positive or the damping negative.
+    """
+
+    def all_measures(motion: Motion) -> dict[str, float]:
+        spectral = _spectral(motion, periods, damping)
+        return {
+            "pga_g": intensity.pga(motion) / STANDARD_GRAVITY,
+            "pgv_cm_s": intensity.pgv(motion) * CENTIMETRES_PER_METRE,
+            **{name: value for name, value in spectral.items() if name.startswith("sa_")},
+        }
+
+    directions = pd.DataFrame([all_measures(rotate(first, second, a)) for a in DIRECTIONS_DEG])
+    return {
+        f"rotd{percentile}_{name}": float(np.percentile(directions[name], percentile))
+        for name in directions
+        for percentile in (50, 100)
     }
 
 

@@ -9,6 +9,9 @@ from rockfrag.errors import InputError
 from rockfrag.motions.checks import number
 from rockfrag.records.motion import Motion
 
+DIRECTIONS_DEG = range(180)
+"""Directions that are looked in [degrees]; the other half of the circle sees the same."""
+
 
 def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
     """Component of a horizontal motion in the direction ``angle_deg`` from first towards second.
@@ -33,13 +36,6 @@ def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
     angle = math.radians(number("rotate", "angle_deg", angle_deg, "degrees"))
     turned = first.acceleration * math.cos(angle) + second.acceleration * math.sin(angle)
     return first.after("rotate", turned, second=second.name, angle_deg=float(angle_deg))
-
-
-def over_directions(
-    first: Motion, second: Motion, measure: Callable[[Motion], float]
-) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Value of ``measure`` in the directions 0°, 1°, … 179°, shape (180,)."""
-    return np.array([measure(rotate(first, second, angle)) for angle in range(180)])
 
 
 def rotd(
@@ -67,7 +63,8 @@ def rotd(
     percentile = number("rotd", "percentile", percentile)
     if not 0 <= percentile <= 100:
         raise InputError(f"rotd: percentile must lie between 0 and 100, got {percentile}.")
-    return float(np.percentile(over_directions(first, second, measure), percentile))
+    values = [measure(rotate(first, second, angle)) for angle in DIRECTIONS_DEG]
+    return float(np.percentile(values, percentile))
 
 
 def rotd50(first: Motion, second: Motion, measure: Callable[[Motion], float]) -> float:

@@ -8,6 +8,7 @@ import math
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import not_negative, number, positive
+from rockfrag.motions.conditioning import starting_later
 from rockfrag.motions.intensity import arias_times, bracketed_times
 from rockfrag.records.motion import Motion
 from rockfrag.units import STANDARD_GRAVITY
@@ -82,6 +83,7 @@ def _between(motion: Motion, step: str, start: float, end: float, **parameters: 
     """Cut to whole samples; a time that is a sample but for rounding counts as that sample."""
     first = math.floor(start / motion.dt + 1e-6)
     last = math.ceil(end / motion.dt - 1e-6)
-    return motion.after(
+    kept = motion.after(
         step, motion.acceleration[first : last + 1], **parameters, start_s=start, end_s=end
     )
+    return starting_later(kept, first * motion.dt)
