@@ -62,7 +62,7 @@ def test_nrml_gives_back_median_and_dispersion_in_its_own_units(tmp_path):
     root = ElementTree.parse(path).getroot()
     assert root.find(".//n:limitStates", space).text == "overturned"
     functions = {f.get("id"): f for f in root.findall(".//n:fragilityFunction", space)}
-    for name, imt, theta, beta in (("T1", "PGA", 0.5, 0.4), ("P&T1", "PGV", 30.0, 0.5)):
+    for name, imt, theta, beta in (("T1", "PGA", 0.5, 0.4), ("P_T1", "PGV", 30.0, 0.5)):
         params = functions[name].find("n:params", space)
         mean, deviation = float(params.get("mean")), float(params.get("stddev"))
         found = np.sqrt(np.log1p((deviation / mean) ** 2))
@@ -79,7 +79,7 @@ def test_nrml_refuses_what_openquake_cannot_compute(tmp_path):
         write_nrml(CURVES.assign(floor="F3"), path)
     with pytest.raises(InputError, match="'T1' has no lognormal curve"):
         write_nrml(CURVES.assign(theta=np.nan), path)
-    with pytest.raises(InputError, match="'P&T1' has two curves"):
+    with pytest.raises(InputError, match="'P_T1' has two curves"):
         write_nrml(pd.concat([CURVES, CURVES]), path)
     assert not path.exists()
 

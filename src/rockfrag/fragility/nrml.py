@@ -69,7 +69,8 @@ def write_nrml(
     identifier
         Name of the model.
     by
-        Column whose value names the function (OpenQuake's taxonomy).
+        Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
+        does not take in a name becomes ``_``.
 
     Raises
     ------
@@ -104,6 +105,8 @@ def write_nrml(
 
 def _function(row: Mapping[Hashable, Any], by: str) -> tuple[str, ElementTree.Element]:
     name = str(row[by])
+    # OpenQuake takes letters, digits, "_", "-" and ":" in a name, 75 at most
+    taxonomy = re.sub(r"[^A-Za-z0-9_:-]", "_", name)[:75]
     theta, beta = float(str(row["theta"])), float(str(row["beta"]))
     if row.get("link", "probit") != "probit" or not (theta > 0 and beta > 0 and beta < math.inf):
         raise InputError(f"NRML: {name!r} has no lognormal curve; leave the row out.")
@@ -116,15 +119,15 @@ def _function(row: Mapping[Hashable, Any], by: str) -> tuple[str, ElementTree.El
     imt, factor = intensity_measure_type(str(row["im"]), str(row["unit"]))
     mean, deviation = lognormal_moments(theta * factor, beta)
     function = ElementTree.Element(
-        "fragilityFunction", {"id": name, "format": "continuous", "shape": "logncdf"}
+        "fragilityFunction", {"id": taxonomy, "format": "continuous", "shape": "logncdf"}
     )
     # the range in which OpenQuake may evaluate it: from a chance of 3e-5 to one of 1 - 3e-5
     reach = math.exp(4.0 * beta)
     limits = {"minIML": repr(theta * factor / reach), "maxIML": repr(theta * factor * reach)}
-    ElementTree.SubElement(function, "imls", {"imt": imt, "noDamageLimit": "0", **limits})
+    ElementTree.SubElement(function, "imls", {"imt": imt, **limits})
     parameters = {"ls": "overturned", "mean": repr(mean), "stddev": repr(deviation)}
     ElementTree.SubElement(function, "params", parameters)
-    return name, function
+    return taxonomy, function
 
 
 def _description(table: pd.DataFrame) -> str:
