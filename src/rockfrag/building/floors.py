@@ -34,11 +34,17 @@ def floor_motions(
         If a floor is not defined.
     """
     labels = list(building.floors) if floors is None else list(floors)
-    levels = [building.level(label) for label in labels]
-    response = respond(building, motion)
+    for label in labels:
+        building.level(label)
+    return response_motions(building, motion, respond(building, motion), labels)
+
+
+def response_motions(
+    building: ShearBuilding, motion: Motion, response: BuildingResponse, floors: Sequence[str]
+) -> list[Motion]:
+    """Motions of labelled floors in a response that is known; see :func:`floor_motions`."""
     return [
-        _floor_motion(building, motion, response, label, level)
-        for label, level in zip(labels, levels, strict=True)
+        _floor_motion(building, motion, response, label, building.level(label)) for label in floors
     ]
 
 

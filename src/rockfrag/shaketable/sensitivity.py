@@ -1,0 +1,241 @@
+"""The building as an axis: overturning amplitudes and floor statements along its assumptions.
+
+One assumption is varied at a time around the building of a YAML file.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.building.drift import judge_drift
+from rockfrag.building.floors import respond, response_motions
+from rockfrag.building.model import ShearBuilding
+from rockfrag.building.settings import make_building
+from rockfrag.errors import InputError
+from rockfrag.motions.scaling import scale
+from rockfrag.records.motion import Motion
+from rockfrag.rocking import overturns
+from rockfrag.rocking.bodies import Body
+from rockfrag.shaketable.floor_order import FLOORS, floor_margins
+from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.sweeps import READINGS, tests_from_sweep
+from rockfrag.units import STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
+
+AXES = ("first_period_s", "damping_ratio", "base_shear", "ground_scale", "levels")
+"""Assumptions that can be varied: first period and damping of the elastic model, shear strength over
+weight of the hysteretic one and the factor on the ground motion that it feels, and the levels called
+3rd and 5th floor."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One building of a sensitivity study.
+
+    Attributes
+    ----------
+    axis
+        Assumption that differs from the reference, one of ``AXES``, or ``reference``.
+    value
+        Its value; the level called 3rd floor for ``levels``.
+    label
+        The same for a reader.
+    building
+        The building.
+    ground_scale
+        Factor on the ground motions that it feels; its floors' motions are scaled to the amplitudes
+        of the tests in any case, so this matters for a hysteretic building alone.
+    """
+
+    axis: str
+    value: float
+    label: str
+    building: ShearBuilding
+    ground_scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One configuration on the table: names of tower and configuration, ``P`` or ``NP``, the body."""
+
+    configuration: str
+    tower: str
+    pedestal: str
+    body: Body
+
+
+def building_variants(
+    settings: Mapping[str, Any], axes: Mapping[str, Sequence[Any]], source: str = "building"
+) -> list[Variant]:
+    """Buildings that differ from one in a single assumption each, after the one itself.
+
+    Parameters
+    ----------
+    settings
+        Mapping of the reference building, as :func:`rockfrag.building.settings.make_building` takes.
+    axes
+        Values for any of ``AXES``; each of ``levels`` is a pair such as ``[3, 5]``.
+    source
+        Where the mapping comes from, for messages.
+
+    Raises
+    ------
+    InputError
+        If an axis is unknown or a building makes no sense.
+    """
+    for axis in axes:
+        if axis not in AXES:
+            raise InputError(
+                f"{source}: axis {axis!r} of the sensitivity is unknown; known are {', '.join(AXES)}."
+            )
+    variants = [Variant("reference", 0.0, "reference", make_building(settings, source))]
+    for axis, values in axes.items():
+        variants.extend(_variant(settings, axis, value, source) for value in values)
+    return variants
+
+
+def _variant(settings: Mapping[str, Any], axis: str, value: Any, source: str) -> Variant:
+    def changed(**changes: Any) -> ShearBuilding:
+        kept = {k: v for k, v in settings.items() if k != "storey_stiffnesses_N_m"}
+        return make_building(kept | changes, source)
+
+    if axis == "levels":
+        third, fifth = value
+        building = changed(floors={"GF": 0, "F3": third, "F5": fifth})
+        return Variant(axis, float(third), f"levels {third} and {fifth}", building)
+    if axis == "first_period_s":
+        return Variant(axis, value, f"T1 = {value:g} s", changed(first_period_s=value))
+    if axis == "damping_ratio":
+        damping = {**settings.get("damping", {}), "ratio": value}
+        return Variant(axis, value, f"damping {value:.0%}", changed(damping=damping))
+    if axis == "base_shear":
+        law = {**settings.get("masonry", {}), "base_shear": value}
+        building = changed(model="hysteretic", masonry=law)
+        return Variant(axis, value, f"masonry, {value:g} W", building)
+    building = changed(model="hysteretic")
+    return Variant(axis, value, f"masonry, {value:g} × record", building, value)
+
+
+def building_sensitivity(
+    variants: Sequence[Variant],
+    motions: Sequence[Motion],
+    specimens: Sequence[Specimen],
+    amplitudes_g: Floats,
+    protocol: Protocol,
+    threads: int = 1,
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Overturning amplitudes and margins of the floor statements for every variant.
+
+    Parameters
+    ----------
+    variants
+        Buildings, each with floors ``GF``, ``F3``, ``F5``.
+    motions
+        Ground motions, with ``event`` in their metadata.
+    specimens
+        What stands on the table: each tower with and without its pedestal.
+    amplitudes_g
+        Amplitudes of the sweeps [g], rising.
+    protocol
+        Protocol of the laboratory.
+    threads
+        Threads to use; the results do not depend on it.
+
+    Returns
+    -------
+    tests
+        Table of tests of all variants and readings, with the variant's ``axis``, ``value``, ``label``.
+    margins
+        One row per variant, reading and statement: ``axis``, ``value``, ``label``, ``reading``,
+        ``statement``, ``margin``, ``holds``, ``credible`` (whether the building's model is to be
+        believed under all motions).
+    """
+    tables: list[pd.DataFrame] = []
+    rows: list[dict[str, object]] = []
+    ground = _Ground(specimens, amplitudes_g, threads)
+    for variant in variants:
+        sweep, credible = _sweep(variant, motions, ground)
+        tests = tests_from_sweep(sweep, protocol)
+        about = {"axis": variant.axis, "value": variant.value, "label": variant.label}
+        tables.append(tests.assign(axis=variant.axis, value=variant.value, label=variant.label))
+        for reading in READINGS:
+            margins = floor_margins(tests[tests["reading"] == reading])
+            rows.extend(
+                {
+                    **about,
+                    "reading": reading,
+                    "statement": statement,
+                    "margin": margin,
+                    "holds": margin > 0,
+                    "credible": credible,
+                }
+                for statement, margin in margins.items()
+            )
+    return pd.concat(tables, ignore_index=True), pd.DataFrame(rows)
+
+
+class _Ground:
+    """Sweeps of motions, which remembers those of the ground: they are the same for every variant."""
+
+    def __init__(self, specimens: Sequence[Specimen], amplitudes_g: Floats, threads: int) -> None:
+        self.specimens = specimens
+        self.amplitudes_g = amplitudes_g
+        self.threads = threads
+        self.known: dict[str, pd.DataFrame] = {}
+
+    def sweep(self, motion: Motion) -> pd.DataFrame:
+        """Sweep of a motion, from memory if it is one of the ground."""
+        if motion.metadata["floor"] != "GF":
+            return self._shake(motion)
+        if motion.name not in self.known:
+            self.known[motion.name] = self._shake(motion)
+        return self.known[motion.name]
+
+    def _shake(self, motion: Motion) -> pd.DataFrame:
+        result = overturns(
+            [specimen.body for specimen in self.specimens],
+            [motion.acceleration],
+            motion.dt,
+            self.amplitudes_g * STANDARD_GRAVITY / motion.pga,
+            threads=self.threads,
+        )
+        bodies = np.array(["", "pedestal", "statue"])
+        return pd.concat(
+            [
+                pd.DataFrame(
+                    {
+                        "configuration": specimen.configuration,
+                        "tower": specimen.tower,
+                        "pedestal": specimen.pedestal,
+                        "motion": motion.name,
+                        "event": motion.metadata.get("event") or motion.metadata["ground_motion"],
+                        "floor": motion.metadata["floor"],
+                        "amplitude_g": self.amplitudes_g,
+                        "overturned": result.overturned[i, 0],
+                        "overturned_body": bodies[result.overturned_body[i, 0]],
+                    }
+                )
+                for i, specimen in enumerate(self.specimens)
+            ],
+            ignore_index=True,
+        )
+
+
+def _sweep(
+    variant: Variant, motions: Sequence[Motion], ground: _Ground
+) -> tuple[pd.DataFrame, bool]:
+    """Sweep all floors of a variant, and say whether its model is to be believed."""
+    credible = True
+    tables = []
+    for motion in motions:
+        felt = scale(motion, variant.ground_scale)
+        response = respond(variant.building, felt)
+        credible &= judge_drift(variant.building, response).credible
+        for floor in response_motions(variant.building, felt, response, FLOORS):
+            tables.append(ground.sweep(floor))
+    return pd.concat(tables, ignore_index=True), credible

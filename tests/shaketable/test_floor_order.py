@@ -1,0 +1,84 @@
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rockfrag.errors import InputError
+from rockfrag.shaketable.floor_order import FLOORS, STATEMENTS, floor_margins
+
+TOWERS = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
+
+
+def table_of(order=None, effect=None, towers=None):
+    """Tests of two events; amplitude = tower × floor, times 1 + effect with the pedestal."""
+    order = order or {"GF": 1.2, "F3": 1.0, "F5": 1.1}
+    effect = effect or {"GF": 0.1, "F3": -0.05, "F5": -0.05}
+    rows = [
+        {
+            "tower": tower,
+            "event": event,
+            "floor": floor,
+            "pedestal": pedestal,
+            "amplitude_g": base * order[floor] * (1 + effect[floor] if pedestal == "P" else 1),
+            "lower_g": 0.0,
+        }
+        for tower, base in (towers or TOWERS).items()
+        for event in ("A", "B")
+        for floor in FLOORS
+        for pedestal in ("P", "NP")
+    ]
+    return pd.DataFrame(rows)
+
+
+def test_margins_are_the_logarithms_they_are_said_to_be():
+    margins = floor_margins(table_of())
+    assert set(STATEMENTS) | {"order"} == set(margins)
+    assert margins["C35"] == pytest.approx(math.log(1.1))
+    assert margins["C36"] == pytest.approx(-math.log(0.95))
+    assert margins["C37"] == pytest.approx(-math.log(0.95))
+    assert margins["C34"] == pytest.approx(-math.log(0.95))
+    assert margins["C41"] == pytest.approx(math.log(1.1) + math.log(0.95))
+    assert margins["C43"] == pytest.approx(math.log(1.2 / 1.1))
+    assert margins["C44"] == pytest.approx(min(math.log(1.1), math.log(1.1)))
+    assert margins["order"] == pytest.approx(math.log(1.2 / 1.1))
+    # all towers gain alike: T1 neither more nor less, and its sign on the 3rd floor is not the
+    # exception that C38 wants
+    assert margins["C39"] == pytest.approx(0, abs=1e-12)
+    assert margins["C38"] == pytest.approx(math.log(0.95))
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    gain=st.floats(0.001, 0.5),
+    loss=st.floats(-0.5, -0.001),
+    ground=st.floats(1.001, 2.0),
+    third=st.floats(0.3, 1.0),
+)
+def test_the_thesis_contradicts_itself_on_floors(gain, loss, ground, third):
+    # C43 with C35 and C37 puts P on the ground floor above P on the 5th, against C42
+    order = {"GF": ground, "F3": third, "F5": 1.0}
+    margins = floor_margins(table_of(order, {"GF": gain, "F3": 0.0, "F5": loss}))
+    assert min(margins["C35"], margins["C37"], margins["C43"]) > 0
+    assert margins["C42"] < 0
+
+
+def test_censored_tests_count_with_what_they_survived():
+    table = table_of()
+    censored = (table["floor"] == "GF") & (table["pedestal"] == "P")
+    table.loc[censored, "lower_g"] = table.loc[censored, "amplitude_g"]
+    table.loc[censored, "amplitude_g"] = np.nan
+    assert floor_margins(table) == pytest.approx(floor_margins(table_of()))
+
+
+def test_tables_without_all_floors_or_pairs_are_refused():
+    table = table_of()
+    with pytest.raises(InputError, match="nothing about F5"):
+        floor_margins(table[table["floor"] != "F5"])
+    with pytest.raises(InputError, match="nothing about P"):
+        floor_margins(table[table["pedestal"] == "NP"])
+    one = (table["tower"] == "T2") & (table["event"] == "B") & (table["floor"] == "F3")
+    with pytest.raises(InputError, match="T2, B, F3 has no positive amplitude"):
+        floor_margins(table[~(one & (table["pedestal"] == "P"))])

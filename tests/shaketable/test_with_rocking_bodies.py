@@ -1,0 +1,139 @@
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
+from rockfrag.rocking import overturns
+from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.shaketable.filter_effect import filter_effect
+from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants
+from rockfrag.shaketable.shaker import Shaker
+from rockfrag.shaketable.steps import GeometricSteps
+from rockfrag.shaketable.sweeps import tests_from_sweep as read_sweep
+
+BUILDING = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
+TOWERS = {
+    "T1": Block(0.124, 0.372, 2.172),
+    "T2": Block(0.124, 0.496, 2.790),
+    "T3": Block(0.124, 0.620, 3.456),
+}
+PEDESTAL = Block(0.184, 0.208, 2.300)
+SPECIMENS = [Specimen(name, name, "NP", body) for name, body in TOWERS.items()]
+
+
+def amplitudes(lowest, highest, step):
+    return lowest * (1 + step) ** np.arange(int(np.log(highest / lowest) / np.log(1 + step)) + 1)
+
+
+def sweep(motions, values):
+    result = overturns(
+        list(TOWERS.values()),
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        [values * 9.81 / motion.pga for motion in motions],
+    )
+    return pd.concat(
+        pd.DataFrame(
+            {
+                "configuration": tower,
+                "tower": tower,
+                "pedestal": "NP",
+                "motion": motion.name,
+                "event": motion.name,
+                "floor": "GF",
+                "amplitude_g": values,
+                "overturned": result.overturned[i, j],
+                "overturned_body": np.where(result.overturned[i, j], "statue", ""),
+            }
+        )
+        for i, tower in enumerate(TOWERS)
+        for j, motion in enumerate(motions)
+    )
+
+
+def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
+    motions, shaker = list(records.values()), Shaker()
+    tests = read_sweep(
+        sweep(motions, amplitudes(0.2, 0.7, 0.01)),
+        Protocol(GeometricSteps(0.2, 0.01)),
+        readings=["step_protocol"],
+        limits_g={motion.name: shaker.limit(motion)[0] for motion in motions},
+    )
+    censored = tests[tests["censored"] == "right"]
+    assert censored[["tower", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta"]]
+    assert censored["lower_g"].iloc[0] == pytest.approx(0.40, abs=0.005)
+
+
+def test_a_mild_high_pass_is_harmless_and_one_of_1_hz_is_not(records):
+    found = filter_effect(
+        TOWERS, list(records.values()), [0, 0.4, 0.5, 1.0], amplitudes(0.15, 1.5, 0.01)
+    )
+    first = found.pivot_table(
+        index=["configuration", "motion"], columns="corner_hz", values="first_g"
+    )
+    ratio = np.exp(np.log(first.div(first[0.0], axis=0)).mean())
+    # a small change of anything scatters ln a by 0.10 a test, so a mean of twelve by 0.03
+    assert ratio[0.4] == pytest.approx(1, abs=0.06)
+    assert ratio[0.5] == pytest.approx(1, abs=0.06)
+    assert ratio[1.0] > 1.2
+
+
+@pytest.fixture
+def settings():
+    return yaml.safe_load(BUILDING.read_text(encoding="utf-8"))
+
+
+def wave(frequency, name):
+    t = np.arange(300) * 0.01
+    shaken = np.sin(2 * np.pi * frequency * t) * np.sin(np.pi * t / t[-1])
+    return Motion(2 * shaken, 0.01, name, {"event": name})
+
+
+def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):
+    stacks = [
+        Specimen(f"P&{name}", name, "P", Stack(PEDESTAL, body)) for name, body in TOWERS.items()
+    ]
+    tests, margins = building_sensitivity(
+        building_variants(settings, {"first_period_s": [0.35, 0.9]}),
+        [wave(1.5, "one"), wave(3.0, "two")],
+        SPECIMENS[:1] + stacks[:1] + SPECIMENS[1:2] + stacks[1:2],
+        amplitudes(0.2, 1.2, 0.05),
+        Protocol(GeometricSteps(0.2, 0.05), limit_g=1.2),
+    )
+    by_label = {label: table.drop(columns=["axis", "value", "label"]).reset_index(drop=True)
+                for label, table in tests.groupby("label")}  # fmt: skip
+    pd.testing.assert_frame_equal(by_label["reference"], by_label["T1 = 0.35 s"])
+    assert not by_label["reference"].equals(by_label["T1 = 0.9 s"])
+    # the ground floor does not know the building
+    ground = [table[table["floor"] == "GF"].reset_index(drop=True) for table in by_label.values()]
+    pd.testing.assert_frame_equal(ground[0], ground[1])
+    assert ((margins["margin"] > 0) == margins["holds"]).all()
+    assert margins["credible"].groupby(margins["label"]).nunique().eq(1).all()
+
+
+def test_each_axis_changes_what_it_names(settings):
+    variants = building_variants(
+        settings,
+        {
+            "damping_ratio": [0.08],
+            "base_shear": [0.15],
+            "ground_scale": [0.25],
+            "levels": [[2, 4]],
+        },
+    )
+    reference, damped, strong, weak_motion, other_levels = variants
+    assert damped.building == replace(reference.building, damping=damped.building.damping)
+    assert damped.building.damping.ratio == 0.08
+    assert (strong.building.model, strong.building.masonry.base_shear) == ("hysteretic", 0.15)
+    assert (weak_motion.building.model, weak_motion.ground_scale) == ("hysteretic", 0.25)
+    assert dict(other_levels.building.floors) == {"GF": 0, "F3": 2, "F5": 4}
+    with pytest.raises(InputError, match="axis 'colour' of the sensitivity is unknown"):
+        building_variants(settings, {"colour": ["red"]})
+    with pytest.raises(InputError, match="level 9"):
+        building_variants(settings, {"levels": [[3, 9]]})
