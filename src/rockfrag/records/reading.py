@@ -239,7 +239,7 @@ def _same_orientation(channel: Channel, wanted: str) -> bool:
 
 
 def _same_ending(channel: Channel, wanted: str) -> bool:
-    return len(wanted) == 1 and wanted.isalpha() and channel.label.upper().endswith(wanted.upper())
+    return len(wanted) == 1 and wanted.isalpha() and channel.code.upper().endswith(wanted.upper())
 
 
 def _plain(words: str) -> str:

@@ -1,0 +1,200 @@
+"""What is in a record: a row for each of its channels, and a picture of one."""
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rockfrag.errors import InputError
+from rockfrag.motions.integration import integrate
+from rockfrag.motions.intensity import pgd, pgv, predominant_period
+from rockfrag.motions.spectra import response_spectrum
+from rockfrag.records.motion import Motion
+from rockfrag.records.reading import Record, motion_of, read_record
+from rockfrag.report.style import BLUE, GREEN, ORANGE, PAGE_WIDTH, RED, figure_style, new_figure
+from rockfrag.report.style import save_figure as _save
+from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+
+COLUMNS = (
+    "file",
+    "format",
+    "station",
+    "channel",
+    "start_time",
+    "npts",
+    "dt_s",
+    "unit",
+    "pga_g",
+    "pgv_cm_s",
+    "pgd_cm",
+    "duration_s",
+    "dominant_period_s",
+    "error",
+)
+"""Columns of the table; a file that cannot be read has a row with its ``error`` alone."""
+
+_SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 200)
+_DAMPING = 0.05
+
+
+def describe_files(
+    paths: Iterable[str | os.PathLike[str]],
+    unit: str | None = None,
+    dt: float | None = None,
+) -> pd.DataFrame:
+    """Describe every channel of every file, folders searched through, in order of name.
+
+    Parameters
+    ----------
+    paths
+        Files and folders. In folders hidden files and StationXML are left out.
+    unit
+        Unit of the samples of the files that do not state theirs.
+    dt
+        Sampling interval [s] of plain text that does not state it.
+
+    Returns
+    -------
+    DataFrame
+        Columns :data:`COLUMNS`. PGV and PGD are of the exact integral of the acceleration as
+        recorded, from rest, without baseline correction; the dominant period is that of the
+        largest 5 % damped pseudo-acceleration. A file that cannot be read, or whose unit is not
+        known, has the reason in ``error`` and does not stop the others.
+    """
+    rows: list[dict[str, Any]] = []
+    for path in _files(paths):
+        rows.extend(_describe(path, unit, dt))
+    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    table["npts"] = table["npts"].astype("Int64")
+    return table
+
+
+def _files(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
+    found: list[Path] = []
+    for path in map(Path, paths):
+        if path.is_dir():
+            inside = sorted(p for p in path.rglob("*") if not p.is_dir())
+            found += [p for p in inside if not p.name.startswith(".") and p.suffix != ".xml"]
+        else:
+            found.append(path)
+    return found
+
+
+def _describe(path: Path, unit: str | None, dt: float | None) -> list[dict[str, Any]]:
+    try:
+        record = read_record(path, dt)
+    except InputError as error:
+        return [{"file": str(path), "error": str(error)}]
+    return [_row(record, number, unit) for number in range(len(record.channels))]
+
+
+def _row(record: Record, number: int, unit: str | None) -> dict[str, Any]:
+    channel = record.channels[number]
+    row: dict[str, Any] = {
+        "file": record.name,
+        "format": record.format,
+        "station": channel.station,
+        "channel": channel.label,
+        "start_time": "" if channel.start_time is None else str(channel.start_time),
+        "npts": channel.npts,
+        "dt_s": channel.dt,
+        "unit": channel.unit,
+        "duration_s": (channel.npts - 1) * channel.dt,
+        "error": "",
+    }
+    try:
+        # the named unit is for files that do not state theirs
+        motion = motion_of(record, channel, None if channel.unit else unit)
+    except InputError as error:
+        return row | {"error": str(error)}
+    return row | {
+        "unit": motion.metadata["unit"],
+        "pga_g": motion.pga / STANDARD_GRAVITY,
+        "pgv_cm_s": pgv(motion) * CENTIMETRES_PER_METRE,
+        "pgd_cm": pgd(motion) * CENTIMETRES_PER_METRE,
+        "dominant_period_s": predominant_period(motion),
+    }
+
+
+def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
+    """Draw acceleration, velocity, displacement and the response spectrum of a motion.
+
+    Parameters
+    ----------
+    motion
+        The motion as recorded; velocity and displacement are its exact integrals from rest.
+    path
+        ``.png`` or ``.svg``.
+
+    Raises
+    ------
+    InputError
+        If the ending of the path is another.
+    """
+    if Path(path).suffix not in (".png", ".svg"):
+        raise InputError(f"{path}: a picture is written as .png or .svg.")
+    _save(record_figure(motion), path)
+
+
+def record_figure(motion: Motion) -> Figure:
+    """Return the figure of :func:`draw_record`."""
+    velocity, displacement = integrate(motion.acceleration, motion.dt)
+    histories = (
+        (motion.acceleration / STANDARD_GRAVITY, "Acceleration [g]", BLUE, ".3f", "g"),
+        (velocity * CENTIMETRES_PER_METRE, "Velocity [cm/s]", GREEN, ".1f", "cm/s"),
+        (displacement * CENTIMETRES_PER_METRE, "Displacement [cm]", ORANGE, ".2f", "cm"),
+    )
+    with figure_style():
+        figure = new_figure(PAGE_WIDTH, 4.2)
+        grid = figure.add_gridspec(3, 2, width_ratios=(1.7, 1))
+        panels: list[Axes] = []
+        for row, (values, label, colour, digits, unit) in enumerate(histories):
+            panel = figure.add_subplot(grid[row, 0], sharex=panels[0] if panels else None)
+            panels.append(panel)
+            _history(panel, motion, values, label, colour, f"{{:{digits}}} {unit}")
+        for panel in panels[:-1]:
+            panel.tick_params(labelbottom=False)
+        panels[-1].set_xlabel("Time [s]")
+        panels[-1].set_xlim(0, max(motion.time[-1], motion.dt))
+        _spectrum(figure.add_subplot(grid[:, 1]), motion)
+        figure.suptitle(_title(motion), fontsize=9)
+        return figure
+
+
+def _history(
+    panel: Axes, motion: Motion, values: Sequence[float] | Any, label: str, colour: str, words: str
+) -> None:
+    peak = int(np.abs(values).argmax())
+    panel.axhline(0, color="#999999", linewidth=0.6)
+    panel.plot(motion.time, values, color=colour, linewidth=0.6)
+    panel.plot(motion.time[peak], values[peak], "o", color=RED, markersize=3)
+    highest = 1.2 * abs(values[peak]) or 1.0
+    panel.set_ylim(-highest, highest)
+    panel.set_ylabel(label)
+    panel.set_title(f"peak {words.format(abs(values[peak]))}", loc="right", pad=2)
+
+
+def _spectrum(panel: Axes, motion: Motion) -> None:
+    spectrum = response_spectrum(motion, _SPECTRUM_PERIODS, _DAMPING)
+    panel.loglog(
+        _SPECTRUM_PERIODS,
+        np.maximum(spectrum.pseudo_acceleration / STANDARD_GRAVITY, 1e-9),
+        color=BLUE,
+    )
+    panel.set_xlabel("Period [s]")
+    panel.set_ylabel("Pseudo-acceleration, 5 % damping [g]")
+    panel.grid(visible=True, which="major")
+
+
+def _title(motion: Motion) -> str:
+    facts = motion.metadata
+    words = [str(facts.get(key) or "") for key in ("station", "component", "event")]
+    if facts.get("station_name"):
+        words[0] = f"{words[0]} {facts['station_name']}".strip()
+    found = ", ".join(word for word in words if word)
+    return f"{motion.name}: {found}" if found and motion.name else motion.name or found

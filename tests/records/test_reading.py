@@ -1,0 +1,267 @@
+"""Units, channels, times and zero levels are known, asked for or refused, never guessed."""
+
+import numpy as np
+import obspy
+import pytest
+from obspy import Stream, Trace, UTCDateTime
+
+from rockfrag.errors import InputError
+from rockfrag.records.quantities import canonical_unit
+from rockfrag.records.reading import read_motion, read_record
+from rockfrag.records.times import american_time
+
+
+def two_columns(path, times, values):
+    path.write_text(
+        "".join(f"{t:.10g}\t{float(v)!r}\n" for t, v in zip(times, values, strict=True))
+    )
+    return path
+
+
+@pytest.fixture
+def bare(tmp_path):
+    """Two columns without any header, peak 3.5 about a zero mean."""
+    values = [0.0, 3.5, -3.5, 1.0, -1.0, 0.0]
+    return two_columns(tmp_path / "bare.txt", np.arange(6) * 0.01, values)
+
+
+def test_an_unstated_unit_is_asked_for_with_the_peak_of_each_candidate(bare):
+    with pytest.raises(InputError) as caught:
+        read_motion(bare)
+    for words in (
+        "3.5 g if g",
+        "0.357 g if m/s2",
+        "0.00357 g if cm/s2",
+        "0.00357 g if gal",
+        "0.000357 g if mm/s2",
+    ):
+        assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("unit", "peak"),
+    [("g", 34.335), ("m/s2", 3.5), ("cm/s2", 0.035), ("gal", 0.035), ("mm/s2", 0.0035)],
+)
+def test_a_named_unit_is_used(bare, unit, peak):
+    motion = read_motion(bare, unit=unit)
+    assert motion.pga == pytest.approx(peak, rel=1e-15)
+    assert motion.provenance[0]["unit_stated"] is False
+
+
+def test_a_unit_that_is_none_or_contradicts_the_file_is_refused(bare, builders, tmp_path):
+    with pytest.raises(InputError, match="furlong"):
+        read_motion(bare, unit="furlong")
+    with pytest.raises(InputError, match="states its unit as g, not gal"):
+        read_motion(builders["at2_peer"](tmp_path).path, unit="gal")
+
+
+@pytest.mark.parametrize(
+    "words", ["CM/SEC/SEC", "cm/s^2", "cm/sec2", "cm/s/s", "gal", "Gals", "cm/s**2", "(cm/s2)"]
+)
+def test_spellings_of_one_unit(words):
+    assert canonical_unit(words) == "cm/s2"
+
+
+def test_several_channels_are_listed_and_chosen_by_name_orientation_or_number(builders, tmp_path):
+    built = builders["geonet_v1a"](tmp_path)
+    with pytest.raises(InputError, match="1: N10E; 2: N80W; 3: Up"):
+        read_motion(built.path)
+    for wanted, number in (("N10E", 0), ("010", 0), ("10 deg", 0), ("280", 1), ("up", 2), ("2", 1)):
+        motion = read_motion(built.path, channel=wanted)
+        np.testing.assert_allclose(motion.acceleration, built.samples[number] / 1000, atol=1e-9)
+        assert motion.metadata["component"] == built.components[number]
+    with pytest.raises(InputError, match="no channel answers to 'E'"):
+        read_motion(built.path, channel="E")
+
+
+def test_a_single_channel_that_is_not_the_one_wanted_is_refused(builders, tmp_path):
+    with pytest.raises(InputError, match="no channel answers to 'UP'"):
+        read_motion(builders["smc"](tmp_path).path, channel="UP")
+
+
+def test_a_time_column_that_does_not_step_evenly_is_refused_with_its_line(tmp_path):
+    times = np.arange(40) * 0.01
+    times[17] += 0.004
+    with pytest.raises(InputError, match="line 18: times are not equally spaced"):
+        read_motion(two_columns(tmp_path / "jump.txt", times, np.sin(times)), unit="g")
+
+
+def test_a_missing_row_is_found_by_the_time_column(tmp_path):
+    times = np.delete(np.arange(40) * 0.01, 20)
+    with pytest.raises(InputError, match="times are not equally spaced"):
+        read_motion(two_columns(tmp_path / "gap.txt", times, np.sin(times)), unit="g")
+
+
+def test_a_step_that_looks_rounded_is_reported_and_can_be_replaced(tmp_path):
+    """0.0025 s printed to milliseconds and added up gives steps of 0.003 s, 333.33 a second."""
+    times = np.arange(40) * 0.003
+    path = two_columns(tmp_path / "rounded.txt", times, np.sin(times))
+    with pytest.raises(InputError, match=r"steps by 0\.003 s.*333\.33.*dt="):
+        read_motion(path, unit="g")
+    motion = read_motion(path, unit="g", dt=0.0025)
+    assert motion.dt == 0.0025
+    assert motion.provenance[1]["step"] == "replace time column"
+    assert read_motion(path, unit="g", dt=0.003).dt == 0.003
+
+
+@pytest.mark.parametrize("dt", [0.02, 0.01, 0.005, 0.004, 0.0025, 0.00244, 1 / 256, 1 / 300, 0.001])
+def test_rounded_print_of_times_gives_the_exact_interval(tmp_path, dt):
+    times = np.arange(4000) * dt
+    path = tmp_path / "t.txt"
+    path.write_text("".join(f"{t:.6f} {np.sin(t):.6f}\n" for t in times))
+    assert read_motion(path, unit="g").dt == pytest.approx(dt, rel=2e-6)
+
+
+def test_an_interval_against_the_header_is_refused(tmp_path):
+    path = tmp_path / "both.txt"
+    path.write_text("4 0.02\n0 1\n0.01 2\n0.02 3\n0.03 4\n")
+    with pytest.raises(InputError, match=r"dt = 0\.02 s, but times step by 0\.01 s"):
+        read_motion(path, unit="g")
+
+
+def test_dt_is_refused_where_the_file_states_another(builders, tmp_path):
+    with pytest.raises(InputError, match=r"states dt = 0\.005 s"):
+        read_motion(builders["at2_peer"](tmp_path).path, dt=0.01)
+
+
+def test_one_column_asks_for_its_interval(tmp_path):
+    path = tmp_path / "one.txt"
+    path.write_text("1\n2\n3\n4\n")
+    with pytest.raises(InputError, match="dt="):
+        read_motion(path, unit="g")
+    assert read_motion(path, unit="m/s2", dt=0.01).acceleration.tolist() == [1, 2, 3, 4]
+
+
+def sac(path, values, **header):
+    trace = Trace(np.asarray(values, dtype=np.float32), {"delta": 0.01, "station": "ABC"})
+    trace.stats.channel = "HNE"
+    trace.stats.starttime = UTCDateTime(2019, 7, 6)
+    trace.stats.sac = header
+    trace.write(str(path), format="SAC")
+    return path
+
+
+def test_the_zero_level_of_a_raw_recorder_is_removed_and_noted(tmp_path):
+    values = 0.02 + 0.01 * np.sin(np.arange(400) * 0.1)
+    path = sac(tmp_path / "raw.sac", values)
+    with pytest.raises(InputError, match="does not state its unit"):
+        read_motion(path)
+    motion = read_motion(path, unit="g")
+    assert motion.acceleration.mean() == pytest.approx(0, abs=1e-12)
+    step = motion.provenance[-1]
+    assert step["step"] == "remove zero level"
+    assert step["offset_m_s2"] == pytest.approx(np.float32(values).mean() * 9.81, rel=1e-6)
+
+
+def test_gravity_in_a_plain_file_is_removed_and_noted_but_a_small_mean_is_kept(tmp_path):
+    wave = 0.1 * np.sin(np.arange(400) * 0.1)
+    times = np.arange(400) * 0.01
+    vertical = read_motion(two_columns(tmp_path / "z.txt", times, 1.003 + wave), unit="g")
+    assert vertical.provenance[-1]["offset_m_s2"] == pytest.approx(9.81 * (1.003 + wave.mean()))
+    kept = read_motion(two_columns(tmp_path / "x.txt", times, 0.2 + wave), unit="g")
+    np.testing.assert_allclose(kept.acceleration, 9.81 * (0.2 + wave), rtol=1e-14)
+    assert len(kept.provenance) == 1
+
+
+@pytest.mark.parametrize(("idep", "held"), [(6, "displacement"), (7, "velocity")])
+def test_a_sac_file_of_another_quantity_is_refused(tmp_path, idep, held):
+    with pytest.raises(InputError, match=f"{held}, not acceleration"):
+        read_motion(sac(tmp_path / "v.sac", np.ones(9), idep=idep), unit="g")
+
+
+def test_miniseed_without_a_response_asks_for_the_unit(tmp_path):
+    path = tmp_path / "counts.mseed"
+    trace = Trace(np.arange(100, dtype=np.int32) % 7, {"station": "CMB", "channel": "HNE"})
+    Stream([trace]).write(str(path), format="MSEED")
+    with pytest.raises(InputError, match="does not state its unit"):
+        read_motion(path)
+    (tmp_path / "other.xml").write_text("<not-a-station/>")
+    assert read_motion(path, unit="mm/s2").metadata["unit"] == "mm/s2"
+
+
+def test_miniseed_with_stationxml_is_acceleration(tmp_path):
+    """A flat response of S counts per m/s² is a division by S."""
+    from obspy.core.inventory import Channel, Inventory, Network, Response, Station
+    from obspy.core.inventory.response import InstrumentSensitivity, PolesZerosResponseStage
+
+    sensitivity = 4.0e5
+    counts = np.round(2e5 * np.sin(np.arange(2000) * 0.05)).astype(np.int32) + 12345
+    trace = Trace(counts, {"network": "XX", "station": "CMB", "channel": "HNE", "delta": 0.01})
+    Stream([trace]).write(str(tmp_path / "a.mseed"), format="MSEED")
+    stage = PolesZerosResponseStage(
+        1, sensitivity, 1.0, "M/S**2", "COUNTS", "LAPLACE (RADIANS/SECOND)", 1.0, [], []
+    )
+    response = Response(
+        instrument_sensitivity=InstrumentSensitivity(sensitivity, 1.0, "M/S**2", "COUNTS"),
+        response_stages=[stage],
+    )
+    channel = Channel("HNE", "", 0, 0, 0, 0, response=response, sample_rate=100)
+    station = Station("CMB", 0, 0, 0, channels=[channel])
+    Inventory([Network("XX", [station])], "test").write(
+        str(tmp_path / "XX.xml"), format="STATIONXML"
+    )
+    motion = read_motion(tmp_path / "a.mseed")
+    expected = counts / sensitivity
+    np.testing.assert_allclose(motion.acceleration, expected - expected.mean(), atol=1e-9)
+    assert motion.metadata["unit"] == "m/s2"
+    assert motion.provenance[1]["step"] == "remove response"
+
+
+def test_a_file_name_with_wildcards_is_a_name(tmp_path):
+    path = sac(tmp_path / "a[1]*.sac", [1.0, 2.0, 3.0])
+    assert read_motion(path, unit="g").acceleration.size == 3
+
+
+@pytest.mark.parametrize(
+    ("words", "time"),
+    [
+        ("05/02/83, 16:42:48.2 PDT", "1983-05-02T23:42:48.2"),
+        (" 2/13/12, 21:06:45.0 UTC (GPS)", "2012-02-13T21:06:45"),
+        ("11/12/2009 23:10:03.000 GMT", "2009-11-12T23:10:03"),
+    ],
+)
+def test_american_times_are_turned_to_utc(words, time):
+    assert american_time(words) == UTCDateTime(time)
+
+
+@pytest.mark.parametrize(
+    "words", ["", "05/02/83", "13/45/83, 16:42:48 PDT", "05/02/83, 16:42:48 XYZ"]
+)
+def test_what_is_no_time_or_of_no_known_zone_is_none(words):
+    assert american_time(words) is None
+
+
+class TestWriting:
+    @pytest.mark.parametrize("file", ["out.AT2", "out.txt"])
+    @pytest.mark.parametrize("dt", [0.005, 0.01, 1 / 256, 0.00244, 0.0024])
+    def test_what_was_written_reads_back_the_same_to_the_last_bit(self, tmp_path, file, dt):
+        rng = np.random.default_rng(3)
+        values = rng.normal(size=1001) * 10.0 ** rng.integers(-12, 3, size=1001)
+        values[:4] = [0.0, -0.0, 5e-324, 1.7e308]
+        header = {"delta": dt, "rockfrag": {"unit": "g", "event": "E", "component": "090"}}
+        stream = Stream([Trace(values, {**header, "station": "GILROY"})])
+        path = tmp_path / file
+        stream.write(str(path), format="AT2" if file.endswith("AT2") else "PLAINTEXT")
+        back = obspy.read(path)[0]
+        np.testing.assert_array_equal(back.data, values)
+        assert back.stats.delta == pytest.approx(dt, rel=1e-11)
+        assert back.stats.rockfrag.unit == "g"
+        if file.endswith("AT2"):
+            assert (back.stats.station, back.stats.rockfrag.component) == ("GILROY", "090")
+
+    @pytest.mark.parametrize("name", ["AT2", "PLAINTEXT"])
+    def test_several_traces_or_samples_that_are_not_finite_are_refused(self, tmp_path, name):
+        path = tmp_path / "out"
+        good = Trace(np.ones(3))
+        for stream in (Stream([good, good]), Stream([Trace(np.array([1.0, np.nan]))])):
+            with pytest.raises(InputError):
+                stream.write(str(path), format=name)
+            assert not path.exists()
+
+
+def test_a_record_keeps_name_digest_and_channels(builders, tmp_path):
+    built = builders["renadic"](tmp_path)
+    record = read_record(built.path)
+    assert record.format == "RENADIC"
+    assert len(record.sha256) == 64
+    assert [channel.label for channel in record.channels] == ["EW", "NS", "V"]
