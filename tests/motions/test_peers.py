@@ -52,7 +52,9 @@ def test_durations_are_eqsigs_but_for_reading_between_samples(motion):
     signal = AccSignal(motion.acceleration, motion.dt)
     for upper in (0.75, 0.95):
         theirs = im.calc_sig_dur(signal, start=0.05, end=upper)
-        assert m.significant_duration(motion, 0.05, upper) == pytest.approx(theirs, abs=2 * motion.dt)
+        assert m.significant_duration(motion, 0.05, upper) == pytest.approx(
+            theirs, abs=2 * motion.dt
+        )
 
 
 @pytest.mark.peers

@@ -80,7 +80,7 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
     The pulse; of NaN for a motion of zeros or one too short to hold a pulse.
     """
     velocity, _ = integrate(motion.acceleration, motion.dt)
-    energy = float(velocity @ velocity)
+    energy = float((velocity**2).sum())
     periods = _periods(motion)
     if energy <= 0 or periods.size == 0:
         return NO_PULSE
@@ -141,7 +141,7 @@ def _fit(
     # "valid" keeps to the places where the whole pulse lies inside the record
     along_even = correlate(velocity, even, mode="valid", method="fft")
     along_odd = correlate(velocity, odd, mode="valid", method="fft")
-    norms = float(even @ even), float(odd @ odd)
+    norms = float((even**2).sum()), float((odd**2).sum())
     gain = along_even**2 / norms[0] + along_odd**2 / norms[1]
     best = int(np.argmax(gain))
     return (

@@ -174,7 +174,7 @@ def spectrum_compatible(
     count = whole(who, "number of samples", math.ceil((strong + 2 * quiet) / dt) + 1, 10, 1_000_000)
     noise = np.random.default_rng(seed).standard_normal(count)
     acceleration = noise * np.sqrt(gamma.pdf(np.arange(count) * dt - quiet, shape, scale=spread))
-    window = tukey(count, alpha=quiet / (count * dt))
+    window = tukey(count, alpha=2 * quiet / (count * dt))
     frequency = np.asarray(np.fft.rfftfreq(count, dt), dtype=np.float64)
     low_cut = _low_cut(frequency, 1 / quiet)
 
