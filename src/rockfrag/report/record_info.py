@@ -1,7 +1,7 @@
 """What is in a record: a row for each of its channels, and a picture of one."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -9,15 +9,25 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.motions.integration import integrate
-from rockfrag.motions.intensity import pgd, pgv, predominant_period
-from rockfrag.motions.spectra import response_spectrum
+from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
+from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.records.reading import Record, motion_of, read_record
-from rockfrag.report.style import BLUE, GREEN, ORANGE, PAGE_WIDTH, RED, figure_style, new_figure
-from rockfrag.report.style import save_figure as _save
+from rockfrag.report.style import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    PAGE_WIDTH,
+    PURPLE,
+    RED,
+    figure_style,
+    new_figure,
+    save_figure,
+)
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
 
 COLUMNS = (
@@ -40,6 +50,7 @@ COLUMNS = (
 
 _SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 200)
 _DAMPING = 0.05
+_COARSE = 4
 
 
 def describe_files(
@@ -117,8 +128,22 @@ def _row(record: Record, number: int, unit: str | None) -> dict[str, Any]:
         "pga_g": motion.pga / STANDARD_GRAVITY,
         "pgv_cm_s": pgv(motion) * CENTIMETRES_PER_METRE,
         "pgd_cm": pgd(motion) * CENTIMETRES_PER_METRE,
-        "dominant_period_s": predominant_period(motion),
+        "dominant_period_s": dominant_period(motion),
     }
+
+
+def dominant_period(motion: Motion) -> float:
+    """Period of the largest 5 % damped pseudo-acceleration [s]; NaN for a motion of zeros.
+
+    The period of :func:`rockfrag.motions.intensity.predominant_period`, found on every fourth of
+    its periods and then around the three largest values: a folder has hundreds of records.
+    """
+    coarse = response_spectrum(motion, PREDOMINANT_PERIODS[::_COARSE], _DAMPING)
+    best = _COARSE * np.argsort(coarse.pseudo_acceleration)[-3:]
+    near = np.unique((best[:, None] + np.arange(1 - _COARSE, _COARSE)).ravel())
+    periods = PREDOMINANT_PERIODS[near[(near >= 0) & (near < PREDOMINANT_PERIODS.size)]]
+    fine = response_spectrum(motion, periods, _DAMPING).pseudo_acceleration
+    return float(periods[np.argmax(fine)]) if fine.max() > 0 else float("nan")
 
 
 def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
@@ -138,56 +163,75 @@ def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
     """
     if Path(path).suffix not in (".png", ".svg"):
         raise InputError(f"{path}: a picture is written as .png or .svg.")
-    _save(record_figure(motion), path)
+    save_figure(record_figure(motion), path)
 
 
 def record_figure(motion: Motion) -> Figure:
     """Return the figure of :func:`draw_record`."""
     velocity, displacement = integrate(motion.acceleration, motion.dt)
+    cm = CENTIMETRES_PER_METRE
     histories = (
-        (motion.acceleration / STANDARD_GRAVITY, "Acceleration [g]", BLUE, ".3f", "g"),
-        (velocity * CENTIMETRES_PER_METRE, "Velocity [cm/s]", GREEN, ".1f", "cm/s"),
-        (displacement * CENTIMETRES_PER_METRE, "Displacement [cm]", ORANGE, ".2f", "cm"),
+        (motion.acceleration / STANDARD_GRAVITY, "Acceleration [g]", BLUE),
+        (velocity * cm, "Velocity [cm/s]", GREEN),
+        (displacement * cm, "Displacement [cm]", ORANGE),
+    )
+    peaks = (
+        f"{motion.pga / STANDARD_GRAVITY:.3f} g",
+        f"{pgv(motion) * cm:.2f} cm/s",
+        f"{pgd(motion) * cm:.2f} cm",
     )
     with figure_style():
         figure = new_figure(PAGE_WIDTH, 4.2)
-        grid = figure.add_gridspec(3, 2, width_ratios=(1.7, 1))
+        grid = figure.add_gridspec(6, 2, width_ratios=(1.7, 1))
         panels: list[Axes] = []
-        for row, (values, label, colour, digits, unit) in enumerate(histories):
-            panel = figure.add_subplot(grid[row, 0], sharex=panels[0] if panels else None)
-            panels.append(panel)
-            _history(panel, motion, values, label, colour, f"{{:{digits}}} {unit}")
+        for row, ((values, label, colour), peak) in enumerate(zip(histories, peaks, strict=True)):
+            place = grid[2 * row : 2 * row + 2, 0]
+            panels.append(figure.add_subplot(place, sharex=panels[0] if panels else None))
+            _history(panels[-1], motion, values, label, colour, peak)
         for panel in panels[:-1]:
             panel.tick_params(labelbottom=False)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1], motion.dt))
-        _spectrum(figure.add_subplot(grid[:, 1]), motion)
+        _response(figure.add_subplot(grid[:3, 1]), motion)
+        _fourier(figure.add_subplot(grid[3:, 1]), motion)
         figure.suptitle(_title(motion), fontsize=9)
         return figure
 
 
 def _history(
-    panel: Axes, motion: Motion, values: Sequence[float] | Any, label: str, colour: str, words: str
+    panel: Axes, motion: Motion, values: NDArray[np.float64], label: str, colour: str, peak: str
 ) -> None:
-    peak = int(np.abs(values).argmax())
+    largest = int(np.abs(values).argmax())
     panel.axhline(0, color="#999999", linewidth=0.6)
     panel.plot(motion.time, values, color=colour, linewidth=0.6)
-    panel.plot(motion.time[peak], values[peak], "o", color=RED, markersize=3)
-    highest = 1.2 * abs(values[peak]) or 1.0
+    panel.plot(motion.time[largest], values[largest], "o", color=RED, markersize=3)
+    highest = 1.2 * abs(values[largest]) or 1.0
     panel.set_ylim(-highest, highest)
     panel.set_ylabel(label)
-    panel.set_title(f"peak {words.format(abs(values[peak]))}", loc="right", pad=2)
+    panel.set_title(f"peak {peak}", loc="right", pad=2)
 
 
-def _spectrum(panel: Axes, motion: Motion) -> None:
+def _response(panel: Axes, motion: Motion) -> None:
     spectrum = response_spectrum(motion, _SPECTRUM_PERIODS, _DAMPING)
-    panel.loglog(
-        _SPECTRUM_PERIODS,
-        np.maximum(spectrum.pseudo_acceleration / STANDARD_GRAVITY, 1e-9),
-        color=BLUE,
-    )
+    values = spectrum.pseudo_acceleration / STANDARD_GRAVITY
+    _logarithmic(panel, _SPECTRUM_PERIODS, values, BLUE)
     panel.set_xlabel("Period [s]")
-    panel.set_ylabel("Pseudo-acceleration, 5 % damping [g]")
+    panel.set_ylabel("PSA, 5 % damping [g]")
+
+
+def _fourier(panel: Axes, motion: Motion) -> None:
+    frequency, amplitude = fourier_amplitude(motion)
+    _logarithmic(panel, frequency[1:], amplitude[1:], PURPLE)
+    panel.set_xlabel("Frequency [Hz]")
+    panel.set_ylabel("Fourier amplitude [m/s]")
+
+
+def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
+    """Draw a positive curve on logarithmic axes, over five decades at most."""
+    largest = float(y.max()) if y.size and y.max() > 0 else 1.0
+    panel.loglog(x, np.maximum(y, 1e-9 * largest), color=colour, linewidth=0.8)
+    lowest = max(float(y.min()) if y.size else 0.0, 1e-5 * largest)
+    panel.set_ylim(0.7 * lowest, 2 * largest)
     panel.grid(visible=True, which="major")
 
 
