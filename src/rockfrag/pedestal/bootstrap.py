@@ -112,6 +112,11 @@ def rank_probabilities(
     )
 
 
+def share_largest(ranks: pd.DataFrame, level: str) -> float:
+    """Probability that a level of `rank_probabilities` has the largest mean [-]."""
+    return float(ranks.loc[ranks["level"] == level, "p_largest"].iloc[0])
+
+
 def _resampled(means: Array, rng: np.random.Generator, draws: int) -> Array:
     chosen = rng.integers(0, len(means), size=(draws, len(means)))
     return np.asarray(means[chosen].mean(axis=1), dtype=np.float64)

@@ -89,5 +89,5 @@ def power_note(effect: Estimate, unit: str = "event") -> str:
     )
     return (
         f"80 % power: {effect.units} {unit}s show a change of {detectable:.1f} % or more; "
-        f"needed: {more}"
+        f"needed: {more}, before any adjustment"
     )

@@ -68,6 +68,11 @@ class Estimate:
         """Standard deviation between units [-]."""
         return self.se * math.sqrt(self.units)
 
+    def times(self, factor: float) -> "Estimate":
+        """Estimate of ``factor`` times the mean."""
+        lower, upper = sorted((self.lower * factor, self.upper * factor))
+        return Estimate(self.mean * factor, self.se * abs(factor), self.units, lower, upper, self.p)
+
     def p_above(self, bound: float) -> float:
         """One-sided p value of the hypothesis that the mean is at most ``bound``."""
         if not math.isfinite(self.se):
@@ -163,14 +168,16 @@ def mean_effect(table: pd.DataFrame, confidence: float = CONFIDENCE) -> Estimate
 def slope_effect(
     table: pd.DataFrame, x: str = "s_c", value: str = "d", confidence: float = CONFIDENCE
 ) -> Estimate:
-    """Slope of ``value`` on ``x``: least squares inside each event, then t over the events."""
-    slopes = []
-    for _, rows in table.groupby("event"):
-        centred = rows[x] - rows[x].mean()
-        spread = float((centred**2).sum())
-        if spread > 0:
-            slopes.append(float((centred * rows[value]).sum()) / spread)
-    return t_estimate(slopes, confidence)
+    """Slope of ``value`` on ``x``: least squares inside each event, then t over the events.
+
+    Only differences between the towers of one motion (and one side, if there is a column side) enter.
+    """
+    by_motion = [table[name] for name in ("event", "motion", "side") if name in table.columns]
+    across = table[x] - table[x].groupby(by_motion).transform("mean")
+    sums = pd.DataFrame({"xy": across * table[value], "xx": across**2})
+    by_event = sums.groupby(table["event"]).sum()
+    by_event = by_event[by_event["xx"] > 0]
+    return t_estimate(by_event["xy"] / by_event["xx"], confidence)
 
 
 def contrast(
@@ -184,6 +191,8 @@ def contrast(
 ) -> Estimate:
     """Difference of the mean of ``value`` between two levels of a factor, block by block.
 
+    Like is compared with like: both levels must be there for the same tower, event, floor (and side).
+
     Parameters
     ----------
     factor, one, other
@@ -192,6 +201,8 @@ def contrast(
         Column within which the levels are compared: the events for floors and towers, the floors
         for a comparison of two events.
     """
-    means = table.pivot_table(index=block, columns=factor, values=value, aggfunc="mean")
-    difference = (means[one] - means[other]).dropna()
-    return t_estimate(difference, confidence)
+    design = ("event", "floor", "tower", "side")
+    matched = [name for name in design if name in table.columns and name != factor]
+    cells = table.pivot_table(index=matched, columns=factor, values=value, aggfunc="mean")
+    difference = (cells[one] - cells[other]).dropna()
+    return t_estimate(difference.groupby(level=block).mean(), confidence)

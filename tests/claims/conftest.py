@@ -1,0 +1,48 @@
+"""Tables of tests in which statements are true or false by construction."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pandas as pd
+import pytest
+
+EVENTS = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
+FLOORS = ("GF", "F3", "F5")
+TOWERS = {"T1": 0.50, "T2": 0.40, "T3": 0.30}
+
+Effect = Callable[[str, str, str], float]
+
+
+def nothing(tower: str, event: str, floor: str) -> float:
+    return 0.0
+
+
+def build(
+    effect: Effect = nothing,
+    level: Effect = nothing,
+    *,
+    noise: float = 0.01,
+    seed: int = 0,
+    towers: dict[str, float] = TOWERS,
+) -> pd.DataFrame:
+    """Tests with ln(P/NP) = effect(tower, event, floor) and ln a = ln(tower's) + level."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    for event in EVENTS:
+        for floor in FLOORS:
+            for tower, amplitude in towers.items():
+                base = np.log(amplitude) + level(tower, event, floor)
+                for pedestal in ("NP", "P"):
+                    ln_a = base + rng.normal(0, noise)
+                    ln_a += effect(tower, event, floor) * (pedestal == "P")
+                    rows.append((tower, pedestal, event, floor, f"{event}-{floor}", np.exp(ln_a)))
+    names = ["tower", "pedestal", "event", "floor", "motion", "amplitude_g"]
+    table = pd.DataFrame(rows, columns=names)
+    return table.assign(
+        censored="none", lower_g=table["amplitude_g"] / 1.02, upper_g=table["amplitude_g"]
+    )
+
+
+@pytest.fixture
+def made() -> Callable[..., pd.DataFrame]:
+    return build
