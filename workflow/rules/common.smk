@@ -4,9 +4,12 @@ import os
 import sys
 
 from rockfrag.errors import InputError
+from rockfrag.report.gallery import figure_names
 from rockfrag.studies import study_from
 from rockfrag.studies.digest import source_digest
 from rockfrag.studies.pedestal import PEDESTAL_TABLES
+from rockfrag.studies.study import PRINTED_TABLES
+from rockfrag.studies.study import RECORDS_FOLDER as RECORDS
 
 STUDY_FILE = os.path.relpath(workflow.configfiles[-1])
 
@@ -17,8 +20,23 @@ except InputError as error:
     sys.exit(str(error))
 
 RESULTS = f"results/{STUDY.name}"
-RECORDS = "resources/records"
 CONFIGURATIONS = [one.slug for one in STUDY.configurations]
+PRINTED = (
+    []
+    if STUDY.printed is None
+    else [str(STUDY.printed / name) for name in PRINTED_TABLES]
+)
+REPORT_TABLES = [
+    "tests",
+    "measures",
+    "fragility",
+    "survival_windows",
+    "table_3_1",
+    "table_3_3",
+    "table_4_1",
+]
+if STUDY.has_pairs:
+    REPORT_TABLES += [f"pedestal/{name}" for name in PEDESTAL_TABLES]
 
 
 wildcard_constraints:
@@ -28,12 +46,18 @@ wildcard_constraints:
 
 def tables(*names):
     """Both forms of result tables: CSV for people, Parquet for programs."""
-    return [f"{RESULTS}/{name}.{ending}" for name in names for ending in ("csv", "parquet")]
+    return [
+        f"{RESULTS}/{name}.{ending}" for name in names for ending in ("csv", "parquet")
+    ]
 
 
 def figures(*names):
     """Both forms of figures."""
-    return [f"{RESULTS}/figures/{name}.{ending}" for name in names for ending in ("svg", "png")]
+    return [
+        f"{RESULTS}/figures/{name}.{ending}"
+        for name in names
+        for ending in ("svg", "png")
+    ]
 
 
 def settings(*keys):

@@ -8,12 +8,12 @@ rule process_records:
         f"{RESULTS}/motions/ground.parquet",
     log:
         f"{RESULTS}/logs/process_records.log",
+    conda:
+        "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
         settings=settings("motions"),
         code=source_digest("motions"),
-    conda:
-        "../envs/rockfrag.yaml"
     script:
         "../scripts/process_records.py"
 
@@ -26,12 +26,12 @@ rule shake_building:
         f"{RESULTS}/motions/floors.parquet",
     log:
         f"{RESULTS}/logs/shake_building.log",
+    conda:
+        "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
         settings=settings("building"),
         code=source_digest("building"),
-    conda:
-        "../envs/rockfrag.yaml"
     script:
         "../scripts/shake_building.py"
 
@@ -43,9 +43,9 @@ rule measure_motions:
         tables("measures"),
     log:
         f"{RESULTS}/logs/measure_motions.log",
-    params:
-        code=source_digest("motions"),
     conda:
         "../envs/rockfrag.yaml"
+    params:
+        code=source_digest("motions"),
     script:
         "../scripts/measure_motions.py"

@@ -6,10 +6,10 @@ rule fetch_records:
         f"{RECORDS}/{{source}}/provenance.json",
     log:
         f"{RESULTS}/logs/fetch_{{source}}.log",
-    conda:
-        "../envs/rockfrag.yaml"
     # a shared folder: fetched once, and not again because another study or an edit asks for it
     retries: 2
+    conda:
+        "../envs/rockfrag.yaml"
     script:
         "../scripts/fetch_records.py"
 
@@ -22,12 +22,11 @@ rule read_records:
         f"{RESULTS}/motions/records.parquet",
     log:
         f"{RESULTS}/logs/read_records.log",
+    conda:
+        "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
         settings=settings("motions"),
         code=source_digest("records"),
-        folder=RECORDS,
-    conda:
-        "../envs/rockfrag.yaml"
     script:
         "../scripts/read_records.py"

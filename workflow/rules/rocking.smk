@@ -10,29 +10,31 @@ rule sweep_amplitudes:
         tables("sweep/{configuration}"),
     log:
         f"{RESULTS}/logs/sweep_{{configuration}}.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    threads: 1
     params:
         study=STUDY_FILE,
         settings=settings("bodies", "amplitudes"),
         code=source_digest("rocking"),
-    conda:
-        "../envs/rockfrag.yaml"
-    threads: 1
     script:
         "../scripts/sweep_amplitudes.py"
 
 
 rule apply_protocol:
     input:
-        expand(f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS),
+        expand(
+            f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS
+        ),
     output:
         tables("tests"),
     log:
         f"{RESULTS}/logs/apply_protocol.log",
+    conda:
+        "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
         settings=settings("amplitudes", "protocol"),
         code=source_digest("shaketable"),
-    conda:
-        "../envs/rockfrag.yaml"
     script:
         "../scripts/apply_protocol.py"

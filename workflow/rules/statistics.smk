@@ -3,19 +3,21 @@
 
 rule fit_fragility:
     input:
-        sweeps=expand(f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS),
+        sweeps=expand(
+            f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS
+        ),
         measures=f"{RESULTS}/measures.parquet",
         motions=f"{RESULTS}/motions/floors.parquet",
     output:
         tables("fragility", "survival_windows"),
     log:
         f"{RESULTS}/logs/fit_fragility.log",
+    conda:
+        "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
         settings=settings("fragility"),
         code=source_digest("fragility"),
-    conda:
-        "../envs/rockfrag.yaml"
     script:
         "../scripts/fit_fragility.py"
 
@@ -27,11 +29,11 @@ rule estimate_pedestal:
         tables(*[f"pedestal/{name}" for name in PEDESTAL_TABLES]),
     log:
         f"{RESULTS}/logs/estimate_pedestal.log",
+    conda:
+        "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
         settings=settings("bodies", "seed"),
         code=source_digest("pedestal"),
-    conda:
-        "../envs/rockfrag.yaml"
     script:
         "../scripts/estimate_pedestal.py"

@@ -6,11 +6,12 @@ from rockfrag.records.catalogue import load_motion
 from rockfrag.records.motion import write_motion_set
 from rockfrag.studies import study_from
 from rockfrag.studies.log import logged
+from rockfrag.studies.study import RECORDS_FOLDER
 
 with logged(snakemake.log[0], "read") as log:
     study = study_from(snakemake.config, snakemake.params.study)
     folder = study.catalogue_file.parent
     rows = study.catalogue.to_dict("records")
-    motions = [load_motion(row, folder, Path(snakemake.params.folder)) for row in rows]
+    motions = [load_motion(row, folder, Path(RECORDS_FOLDER)) for row in rows]
     write_motion_set(motions, snakemake.output[0])
     log.info("%d records", len(motions))

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from rockfrag.motions.intensity import pga, pgd, pgv
+from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.studies.configurations import Configuration
 from rockfrag.studies.tables import read_rows
@@ -127,3 +129,15 @@ def _printed(
 def _rounds_to(value: float, text: str) -> bool:
     decimals = len(text.partition(".")[2])
     return f"{value:.{decimals}f}" == text
+
+
+def ground_measures(motions: Sequence[Motion]) -> pd.DataFrame:
+    """Peaks of Table 3.3 of each ground motion: ``name`` and the columns of ``TABLE_3_3``."""
+    return pd.DataFrame(
+        {
+            "name": [motion.name for motion in motions],
+            "pga_g": [pga(motion) / STANDARD_GRAVITY for motion in motions],
+            "pgv_cm_s": [pgv(motion) * CENTIMETRES_PER_METRE for motion in motions],
+            "pgd_cm": [pgd(motion) * CENTIMETRES_PER_METRE for motion in motions],
+        }
+    )

@@ -19,6 +19,9 @@ from rockfrag.studies.configurations import Configuration, read_configurations, 
 from rockfrag.studies.validation import check_schema, read_schema
 from rockfrag.studies.yaml_file import read_yaml
 
+RECORDS_FOLDER = "resources/records"
+"""Where fetched records are kept, from the folder in which the workflow runs."""
+
 PRINTED_TABLES = ("table_3_1.csv", "table_3_3.csv", "table_4_1.csv")
 """Files in the folder ``printed`` of a study that is compared with the thesis."""
 
@@ -81,6 +84,15 @@ class Study:
     def configuration(self, slug: str) -> Configuration:
         """Return the configuration whose file name is ``slug``."""
         return next(one for one in self.configurations if one.slug == slug)
+
+    @property
+    def has_pairs(self) -> bool:
+        """Whether a tower is tested both with and without a pedestal."""
+        sides = {
+            side: {one.tower for one in self.configurations if one.label == side}
+            for side in ("P", "NP")
+        }
+        return bool(sides["P"] & sides["NP"])
 
     def record_files(self, records: str) -> list[str]:
         """Files that must exist before the records can be read, fetched ones under ``records``."""

@@ -1,0 +1,133 @@
+"""The report: one HTML page that loads nothing from outside."""
+
+import base64
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+
+from rockfrag.report.findings import Finding
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table on the page.
+
+    Attributes
+    ----------
+    name
+        Column of the data.
+    title
+        What its head says, with the unit.
+    digits
+        Decimals of numbers, or None for text.
+    """
+
+    name: str
+    title: str
+    digits: int | None = None
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure on the page: a path to an SVG, its caption, and words for those who cannot see it."""
+
+    path: Path
+    caption: str
+    alternative: str
+    wide: bool = False
+
+    @property
+    def source(self) -> Markup:
+        """The SVG as a data address, so that figures share no identifiers and load nothing."""
+        data = base64.b64encode(self.path.read_bytes()).decode("ascii")
+        return Markup("data:image/svg+xml;base64,") + data
+
+
+def cell(value: Any, digits: int | None) -> str:
+    """Format one cell: numbers to their digits, truth as yes or no, and a dash for what is missing."""
+    if value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value)):
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if digits is not None and not isinstance(value, str):
+        return f"{value:.{digits}f}".replace("-", "−")
+    return str(value) if str(value) else "–"
+
+
+def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> Markup:
+    """Render a table that scrolls inside its own frame where the screen is narrow."""
+    head = Markup("").join(
+        Markup('<th class="{}">{}</th>').format("" if c.digits is None else "number", c.title)
+        for c in columns
+    )
+    rows = Markup("").join(
+        Markup("<tr>{}</tr>").format(
+            Markup("").join(
+                Markup('<td class="{}">{}</td>').format(
+                    "" if c.digits is None else "number", cell(row[c.name], c.digits)
+                )
+                for c in columns
+            )
+        )
+        for row in table.to_dict("records")
+    )
+    return Markup(
+        '<figure class="table"><figcaption>{}</figcaption><div class="scroll" tabindex="0"><table>'
+        "<thead><tr>{}</tr></thead><tbody>{}</tbody></table></div></figure>"
+    ).format(caption, head, rows)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page: paragraphs, then tables and figures in order."""
+
+    anchor: str
+    title: str
+    paragraphs: Sequence[str] = ()
+    parts: Sequence[Markup | Picture] = ()
+
+    @property
+    def blocks(self) -> list[tuple[str, Any]]:
+        """Parts with neighbouring pictures in one row."""
+        blocks: list[tuple[str, Any]] = []
+        for part in self.parts:
+            if isinstance(part, Markup):
+                blocks.append(("html", part))
+            elif blocks and blocks[-1][0] == "pictures":
+                blocks[-1][1].append(part)
+            else:
+                blocks.append(("pictures", [part]))
+        return blocks
+
+
+def render(
+    title: str,
+    lead: str,
+    findings: Sequence[Finding],
+    sections: Sequence[Section],
+    provenance: Mapping[str, str],
+) -> str:
+    """Return the page as HTML; the same arguments give the same bytes."""
+    environment = Environment(
+        loader=PackageLoader("rockfrag.report"),
+        autoescape=select_autoescape(default=True),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    style = environment.get_template("style.css").render()
+    return environment.get_template("report.html.j2").render(
+        title=title,
+        lead=lead,
+        findings=findings,
+        sections=sections,
+        provenance=provenance,
+        style=Markup(style),
+    )

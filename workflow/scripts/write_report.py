@@ -1,0 +1,23 @@
+"""Write the report."""
+
+from pathlib import Path
+
+import pandas as pd
+
+from rockfrag.files import write_text
+from rockfrag.report.contents import write_page
+from rockfrag.report.gallery import pictures
+from rockfrag.report.provenance import provenance
+from rockfrag.studies import study_from
+from rockfrag.studies.log import logged
+
+with logged(snakemake.log[0], "report") as log:
+    study = study_from(snakemake.config, snakemake.params.study)
+    folder = Path(snakemake.output[0]).parent
+    tables = {
+        Path(path).relative_to(folder).with_suffix("").as_posix(): pd.read_parquet(path)
+        for path in snakemake.input.tables
+    }
+    drawn = pictures(study, Path(snakemake.input.figures[0]).parent)
+    write_text(write_page(study, tables, drawn, provenance(study, tables)), snakemake.output[0])
+    log.info("the report is %s", snakemake.output[0])
