@@ -1,0 +1,82 @@
+"""Figures say what the numbers say."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.estimators import fit_cloud, fit_incremental
+from rockfrag.fragility.goodness import goodness_of_fit
+from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.states import fit_three_states
+from rockfrag.fragility.surface import fit_surface
+from rockfrag.report.fragility_figures import (
+    calibration_figure,
+    fragility_figure,
+    measures_figure,
+    states_figure,
+    surface_figure,
+)
+from rockfrag.report.style import save_figure
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    """Synthetic sweeps of eight motions, half of them with a survival window."""
+    rng = np.random.default_rng(1)
+    levels = np.geomspace(0.1, 1.5, 40)
+    rows = []
+    for k in range(8):
+        a = 0.4 * np.exp(0.3 * rng.normal())
+        fell = (levels > a) & ~((levels > 1.3 * a) & (levels < 1.6 * a) & (k % 2 == 0))
+        rows += [
+            {"motion": f"m{k}", "amplitude_g": level, "pgv_cm_s": 80 * level**1.2, "overturned": x}
+            for level, x in zip(levels, fell, strict=True)
+        ]
+    return pd.DataFrame(rows)
+
+
+def test_the_curve_is_drawn_through_its_median_with_its_limits_and_windows(sweep, tmp_path):
+    result = fit_incremental(sweep)
+    outcomes = outcomes_from_table(sweep, "amplitude_g")
+    figure = fragility_figure({"T1": result.probability}, {"T1": outcomes}, {"T1": result.windows})
+    upper, lower = figure.axes
+    curve = next(line for line in upper.lines if line.get_label().startswith("T1"))
+    x, y = curve.get_data()
+    assert np.interp(0.5, y, x) == pytest.approx(result.probability.fit.theta, rel=0.01)
+    assert lower.lines[0].get_ydata().max() > 0
+    save_figure(figure, tmp_path / "a.svg")
+    save_figure(
+        fragility_figure({"T1": result.probability}, {"T1": outcomes}, {"T1": result.windows}),
+        tmp_path / "b.svg",
+    )
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+
+
+def test_curves_in_different_measures_do_not_share_an_axis(sweep):
+    pga, pgv = fit_cloud(sweep, "amplitude_g"), fit_cloud(sweep, "pgv_cm_s")
+    with pytest.raises(InputError, match="different measures"):
+        fragility_figure({"a": pga, "b": pgv})
+    data = {name: outcomes_from_table(sweep, name) for name in ("amplitude_g", "pgv_cm_s")}
+    figure = measures_figure({"amplitude_g": pga, "pgv_cm_s": pgv}, data)
+    assert [axes.get_xlabel() for axes in figure.axes] == ["PGA [g]", "PGV [cm/s]"]
+    assert f"AIC {pgv.fit.aic:.1f}" in figure.axes[1].get_title(loc="left")
+
+
+def test_a_data_set_without_a_curve_is_not_drawn(sweep):
+    survived = fit_cloud(sweep.assign(overturned=False), "amplitude_g")
+    with pytest.raises(InputError, match="none of the data sets"):
+        fragility_figure({"T1": survived})
+
+
+def test_states_surface_and_calibration_are_drawn_in_their_units(sweep):
+    states = states_figure(fit_three_states(sweep, 0.1999 / 2))
+    assert states.axes[0].get_xlabel() == "PGA [g]"
+    rng = np.random.default_rng(2)
+    scattered = sweep.assign(pgv_cm_s=sweep.pgv_cm_s * np.exp(0.3 * rng.normal(size=len(sweep))))
+    surface = surface_figure(fit_surface(scattered, ["amplitude_g", "pgv_cm_s"]), scattered)
+    assert surface.axes[0].get_ylabel() == "PGV [cm/s]"
+    outcomes = outcomes_from_table(sweep, "amplitude_g")
+    judged = goodness_of_fit(outcomes, fit_cloud(sweep, "amplitude_g").fit, replicates=20)
+    figure = calibration_figure({"T1": judged})
+    assert figure.axes[0].get_legend().get_texts()[0].get_text().startswith("T1 (p = ")
