@@ -182,18 +182,15 @@ def record_figure(motion: Motion) -> Figure:
     )
     with figure_style():
         figure = new_figure(PAGE_WIDTH, 4.2)
-        grid = figure.add_gridspec(6, 2, width_ratios=(1.7, 1))
-        panels: list[Axes] = []
-        for row, ((values, label, colour), peak) in enumerate(zip(histories, peaks, strict=True)):
-            place = grid[2 * row : 2 * row + 2, 0]
-            panels.append(figure.add_subplot(place, sharex=panels[0] if panels else None))
-            _history(panels[-1], motion, values, label, colour, peak)
-        for panel in panels[:-1]:
-            panel.tick_params(labelbottom=False)
+        left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.7, 1))[0]
+        panels = left.subplots(3, 1, sharex=True)
+        for panel, (values, label, colour), peak in zip(panels, histories, peaks, strict=True):
+            _history(panel, motion, values, label, colour, peak)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1], motion.dt))
-        _response(figure.add_subplot(grid[:3, 1]), motion)
-        _fourier(figure.add_subplot(grid[3:, 1]), motion)
+        upper, lower = right.subplots(2, 1)
+        _response(upper, motion)
+        _fourier(lower, motion)
         figure.suptitle(_title(motion), fontsize=9)
         return figure
 
