@@ -12,6 +12,7 @@ import numpy as np
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._mechanics import (
     FIXED,
+    GRAVITY,
     accelerations,
     coupling,
     equations,
@@ -59,7 +60,10 @@ OPENING, CLOSING, CHATTER = 0.0, 1.0, 2.0
 HALF_TURN = 0.5 * math.pi
 GRAZING_SPEED = 1e-3
 """Relative speed [rad/s] below which a contact grazes."""
-MAX_EVENTS_PER_STEP = 200
+MAX_EVENTS_PER_STEP = 400
+FINE_DROP, COARSE_DROP = 1e-9, 1e-2
+"""Height of the flights [rad] below which impacts that are sure to end at rest are no longer followed, where
+the history is kept and where only the verdict matters."""
 
 
 @kernel
@@ -176,7 +180,7 @@ def _restoring(p, c2, a):
 
 
 @kernel
-def _chatter_dies(p, c2, omega, e_back, k, tau, dt, acceleration, scale):
+def _chatter_dies(p, c2, omega, e_back, least_drop, k, tau, dt, acceleration, scale):
     """Whether the impacts that follow a launch at speed ω are over before anything else can happen.
 
     The upper (or lone) block has left for pole c2.  With restoring accelerations of at least D and D' on
@@ -184,8 +188,10 @@ def _chatter_dies(p, c2, omega, e_back, k, tau, dt, acceleration, scale):
     2 ω (1/D + e/D') / (1 - e e').  If the ground stays below the threshold of motion that long, the
     block comes to rest whatever happens in between.
     """
-    if omega * omega > 2e-3 * _restoring(p, c2, 0.0):
+    if omega * omega > 2.0 * least_drop * _restoring(p, c2, 0.0):
         return False
+    vx, vy = first_moment2(p, c2)
+    frequency2 = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, c2)
     _, _, _, w = impact(p, 0, c2, False, True, 0.0, 0.0, 0.0, -float(c2))
     e_next = abs(w)
     least_here = math.inf
@@ -203,8 +209,8 @@ def _chatter_dies(p, c2, omega, e_back, k, tau, dt, acceleration, scale):
         least_there = min(least_there, _restoring(p, -c2, a_next))
         if least_here <= 0.0 or least_there <= 0.0:
             return False
-        # one part in fifty for the softening of D within a flight of at most 1e-3 rad
-        if omega * omega > 2e-3 * least_here:
+        # a flight of at most D/p²/50 softens D by one part in fifty
+        if omega * omega * frequency2 > 0.04 * least_here * least_here:
             return False
         time = 2.0 * omega * (1.0 / least_here + e_next / least_there)
         time *= 1.02 / max(1e-12, 1.0 - e_next * e_back)
@@ -300,9 +306,9 @@ def march(
                     break
         left = acceleration[k] * scale if k < n else 0.0
         right = acceleration[k + 1] * scale if k + 1 < n else 0.0
-        if c1 == 0 and c2 == 0 and not keep and k + 1 < n:
-            if rest_low < left < rest_high and rest_low < right < rest_high:
-                continue
+        at_rest = c1 == 0 and c2 == 0 and not keep and k + 1 < n
+        if at_rest and rest_low < left < rest_high and rest_low < right < rest_high:
+            continue
         n_events = 0
         for sub in range(substeps):
             a0 = left + (right - left) * (sub / substeps)
@@ -427,7 +433,16 @@ def march(
                         omega = abs(omega2)
                         e = omega / max(1e-300, abs(old2))
                         if e < 1.0 and _chatter_dies(
-                            p, c2, omega, e, k, (sub + tau) / substeps, dt, acceleration, scale
+                            p,
+                            c2,
+                            omega,
+                            e,
+                            FINE_DROP if keep else COARSE_DROP,
+                            k,
+                            (sub + tau) / substeps,
+                            dt,
+                            acceleration,
+                            scale,
                         ):
                             drop = 0.5 * omega * omega / _restoring(p, c2, now)
                             summary[PEAK2] = max(summary[PEAK2], drop)
