@@ -12,6 +12,7 @@ from rockfrag.fragility.measures import area_under_curve, recommend_measure
 from rockfrag.fragility.outcomes import outcomes_from_table
 from rockfrag.fragility.states import fit_three_states
 from rockfrag.fragility.surface import fit_surface, linearly_separable
+from rockfrag.fragility.sweep_measures import recommend_sweep_measure
 from rockfrag.fragility.variance import split_variance
 
 
@@ -108,6 +109,41 @@ def test_proportional_measures_are_equals_and_make_no_surface():
     assert choice.pair is None
     with pytest.raises(InputError, match="proportional"):
         fit_surface(table, ["a_g", "b_g"])
+
+
+@pytest.mark.parametrize("decides", ["pga_g", "pgv_cm_s", "arias_m_s"])
+def test_sweeps_recommend_the_measure_that_decides(decides):
+    rng = np.random.default_rng(11)
+    motions = 40
+    measures = pd.DataFrame(
+        {
+            "name": [f"m{k}" for k in range(motions)],
+            "pga_g": np.exp(rng.normal(-1.0, 0.5, motions)),
+            "pgv_cm_s": np.exp(rng.normal(3.0, 0.5, motions)),
+            "arias_m_s": np.exp(rng.normal(0.0, 1.0, motions)),
+            "magnitude": rng.uniform(5.0, 7.5, motions),
+        }
+    )
+    power = 2 if decides == "arias_m_s" else 1
+    # the measure at overturning is 1 with a scatter of 0.2 in ln amplitude
+    at_unit = measures[decides] / measures["pga_g"] ** power
+    capacity = (np.exp(0.2 * power * rng.normal(size=motions)) / at_unit) ** (1 / power)
+    sweep = pd.DataFrame(
+        [
+            {"motion": name, "event": name, "amplitude_g": a, "overturned": a > limit}
+            for name, limit in zip(measures["name"], capacity, strict=True)
+            for a in limit * np.exp(np.arange(-1.0, 1.0, 0.05) + 0.05 * rng.random())
+        ]
+    )
+    columns = ["pga_g", "pgv_cm_s", "arias_m_s"]
+    choice = recommend_sweep_measure(sweep, measures, columns, given=["magnitude"], replicates=50)
+    assert choice.recommended == decides
+    best = choice.table.iloc[0]
+    assert best["beta_amplitude"] == pytest.approx(0.2, abs=0.06)
+    assert best["theta"] == pytest.approx(1.0, rel=0.2 * power)
+    assert best["chosen_share"] > 0.9 and best["p_magnitude"] > 0.01
+    with pytest.raises(InputError, match="does not grow with the amplitude"):
+        recommend_sweep_measure(sweep, measures.assign(d5_95_s=1.0), ["d5_95_s"])
 
 
 def test_a_surface_recovers_the_parameters_that_made_it():

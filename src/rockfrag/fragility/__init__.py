@@ -1,1 +1,95 @@
-"""fragility."""
+"""Fragility: how probable is overturning at a given intensity of shaking, and how sure is that?"""
+
+from rockfrag.fragility.censored import (
+    Brackets,
+    bracket_interval,
+    brackets_from_table,
+    fit_brackets,
+)
+from rockfrag.fragility.empirical import (
+    isotonic_share,
+    local_share,
+    share_in_bins,
+    survival_windows,
+    wilson_interval,
+)
+from rockfrag.fragility.estimators import (
+    Fragility,
+    IncrementalFragility,
+    fit_cloud,
+    fit_incremental,
+    fit_step_tests,
+    fit_stripes,
+    fragility_of,
+)
+from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
+from rockfrag.fragility.intervals import Interval, interval_over_motions
+from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
+from rockfrag.fragility.measures import MeasureChoice, area_under_curve, recommend_measure
+from rockfrag.fragility.nrml import write_nrml
+from rockfrag.fragility.outcomes import Outcomes, outcomes_from_table
+from rockfrag.fragility.seismic_hazard import OverturningRate, overturning_rate
+from rockfrag.fragility.simcenter import write_simcenter
+from rockfrag.fragility.states import ThreeStates, fit_three_states
+from rockfrag.fragility.step_hazard import StepHazard, fit_step_hazard
+from rockfrag.fragility.surface import FragilitySurface, fit_surface
+from rockfrag.fragility.sweep_measures import recommend_sweep_measure
+from rockfrag.fragility.sweeps import (
+    fragility_row,
+    fragility_table,
+    record_set_hash,
+    table_hash,
+    with_measures,
+)
+from rockfrag.fragility.user_table import UserFragility, fit_user_table
+from rockfrag.fragility.variance import VarianceSplit, split_variance
+
+__all__ = [
+    "Brackets",
+    "Fragility",
+    "FragilityFit",
+    "FragilitySurface",
+    "GoodnessOfFit",
+    "IncrementalFragility",
+    "Interval",
+    "MeasureChoice",
+    "Outcomes",
+    "OverturningRate",
+    "StepHazard",
+    "ThreeStates",
+    "UserFragility",
+    "VarianceSplit",
+    "area_under_curve",
+    "bracket_interval",
+    "brackets_from_table",
+    "fit_brackets",
+    "fit_cloud",
+    "fit_incremental",
+    "fit_lognormal",
+    "fit_step_hazard",
+    "fit_step_tests",
+    "fit_stripes",
+    "fit_surface",
+    "fit_three_states",
+    "fit_user_table",
+    "fragility_of",
+    "fragility_row",
+    "fragility_table",
+    "goodness_of_fit",
+    "interval_over_motions",
+    "isotonic_share",
+    "local_share",
+    "outcomes_from_table",
+    "overturning_rate",
+    "recommend_measure",
+    "recommend_sweep_measure",
+    "record_set_hash",
+    "share_in_bins",
+    "split_variance",
+    "survival_windows",
+    "table_hash",
+    "wilson_interval",
+    "with_measures",
+    "write_nrml",
+    "write_simcenter",
+]

@@ -197,6 +197,16 @@ def bracket_interval(
     )
 
 
+def bracket_likelihoods(brackets: Brackets, weights: Floats) -> Floats:
+    """Largest log-likelihood for each row of weights of the tests, shape (batch, n) to (batch,).
+
+    Infinite where all brackets share an amplitude, for then β may be zero.
+    """
+    low, high = _logs(brackets)
+    value = _fit_weighted(low, high, weights)[2]
+    return np.asarray(np.where(_share_a_point(low, high, weights), np.inf, value))
+
+
 def _logs(brackets: Brackets) -> tuple[Floats, Floats]:
     with np.errstate(divide="ignore"):
         return np.log(brackets.lower), np.log(brackets.upper)

@@ -46,12 +46,15 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
     -------
     pandas.DataFrame
         ``im`` (geometric mean), ``im_lower``, ``im_upper``, ``tests``, ``motions``, ``overturned``,
-        ``share``, ``share_lower``, ``share_upper`` (binomial limits, tests taken as independent).
+        ``share``, ``share_lower``, ``share_upper`` (binomial limits, in which several rows of one
+        motion in a bin count once).
     """
     code = bin_codes(outcomes, bins)
-    rows = []
+    rows, independent = [], []
     for k in np.unique(code):
         inside = code == k
+        largest = pd.Series(outcomes.trials[inside]).groupby(outcomes.motion[inside]).max()
+        independent.append(largest.sum())
         n = outcomes.trials[inside].sum()
         rows.append(
             {
@@ -65,7 +68,8 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
             }
         )
     table = pd.DataFrame(rows)
-    lower, upper = wilson_interval(table["overturned"], table["tests"], level)
+    alone = np.array(independent)
+    lower, upper = wilson_interval(table["share"].to_numpy() * alone, alone, level)
     return table.assign(share_lower=lower, share_upper=upper)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 import statsmodels.api as sm
+from numpy.typing import NDArray
 from scipy import stats
 
 from rockfrag.errors import InputError
@@ -72,10 +73,17 @@ def sufficiency(outcomes: Outcomes, fit: FragilityFit, column: Floats) -> float:
     magnitude or distance, on which nothing of its residual depends (Luco and Cornell, 2007,
     Earthquake Spectra 23: 357-392). NaN with fewer than three groups or a constant column.
     """
-    codes, names = pd.factorize(pd.Series(outcomes.event))
-    if len(names) < 3 or np.ptp(column) == 0 or not np.isfinite(fit.theta):
+    if not np.isfinite(fit.theta):
         return float("nan")
     residual = outcomes.overturned / outcomes.trials - fit.probability(outcomes.im)
+    return dependence_p_value(residual, column, outcomes.event)
+
+
+def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.object_]) -> float:
+    """Test a linear dependence of residuals on a column, robust to dependence within groups."""
+    codes, names = pd.factorize(pd.Series(groups))
+    if len(names) < 3 or np.ptp(column) == 0:
+        return float("nan")
     scaled = (column - column.mean()) / column.std()
     result = sm.OLS(residual, sm.add_constant(scaled)).fit(
         cov_type="cluster", cov_kwds={"groups": codes, "use_correction": True}
@@ -137,22 +145,24 @@ def recommend_measure(
     compared = pd.DataFrame(rows)
     share = _chosen_share(list(data.values()), replicates, seed)
     compared["chosen_share"] = compared["measure"].map(dict(zip(measures, share, strict=True)))
-    rising = compared["theta"].notna()
-    if not rising.any():
-        words = "The probability of overturning rises in none of the measures."
-        return MeasureChoice("", "", compared.assign(delta_aic=np.nan), None, words)
-    compared["delta_aic"] = compared["aic"] - compared.loc[rising, "aic"].min()
-    near = rising & (compared["delta_aic"] <= EQUAL_AIC)
-    compared = (
-        compared.assign(late=~rising, rank=np.where(near, compared["beta"], np.inf))
-        .sort_values(["late", "rank", "aic", "measure"], kind="stable")
-        .drop(columns=["late", "rank"])
-        .reset_index(drop=True)
-    )
+    compared = ranked(compared)
+    if compared["theta"].isna().all():
+        return MeasureChoice("", "", compared, None, recommendation(compared, None, given))
     best = str(compared["measure"].iloc[0])
     pair = _best_pair(table, best, [c for c in measures if c != best], overturned, source)
-    words = _words(compared, pair, given)
+    words = recommendation(compared, pair, given)
     return MeasureChoice(best, str(compared["im"].iloc[0]), compared, pair, words)
+
+
+def ranked(compared: pd.DataFrame, efficiency: str = "beta") -> pd.DataFrame:
+    """Sort measures: least AIC first, within 2 of it by efficiency, those without a curve last."""
+    rising = compared["theta"].notna()
+    delta = compared["aic"] - compared.loc[rising, "aic"].min()
+    near = rising & (delta <= EQUAL_AIC)
+    order = compared.assign(
+        delta_aic=delta, late=~rising, rank=np.where(near, compared[efficiency], np.inf)
+    ).sort_values(["late", "rank", "aic", "measure"], kind="stable")
+    return order.drop(columns=["late", "rank"]).reset_index(drop=True)
 
 
 def _row(
@@ -209,7 +219,10 @@ def _best_pair(
     return min(pairs, key=lambda pair: pair.aic) if pairs else None
 
 
-def _words(table: pd.DataFrame, pair: FragilitySurface | None, given: Sequence[str]) -> str:
+def recommendation(table: pd.DataFrame, pair: FragilitySurface | None, given: Sequence[str]) -> str:
+    """Put a ranked table of measures into words."""
+    if table["theta"].isna().all():
+        return "The probability of overturning rises in none of the measures."
     best = table.iloc[0]
     parts = []
     others = table.iloc[1:]
