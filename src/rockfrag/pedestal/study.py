@@ -20,7 +20,7 @@ from rockfrag.pedestal.mixed import (
     long_rows,
 )
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
-from rockfrag.pedestal.pairs import SLENDERNESS, Pairs, pair_tests
+from rockfrag.pedestal.pairs import FLOORS, SLENDERNESS, Pairs, pair_tests
 from rockfrag.pedestal.power import detectable_ratio
 from rockfrag.pedestal.units import mean_effect, sampled_unit, unit_means
 
@@ -96,8 +96,12 @@ def effects_table(table: pd.DataFrame) -> pd.DataFrame:
         detectable_ratio (80 % power with the scatter and number of units at hand).
     """
     rows: list[dict[str, object]] = []
+    # floors from the ground up, not by name
+    floors = [name for name in FLOORS if name in set(table["floor"])]
+    floors += sorted(set(table["floor"]) - set(FLOORS))
+    table = table.assign(floor=pd.Categorical(table["floor"], floors))
     for scope, columns in SCOPES.items():
-        groups = table.groupby(list(columns)) if columns else [((), table)]
+        groups = table.groupby(list(columns), observed=True) if columns else [((), table)]
         for key, part in groups:
             effect = mean_effect(part)
             unit = sampled_unit(part)
