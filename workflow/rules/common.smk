@@ -31,12 +31,14 @@ REPORT_TABLES = [
     "measures",
     "fragility",
     "survival_windows",
+    "validity",
     "table_3_1",
     "table_3_3",
     "table_4_1",
 ]
 if STUDY.has_pairs:
     REPORT_TABLES += [f"pedestal/{name}" for name in PEDESTAL_TABLES]
+    REPORT_TABLES += ["claims", "contradictions"]
 
 
 wildcard_constraints:

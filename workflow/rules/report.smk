@@ -28,7 +28,7 @@ rule draw_figures:
             f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS
         ),
         tests=f"{RESULTS}/tests.parquet",
-        fragility=f"{RESULTS}/fragility.parquet",
+        effects=f"{RESULTS}/pedestal/effects.parquet" if STUDY.has_pairs else [],
     output:
         report(
             figures(*figure_names(STUDY)),
@@ -41,7 +41,7 @@ rule draw_figures:
         "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
-        settings=settings("bodies"),
+        settings=settings("bodies", "fragility"),
         code=source_digest("report"),
     script:
         "../scripts/draw_figures.py"

@@ -37,3 +37,40 @@ rule estimate_pedestal:
         code=source_digest("pedestal"),
     script:
         "../scripts/estimate_pedestal.py"
+
+
+rule check_validity:
+    input:
+        tests=f"{RESULTS}/tests.parquet",
+        motions=f"{RESULTS}/motions/floors.parquet",
+    output:
+        tables("validity"),
+    log:
+        f"{RESULTS}/logs/check_validity.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    params:
+        study=STUDY_FILE,
+        settings=settings("bodies"),
+        code=source_digest("rocking"),
+    script:
+        "../scripts/check_validity.py"
+
+
+rule test_claims:
+    input:
+        tests=f"{RESULTS}/tests.parquet",
+        validity=f"{RESULTS}/validity.parquet",
+        measures=f"{RESULTS}/measures.parquet",
+    output:
+        tables("claims", "contradictions"),
+    log:
+        f"{RESULTS}/logs/test_claims.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    params:
+        study=STUDY_FILE,
+        settings=settings("bodies", "seed"),
+        code=source_digest("claims"),
+    script:
+        "../scripts/test_claims.py"

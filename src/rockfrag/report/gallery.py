@@ -1,52 +1,190 @@
 """All figures of a study: how each is drawn, named and captioned."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
 from matplotlib.figure import Figure
 
+from rockfrag.fragility.estimators import fit_incremental
+from rockfrag.fragility.outcomes import outcomes_from_table
 from rockfrag.records.motion import Motion
+from rockfrag.report.findings import READING
+from rockfrag.report.fragility_figures import fragility_figure
 from rockfrag.report.motion_figures import acceleration_histories
 from rockfrag.report.page import Picture
+from rockfrag.report.pedestal_figures import (
+    forest_figure,
+    pedestal_scatter,
+    sides_figure,
+    slenderness_figure,
+)
 from rockfrag.report.sweep_figures import verdict_map
 from rockfrag.studies import Study
 
 
+@dataclass(frozen=True)
+class Results:
+    """What figures are drawn from.
+
+    Attributes
+    ----------
+    study
+        The study.
+    ground
+        Ground motions.
+    sweep
+        Sweeps of all configurations.
+    tests
+        Table of tests with all readings.
+    effects
+        The pedestal's effect by scope and reading, or None where there are no pairs.
+    """
+
+    study: Study
+    ground: Sequence[Motion]
+    sweep: pd.DataFrame
+    tests: pd.DataFrame
+    effects: pd.DataFrame | None
+
+    @property
+    def laboratory(self) -> pd.DataFrame:
+        """Tests as the laboratory's protocol reads them."""
+        return self.tests[self.tests["reading"] == READING]
+
+    @property
+    def slenderness(self) -> dict[str, float]:
+        """Height over width of each block [-]."""
+        return {name: block.slenderness for name, block in self.study.specimens.items()}
+
+
+@dataclass(frozen=True)
+class Plate:
+    """One figure: its name, its caption, how it is drawn, and whether it needs the page's width."""
+
+    name: str
+    caption: str
+    draw: Callable[[Results], Figure]
+    wide: bool = False
+
+
+_COUNTERPARTS = (
+    Plate(
+        "figure_4_1",
+        "Counterpart of figure 4.1: overturning amplitude against slenderness, with means.",
+        lambda r: slenderness_figure(r.laboratory, slenderness=r.slenderness),
+        wide=True,
+    ),
+    Plate(
+        "figure_4_2",
+        "Counterpart of figure 4.2: the same for each floor.",
+        lambda r: slenderness_figure(r.laboratory, by_floor=True, slenderness=r.slenderness),
+        wide=True,
+    ),
+    Plate(
+        "figure_4_3",
+        "Counterpart of figure 4.3: amplitude with the pedestal against that without.",
+        lambda r: pedestal_scatter(r.laboratory, slenderness=r.slenderness),
+    ),
+    Plate(
+        "figure_4_4",
+        "Counterpart of figure 4.4: amplitude by tower, without and with the pedestal.",
+        lambda r: sides_figure(r.laboratory, "tower", slenderness=r.slenderness),
+    ),
+    Plate(
+        "figure_4_5",
+        "Counterpart of figure 4.5: figure 4.3 for each floor.",
+        lambda r: pedestal_scatter(r.laboratory, "floor", slenderness=r.slenderness),
+        wide=True,
+    ),
+    Plate(
+        "figure_4_6a",
+        "Counterpart of figure 4.6a: amplitude by floor, without and with the pedestal.",
+        lambda r: sides_figure(r.laboratory, "floor", slenderness=r.slenderness),
+    ),
+    Plate(
+        "figure_4_6b",
+        "Counterpart of figure 4.6b: the same for each tower.",
+        lambda r: sides_figure(r.laboratory, "floor", panels="tower", slenderness=r.slenderness),
+        wide=True,
+    ),
+    Plate(
+        "figure_4_7",
+        "Counterpart of figure 4.7: figure 4.3 for each earthquake.",
+        lambda r: pedestal_scatter(r.laboratory, "event", slenderness=r.slenderness),
+        wide=True,
+    ),
+    Plate(
+        "pedestal_effect",
+        "Amplitude with over amplitude without pedestal, with 95 % intervals; grey is the range "
+        "that counts as no effect. Step protocol.",
+        lambda r: _forest(r),
+    ),
+)
+
+
+def plates(study: Study) -> list[Plate]:
+    """Figures of a study in the order of its report."""
+    towers = list(dict.fromkeys(one.tower for one in study.configurations))
+    found = [
+        Plate(
+            "figure_3_4",
+            "Counterpart of figure 3.4: accelerations of the ground motions as recorded; the dot "
+            "marks the peak.",
+            lambda r: acceleration_histories(r.ground),
+        )
+    ]
+    if study.has_pairs:
+        found += _COUNTERPARTS
+    found += [
+        Plate(
+            f"verdicts_{tower}",
+            f"{tower}: every amplitude that overturns it, per motion.",
+            lambda r, tower=tower: verdict_map(r.sweep, tower),
+        )
+        for tower in towers
+    ]
+    found += [
+        Plate(
+            f"fragility_{tower}",
+            f"{tower}: probability of overturning over the peak of the motion, with intervals over "
+            "earthquakes; points are shares of all runs in bins. Below, the share of motions "
+            "between their first and their last change of verdict.",
+            lambda r, tower=tower: _fragility(r, tower),
+        )
+        for tower in towers
+    ]
+    return found
+
+
 def figure_names(study: Study) -> list[str]:
     """Names of a study's figures, in the order of the report."""
-    return ["figure_3_4", *(f"verdicts_{tower}" for tower in _towers(study))]
-
-
-def draw_all(
-    study: Study,
-    *,
-    ground: Sequence[Motion],
-    sweep: pd.DataFrame,
-    tests: pd.DataFrame,
-    fragility: pd.DataFrame,
-) -> dict[str, Figure]:
-    """Draw every figure named by :func:`figure_names`."""
-    figures = {"figure_3_4": acceleration_histories(ground)}
-    figures |= {f"verdicts_{tower}": verdict_map(sweep, tower) for tower in _towers(study)}
-    return figures
+    return [plate.name for plate in plates(study)]
 
 
 def pictures(study: Study, folder: Path) -> dict[str, Picture]:
     """Figures with their captions, from the files in ``folder``."""
-    captions = {
-        "figure_3_4": "Counterpart of figure 3.4: accelerations of the ground motions as recorded; "
-        "the dot marks the peak."
-    }
-    captions |= {
-        f"verdicts_{tower}": f"{tower}: every amplitude that overturns it, per motion."
-        for tower in _towers(study)
-    }
     return {
-        name: Picture(folder / f"{name}.svg", captions[name], captions[name])
-        for name in figure_names(study)
+        plate.name: Picture(folder / f"{plate.name}.svg", plate.caption, plate.caption, plate.wide)
+        for plate in plates(study)
     }
 
 
-def _towers(study: Study) -> list[str]:
-    return list(dict.fromkeys(one.tower for one in study.configurations))
+def _forest(results: Results) -> Figure:
+    effects = results.effects
+    if effects is None:
+        raise ValueError("a study without pairs has no effect of a pedestal")
+    return forest_figure(effects[effects["reading"] == READING])
+
+
+def _fragility(results: Results, tower: str) -> Figure:
+    rows = results.sweep[results.sweep["tower"] == tower]
+    level = results.study.fragility.confidence
+    curves, outcomes, windows = {}, {}, {}
+    for name, part in rows.groupby("configuration", sort=False):
+        found = fit_incremental(part, event="event", level=level)
+        curves[str(name)] = found.probability
+        outcomes[str(name)] = outcomes_from_table(part, "amplitude_g", event="event")
+        windows[str(name)] = found.windows
+    return fragility_figure(curves, outcomes, windows)

@@ -24,7 +24,7 @@ def verdict_map(sweep: pd.DataFrame, tower: str) -> Figure:
     rows = sweep[sweep["tower"] == tower]
     motions = list(dict.fromkeys(rows["motion"]))[:MOST_ROWS]
     sides = [side for side in ("NP", "P") if (rows["pedestal"] == side).any()]
-    colours = {"NP": BLUE, "P": ORANGE}
+    colours = {"NP": ORANGE, "P": BLUE}
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.9 + 0.22 * len(motions))
         axes = figure.subplots()

@@ -1,0 +1,49 @@
+# make run      the thesis's study, from records to report (STUDY=config/other.yaml for another)
+# make smoke    a small study in under a minute
+# make test     the tests; make validate the long ones; make lint the checks of form
+# make bench    speed against other programs
+# Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
+# Paths are relative throughout, so the checkout may stand anywhere, spaces included.
+
+PYTHON ?= python3
+STUDY ?= config/thesis.yaml
+RUN := .venv/bin/python -m
+
+.PHONY: run smoke test validate lint bench format
+.DEFAULT_GOAL := run
+
+run: .venv/installed
+	@$(RUN) rockfrag.cli check-config --quiet "$(STUDY)"
+	@$(RUN) snakemake --configfile "$(STUDY)" --quiet host rules reason
+	@$(RUN) rockfrag.cli check-config --report "$(STUDY)"
+
+smoke:
+	@$(MAKE) --no-print-directory run STUDY=config/smoke.yaml
+
+test: .venv/installed
+	@$(RUN) pytest -m "not slow"
+
+validate: .venv/installed
+	@$(RUN) pytest -m slow
+
+lint: .venv/installed
+	@$(RUN) ruff check .
+	@$(RUN) ruff format --check .
+	@$(RUN) mypy
+	@.venv/bin/python .venv/bin/snakefmt --check Snakefile workflow
+	@$(RUN) snakemake --lint
+
+format: .venv/installed
+	@$(RUN) ruff format .
+	@.venv/bin/python .venv/bin/snakefmt Snakefile workflow
+
+bench: .venv/installed
+	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]"
+	@.venv/bin/python benchmarks/run.py
+
+.venv/installed: pyproject.toml constraints.txt
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; name another with make PYTHON=…")'
+	@test -x .venv/bin/python || "$(PYTHON)" -m venv .venv
+	@echo "Installing into .venv (once)"
+	@$(RUN) pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[workflow,test,lint]"
+	@touch .venv/installed

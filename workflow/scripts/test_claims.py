@@ -1,0 +1,24 @@
+"""Test the thesis's statements on the simulated tests."""
+
+import pandas as pd
+
+from rockfrag.claims import Evidence, contradictions, ledger
+from rockfrag.files import write_table
+from rockfrag.report.findings import READING
+from rockfrag.studies import study_from
+from rockfrag.studies.log import logged
+
+with logged(snakemake.log[0], "claims") as log:
+    study = study_from(snakemake.config, snakemake.params.study)
+    tests = pd.read_parquet(snakemake.input.tests)
+    forces = pd.read_parquet(snakemake.input.validity)
+    forces = forces[["test", "friction_demand", "least_normal_force_n"]]
+    tests = tests[tests["reading"] == READING].merge(forces, on="test", how="left")
+    measures = pd.read_parquet(snakemake.input.measures)
+    claims = ledger(
+        tests, basis="simulated", seed=study.seed, measures=measures, bodies=study.specimens
+    )
+    write_table(claims, *snakemake.output[:2])
+    evidence = Evidence(tests, "simulated", study.seed, measures, study.specimens)
+    write_table(contradictions(evidence), *snakemake.output[2:])
+    log.info("%s", ", ".join(f"{n} {v}" for v, n in claims["verdict"].value_counts().items()))
