@@ -135,8 +135,8 @@ def simulate_reference(
         (pedestal, statue) for a stack; zero if not given.
     restitution
         None conserves angular momentum about the new pole.  A measured value instead, one number
-        for a block, a pair (ground, interface) for a stack, either of which may be None: the impulse
-        of the closing contact then acts where it leaves the lone block with ω⁺ = value · ω⁻.
+        for a block, a pair (ground, interface) for a stack, either of which may be None: the
+        impulse of the closing contact then acts where it leaves the lone block with ω⁺ = value · ω⁻.
     linear
         Use the linearised equations 2.9 and 2.60 to 2.65.
     g
@@ -408,17 +408,22 @@ class _Run:
         closing = (old[0] if 0 in shut else 0, old[1] if 1 in shut else 0)
         quiet = {i for i in shut if old[i] * rates[i] > -NEGLIGIBLE_SPEED * self.model.frequency}
         if quiet == set(shut):
-            new, after = old, before
+            new, after = self._shut(old, quiet, old, before)
         else:
             new, after = self.model.impact(old, closing, self.theta, before)
-            quiet = self._too_weak(time, new, after, old, closing)
+            # with one contact shut another may turn out to be as weak
+            while weak := self._too_weak(time, new, after, old, closing):
+                new, after = self._shut(new, weak, old, before)
+                quiet |= weak
         kind = "closing" if quiet else "impact"
-        if quiet:
-            new = (0 if 0 in quiet else new[0], 0 if 1 in quiet else new[1])
-            poles = (float(new[0] or 1), float(new[1] or 1))
-            after = self.model.projected(poles, new, old, self.theta, before)
         self.state, self.omega = new, after
         self._note(time, kind, old, before)
+
+    def _shut(self, new: State, weak: set[int], old: State, before: Pair) -> tuple[State, Pair]:
+        """Close weak contacts for good; the velocities of the others follow from momentum."""
+        new = (0 if 0 in weak else new[0], 0 if 1 in weak else new[1])
+        poles = (float(new[0] or 1), float(new[1] or 1))
+        return new, self.model.projected(poles, new, old, self.theta, before)
 
     def _too_weak(
         self, time: float, new: State, after: Pair, old: State, closing: State

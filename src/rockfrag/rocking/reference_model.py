@@ -1,7 +1,7 @@
 """Mechanics of the reference integrator: motion, persistence and impact, written to be read.
 
-Everything follows from the velocity fields of the blocks (``docs/derivation.md``).  With r1, d and r2
-the vectors pole of block 1 → its centre, pole of block 1 → pole of block 2, pole of block 2 → its
+Everything follows from the velocity fields of the blocks (``docs/derivation.md``).  With r1, d and
+r2 the vectors pole of block 1 → its centre, pole of block 1 → pole of block 2, pole of block 2 → its
 centre, the centres move with
 
     v1 = ω1 ⊥r1,   v2 = ω1 ⊥d + ω2 ⊥r2,   ⊥(x, y) = (y, -x)   (clockwise)
@@ -259,45 +259,35 @@ class Model:
             (p2 * left[0][0] - p1 * left[1][0]) / det,
         )
 
-    def velocities_after(
-        self, new: State, old: State, closing: State, theta: Pair, before: Pair
-    ) -> tuple[Pair, Pair]:
-        """Velocities after an impact that ends in ``new``, and the places the impulses act at.
-
-        The measured restitution of a closing contact moves its impulse away from the new pole;
-        where that would create energy the impulse acts at the pole after all.
-        """
-        poles = (float(new[0] or 1), float(new[1] or 1))
-        places = tuple(
-            self._impulse_place(i, closing[i]) if closing[i] and new[i] else poles[i]
-            for i in (0, 1)
-        )
-        if places != poles:
-            after = self.projected((places[0], places[1]), new, old, theta, before)
-            energy = self.kinetic_energy(old, theta, before)
-            if self.kinetic_energy(new, theta, after) <= energy * (1 + 1e-12):
-                return after, (places[0], places[1])
-        return self.projected(poles, new, old, theta, before), poles
-
     def impact(self, old: State, closing: State, theta: Pair, before: Pair) -> tuple[State, Pair]:
         """Contact state and angular velocities after an impact (thesis eq. 2.76 to 2.86, mended).
 
-        ``closing`` holds the old pole of each contact that closes, 0 for the others.
+        ``closing`` holds the old pole of each contact that closes, 0 for the others.  A measured
+        restitution moves the impulse of a closing contact away from its new pole; where that would
+        create energy the impulse acts at the pole after all.
         """
-        admissible = self.admissible_impacts(old, closing, theta, before)
-        outcome = next(admissible, None)
-        if outcome is None:
-            raise ArithmeticError(f"no impact is admissible at {old}, {closing}, {theta}, {before}")
-        return outcome
+        energy = self.kinetic_energy(old, theta, before) * (1 + 1e-9)
+        for measured in (True, False):
+            for new, after in self.admissible_impacts(old, closing, theta, before, measured):
+                if self.kinetic_energy(new, theta, after) <= energy:
+                    return new, after
+                break
+        raise ArithmeticError(f"no impact is admissible at {old}, {closing}, {theta}, {before}")
 
     def admissible_impacts(
-        self, old: State, closing: State, theta: Pair, before: Pair
+        self, old: State, closing: State, theta: Pair, before: Pair, measured: bool = False
     ) -> Iterator[tuple[State, Pair]]:
         """List every outcome of an impact that separates and presses as it must."""
         closed = (old[0] == 0 or closing[0] != 0, old[1] == 0 or closing[1] != 0)
-        speed = NEGLIGIBLE_SPEED * max(abs(before[0]), abs(before[1]))
+        speed = NEGLIGIBLE_SPEED * (abs(before[0]) + abs(before[1]))
         for new in self.options(old, closed, closing):
-            after, places = self.velocities_after(new, old, closing, theta, before)
+            places = (float(new[0] or 1), float(new[1] or 1))
+            if measured:
+                places = (
+                    self._impulse_place(0, closing[0]) if closing[0] and new[0] else places[0],
+                    self._impulse_place(1, closing[1]) if closing[1] and new[1] else places[1],
+                )
+            after = self.projected(places, new, old, theta, before)
             apart = (new[0] * after[0], new[1] * (after[1] - after[0]))
             separates = all(apart[i] > speed for i in (0, 1) if closed[i] and new[i] != 0)
             if separates and self._presses(new, old, places, theta, after, before):
