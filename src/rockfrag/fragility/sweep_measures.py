@@ -127,9 +127,8 @@ def recommend_sweep_measure(
     words = recommendation(table, None, given)
     if table["theta"].isna().all():
         return MeasureChoice("", "", table, None, words)
-    return MeasureChoice(
-        str(table["measure"].iloc[0]), str(table["im"].iloc[0]), table, None, words
-    )
+    best = table.iloc[0]
+    return MeasureChoice(str(best["measure"]), str(best["im"]), table, None, words)
 
 
 def _of_motions(known: pd.DataFrame, windows: pd.DataFrame, column: str) -> Floats:
@@ -141,7 +140,7 @@ def _of_motions(known: pd.DataFrame, windows: pd.DataFrame, column: str) -> Floa
         raise InputError(
             f"measures, column {column!r}: motion {motion!r} has no value; leave the column out."
         )
-    return values
+    return np.asarray(values)
 
 
 def _residuals(brackets: Brackets, fit: FragilityFit) -> tuple[Floats, NDArray[np.bool_]]:
