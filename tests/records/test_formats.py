@@ -147,3 +147,68 @@ def test_a_cosmos_file_of_velocity_or_counts_is_refused(tmp_path, texts):
     )
     with pytest.raises(InputError, match="raw counts"):
         obspy.read(path)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "NPTS=   43, DT= .00500 SEC",
+        "NPTS= 43, DT= .0050 SEC,      ",
+        "npts:43;dt:0.005",
+        "DT= .005 SEC NPTS = 43",
+        "43   .0050   NPTS, DT",
+        "  .0050  43 DT, NPTS",
+        "NPTS, DT=  43, .0050",
+        "NPTS=  43, DT= 5.0E-03 SEC",
+    ],
+)
+def test_dialects_of_the_size_line_of_peer(builders, tmp_path, line):
+    built = builders["at2_peer"](tmp_path)
+    text = built.path.read_text().split("\n")
+    text[3] = line
+    built.path.write_text("\n".join(text))
+    assert claims(str(built.path)) == ["AT2"]
+    trace = obspy.read(built.path)[0]
+    assert (trace.stats.npts, trace.stats.delta) == (43, 0.005)
+
+
+@pytest.mark.parametrize(
+    ("words", "unit"),
+    [
+        ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", "cm/s2"),
+        ("ACCELERATION TIME HISTORY IN UNITS OF CM/S**2", "cm/s2"),
+        ("The units are (g)", "g"),
+        ("Acceleration in m/s^2", "m/s2"),
+        ("ACCELERATION TIME HISTORY", ""),
+    ],
+)
+def test_units_that_peer_like_headers_state(builders, tmp_path, words, unit):
+    built = builders["at2_peer"](tmp_path)
+    lines = built.path.read_text().split("\n")
+    lines[2] = words
+    built.path.write_text("\n".join(lines))
+    assert obspy.read(built.path)[0].stats.rockfrag.unit == unit
+
+
+def test_peer_columns_that_touch_are_read(builders, tmp_path):
+    built = builders["at2_peer"](tmp_path)
+    header = built.path.read_text().split("\n")[:4]
+    values = -np.abs(built.samples[0]) - 0.1
+    fields = [f"{value:15.8E}" for value in values]
+    assert all(len(field) == 15 and field[0] == "-" for field in fields)
+    rows = ["".join(fields[i : i + 5]) for i in range(0, len(fields), 5)]
+    built.path.write_text("\n".join(header + rows) + "\n")
+    np.testing.assert_allclose(obspy.read(built.path)[0].data, values, rtol=1e-8)
+
+
+def test_a_long_line_of_anything_is_recognised_or_not_at_once(tmp_path):
+    """Patterns must not take more than linear time on lines made to confuse them."""
+    import time
+
+    path = tmp_path / "confusing.txt"
+    for content in ("1," * 8000 + "x", "1.1" * 5000, "(" * 16000, " ,A(" * 4000, "1 " * 8000 + "x"):
+        path.write_text((content + "\n") * 3)
+        start = time.perf_counter()
+        for candidate in FORMATS:
+            candidate.is_format(str(path))
+        assert time.perf_counter() - start < 1.0

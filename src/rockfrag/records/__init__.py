@@ -1,1 +1,1 @@
-"""records."""
+"""Strong-motion records: one module per file format, catalogues and where records come from."""

@@ -10,6 +10,7 @@ import re
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from obspy import Stream
 
 from rockfrag.errors import InputError
@@ -26,18 +27,25 @@ _TRAILING = re.compile(
     rf"^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b",
     re.IGNORECASE,
 )
-_UNIT = re.compile(
-    r"\bUNITS?\s*(?:OF|ARE|IS|[:=])?\s*[:=]?\s*\(?\s*"
-    r"(?P<unit>G(?![A-Z])|GALS?\b|C?M*M?\s*/\s*S\w*(?:\s*/\s*S\w*|\*\*2|\^2|2)?|C?M+\b|IN\b)",
+_LEADING = re.compile(
+    rf"\b(?P<names>NPTS\s*[,;\s]\s*DT|DT\s*[,;\s]\s*NPTS)\W*?\s*[=:]?\s*"
+    rf"(?P<first>{_NUMBER})[\s,;]+(?P<second>{_NUMBER})",
     re.IGNORECASE,
 )
+_WORDS_OF_UNIT = (
+    r"(?P<unit>G(?:'?S)?(?![A-Z0-9/])|G\s*/\s*10\b|M?GALS?\b|"
+    r"(?:[CM]?M|IN\w*)\s*/\s*\(?S\w*(?:\s*/\s*S\w*|\*\*2|\^2)?|[CM]?M\b|IN\b)"
+)
+_UNIT = re.compile(rf"\bUNITS?\s*(?:OF|ARE|IS)?\s*[:=]?\s*[(\[]?\s*{_WORDS_OF_UNIT}", re.IGNORECASE)
 _IN_UNIT = re.compile(
-    r"\bACC\w*\.?\s+(?:IN\s+|[(\[]\s*)(?P<unit>G(?![A-Z])|GALS?\b|C?M*M?\s*/\s*S[\w/*^]*)",
-    re.IGNORECASE,
+    rf"\b(?:ACC|VEL|DIS)\w*\.?\s*(?:\bIN\s+|[,(\[]\s*){_WORDS_OF_UNIT}", re.IGNORECASE
 )
 _QUANTITY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*", re.IGNORECASE)
+_HISTORY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*\s+TIME\b", re.IGNORECASE)
+_ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
 _MAX_HEADER = 30
+_WIDTH = 15
 _COMPONENT = re.compile(
     r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|HNE|HNN|HNZ|FN|FP)"
     r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
@@ -49,7 +57,7 @@ _AZIMUTH = re.compile(r"\bazimuth\s*=\s*(?P<azimuth>\d{1,3})", re.IGNORECASE)
 def _size_line(lines: list[str]) -> int:
     """Return the line that has the number of points and the interval, or -1."""
     for number, line in enumerate(lines[:_MAX_HEADER]):
-        if _TRAILING.match(line) or (_COUNT.search(line) and _STEP.search(line)):
+        if _named_pair(line) or (_COUNT.search(line) and _STEP.search(line)):
             return number
     return -1
 
@@ -66,11 +74,16 @@ def _recognise(lines: list[str], name: str) -> bool:
     )
 
 
+def _named_pair(line: str) -> re.Match[str] | None:
+    """Match two numbers named together, before or after them: ``4000 .01 NPTS, DT``."""
+    return _TRAILING.match(line) or _LEADING.search(line)
+
+
 def _size(line: str) -> tuple[int, float]:
-    trailing = _TRAILING.match(line)
-    if trailing:
-        values = [trailing["first"], trailing["second"]]
-        if trailing["names"].upper().startswith("DT"):
+    pair = _named_pair(line)
+    if pair:
+        values = [pair["first"], pair["second"]]
+        if pair["names"].upper().startswith("DT"):
             values.reverse()
         npts, dt = values
     else:
@@ -98,7 +111,10 @@ def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
             unit = canonical_unit(found["unit"])
             if named:
                 quantity = _QUANTITIES[named["quantity"].upper()]
-    return quantity or quantity_of(unit), unit
+    if not quantity:
+        history = next((match for line in header if (match := _HISTORY.search(line))), None)
+        quantity = _QUANTITIES[history["quantity"].upper()] if history else quantity_of(unit)
+    return quantity, unit
 
 
 def _parse(text: TextFile) -> list[Channel]:
@@ -112,6 +128,7 @@ def _parse(text: TextFile) -> list[Channel]:
     except (ValueError, OverflowError) as error:
         text.fail(str(error), size)
     quantity, unit = _quantity_and_unit(header)
+    quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
     if quantity not in ("", "acceleration"):
         text.fail(
             f"this is a {quantity} history"
@@ -124,7 +141,7 @@ def _parse(text: TextFile) -> list[Channel]:
         Channel(
             npts=npts,
             dt=dt,
-            samples=lambda: text.counted(size + 1, None, npts, _width(text, size + 1)),
+            samples=lambda: _samples(text, size + 1, npts),
             unit=unit,
             station=station,
             component=component,
@@ -133,10 +150,17 @@ def _parse(text: TextFile) -> list[Channel]:
     ]
 
 
-def _width(text: TextFile, first: int) -> int | None:
-    """Return PEER's width of 15 where neighbouring numbers may touch, else None."""
-    line = text.raw(first).rstrip()
-    return 15 if len(line) == 75 and len(line.split()) < 5 else None
+def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
+    """Return the samples: separated numbers, or PEER's columns of 15 where neighbours touch."""
+    try:
+        return text.counted(start, None, npts)
+    except InputError as error:
+        if len(text.raw(start).rstrip()) != 5 * _WIDTH:
+            raise
+        try:
+            return text.counted(start, None, npts, _WIDTH)
+        except InputError:
+            raise error from None
 
 
 def _facts(header: list[str]) -> dict[str, str]:

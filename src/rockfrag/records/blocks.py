@@ -12,7 +12,9 @@ from rockfrag.records.text import TextFile
 QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
 """First letters of a quantity's name in a header, and the quantity."""
 
-_FORTRAN = re.compile(r"\(\s*(?P<count>\d*)\s*[FEGID]\s*(?P<width>\d+)", re.IGNORECASE)
+_FORTRAN = re.compile(
+    r"\(\s*\d*\s*\(?\s*(?:\d+P\s*,?\s*\d*)?\s*[FEGID]S?\s*(?P<width>\d+)", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)

@@ -137,7 +137,7 @@ def _words(text: TextFile, first: int, stop: int) -> _Words:
     station = name = component = ""
     start = None
     for number, line in enumerate(lines):
-        found = re.match(r"\s*station\s+no\.?\s*(\d+)?", line, re.IGNORECASE)
+        found = re.match(r"\s*station\s+no\.?\s*([A-Z]{0,2}\d+)?", line, re.IGNORECASE)
         if found and not station and not name:
             station = found[1] or ""
             name = re.split(r"\s{3,}", lines[number + 1].strip())[0] if lines[number + 1 :] else ""

@@ -58,7 +58,7 @@ def _parse(text: TextFile) -> list[Channel]:
             text.fail(f"the header gives no {key}")
     unit = canonical_unit(facts["UNITS"])
     kind = facts.get("DATA_TYPE", "").lower() or quantity_of(unit)
-    if not kind.startswith("acc") or quantity_of(unit) not in ("acceleration", ""):
+    if re.search("vel|dis|spectr", kind) or quantity_of(unit) != "acceleration":
         text.fail(
             f"this file holds {kind or 'no acceleration'} in {facts['UNITS']}, not acceleration"
         )
@@ -83,7 +83,7 @@ def _parse(text: TextFile) -> list[Channel]:
             station=facts.get("STATION_CODE", ""),
             location=_location(facts.get("LOCATION", "")),
             code=facts.get("STREAM", ""),
-            component=facts.get("STREAM", ""),
+            component=facts.get("STREAM") or facts.get("COMPONENT", ""),
             details=_details(facts),
         )
     ]

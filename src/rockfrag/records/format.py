@@ -10,6 +10,9 @@ from rockfrag.errors import InputError
 from rockfrag.records.channel import Channel
 from rockfrag.records.text import HEAD_BYTES, Source, name_of, read_head, read_text
 
+_LONGEST = 1_000
+"""Characters of a line that are looked at to recognise a format."""
+
 
 @dataclass(frozen=True)
 class Format:
@@ -95,4 +98,4 @@ def head_lines(source: Source) -> list[str]:
     if len(head) >= HEAD_BYTES:
         # the last line of a head is cut anywhere
         lines = lines[:-1]
-    return [line.rstrip() for line in lines]
+    return [line[:_LONGEST].rstrip() for line in lines]

@@ -14,6 +14,8 @@ _D_EXPONENT = bytes.maketrans(b"Dd", b"Ee")
 _EXPONENT_WITHOUT_LETTER = re.compile(rb"^([+-]?(?:\d+\.?\d*|\.\d+))([+-]\d{1,3})$")
 _NUMBER = re.compile(rb"^[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?$")
 _SHOWN = 24
+_LONGEST = 400
+"""Digits that a number may have: float64 needs no more than 350 even written out in full."""
 
 
 class NumberError(ValueError):
@@ -95,6 +97,8 @@ def _line_by_line(text: bytes) -> NDArray[np.float64]:
 
 
 def _number(token: bytes, line: int) -> float:
+    if len(token) > _LONGEST:
+        raise NumberError(line, f"{_shown(token)} is too long for a number")
     plain = token.translate(_D_EXPONENT)
     match = _EXPONENT_WITHOUT_LETTER.match(plain)
     if match:

@@ -25,7 +25,7 @@ from rockfrag.records.text import TextFile
 from rockfrag.records.times import check_rising, step_of_times
 
 _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[EeDd][+-]?\d+)?"
-_ROW = re.compile(rf"^\s*{_NUMBER}(?:(?:\s*[,;\t]\s*|\s+){_NUMBER})*\s*[,;]?\s*$")
+_TOKEN = re.compile(_NUMBER)
 _COUNT_AND_STEP = re.compile(rf"^\s*(?P<npts>\d+)[\s,;]+(?P<dt>{_NUMBER})\s*$")
 _COMMENT = re.compile(r"^\s*(?:#|%|!|//|\"?\s*$)")
 _UNIT = re.compile(r"[\[(_\s](?P<unit>[^\[\]()\s,;]+)[\])]?\s*$")
@@ -55,7 +55,7 @@ def _recognise(lines: list[str], name: str) -> bool:
     if layout is None or seismosoft.FORMAT.recognise(lines, name):
         return False
     rows = [line for line in lines[layout.start :] if line.strip()]
-    if not rows or not all(_ROW.match(line) for line in rows):
+    if not rows or not all(_is_row(line) for line in rows):
         return False
     if layout.npts is not None:
         return True
@@ -76,7 +76,7 @@ def first_odd_row(lines: list[str]) -> int | None:
     if layout is None:
         return None
     rows = [i for i in range(layout.start, len(lines)) if lines[i].strip()]
-    odd = [i for i in rows if not _ROW.match(lines[i]) or _width(lines[i]) != layout.columns]
+    odd = [i for i in rows if not _is_row(lines[i]) or _width(lines[i]) != layout.columns]
     return odd[0] if odd and 2 * len(odd) < len(rows) else None
 
 
@@ -86,7 +86,7 @@ def _layout(lines: list[str]) -> _Layout | None:
     words: list[str] = []
     step = None
     for number, line in enumerate(lines[:_MAX_HEADER]):
-        if _COMMENT.match(line) or not _ROW.match(line):
+        if _COMMENT.match(line) or not _is_row(line):
             titles = _titles(line.strip(" \t#%!/"), titles)
             stated = _STEP.search(line)
             step = _number(stated["dt"]) if stated else step
@@ -108,7 +108,7 @@ def _layout(lines: list[str]) -> _Layout | None:
 def _is_count_line(match: re.Match[str], below: str) -> bool:
     """Tell ``npts dt`` from the first row of two columns: the next row is no time 0 + dt."""
     npts, dt = int(match["npts"]), _number(match["dt"])
-    if npts < 2 or not 0 < dt <= 1 or not _ROW.match(below):
+    if npts < 2 or not 0 < dt <= 1 or not _is_row(below):
         return False
     return _width(below) != 2 or _first_number(below) < npts
 
@@ -120,6 +120,12 @@ def _titles(line: str, before: list[str]) -> list[str]:
         return words
     alone = len(words) == 1 and re.match(r"acc\w*\.?\s*[\[(]", words[0], re.IGNORECASE)
     return ["", words[0]] if alone else before
+
+
+def _is_row(line: str) -> bool:
+    """Tell whether a line is numbers and nothing else."""
+    numbers = _numbers(line)
+    return bool(numbers) and all(_TOKEN.fullmatch(word) for word in numbers)
 
 
 def _width(line: str) -> int:

@@ -13,7 +13,7 @@ from rockfrag.errors import InputError
 from rockfrag.records.channel import Channel
 from rockfrag.records.format import head_lines
 from rockfrag.records.plain import first_odd_row
-from rockfrag.records.text import HEAD_BYTES, MAX_LINE, read_head
+from rockfrag.records.text import HEAD_BYTES, MAX_LINE, check_unpacked, read_head
 
 RECORDER_FORMATS = frozenset({"MSEED", "SAC", "KNET", "KINEMETRICS_EVT"})
 """Formats of raw recordings, whose mean is the zero of the sensor, gravity and tilt included."""
@@ -42,6 +42,7 @@ def obspy_channels(path: Path) -> tuple[str, list[Channel]]:
             f"{path}, line 1: the line is longer than {MAX_LINE} characters, "
             "which no record format has."
         )
+    check_unpacked(path)
     try:
         # ObsPy takes a name for a pattern; ours are names
         stream = obspy.read(glob.escape(str(path)))

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 import numpy as np
@@ -238,4 +239,4 @@ def _title(motion: Motion) -> str:
     if facts.get("station_name"):
         words[0] = f"{words[0]} {facts['station_name']}".strip()
     found = ", ".join(word for word in words if word)
-    return f"{motion.name}: {found}" if found and motion.name else motion.name or found
+    return "\n".join(shorten(line, 100, placeholder="…") for line in (motion.name, found) if line)
