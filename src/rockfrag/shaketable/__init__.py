@@ -1,1 +1,47 @@
-"""shaketable."""
+"""The shaking table: its limits, the protocols of its tests, and tables of measured ones."""
+
+from rockfrag.shaketable.measured import read_measured
+from rockfrag.shaketable.measurement import Accelerometer, Exact, ForceOverMass
+from rockfrag.shaketable.protocols import Outcome, Protocol, climb
+from rockfrag.shaketable.settings import make_protocol, make_shaker, read_shaker
+from rockfrag.shaketable.shaker import (
+    Demand,
+    Shaker,
+    produced_motion,
+    required_corner,
+    shaker_table,
+)
+from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
+from rockfrag.shaketable.sweeps import (
+    always_overturning,
+    first_overturning,
+    step_protocol,
+    survival_windows,
+    tests_from_sweep,
+)
+
+__all__ = [
+    "Accelerometer",
+    "Demand",
+    "Exact",
+    "ForceOverMass",
+    "ForceSteps",
+    "GeometricSteps",
+    "LinearSteps",
+    "Outcome",
+    "Protocol",
+    "Shaker",
+    "always_overturning",
+    "climb",
+    "first_overturning",
+    "make_protocol",
+    "make_shaker",
+    "produced_motion",
+    "read_measured",
+    "read_shaker",
+    "required_corner",
+    "shaker_table",
+    "step_protocol",
+    "survival_windows",
+    "tests_from_sweep",
+]
