@@ -1,0 +1,394 @@
+"""Restitution of a real block from its measured free rocking.
+
+A block that rocks freely loses energy at impacts only.  With x the square of the angular velocity just
+after an impact, e² x is that after the next (thesis eq. 2.13), and x gives both the peak between them and
+the time between them.  So peaks, impact times and whole histories all speak about e.  For the slender
+linearised equation (2.9) the peaks obey φ' = 1 - √(1 - e² (1 - (1 - φ)²)) with φ = θ/θc (Housner 1963).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import OptimizeResult, brentq, least_squares
+from scipy.stats import t as student
+
+from rockfrag.errors import InputError
+from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.simulation import simulate
+from rockfrag.units import STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
+
+
+@dataclass(frozen=True)
+class RestitutionFit:
+    """Coefficient of restitution that explains a free-rocking history best.
+
+    Attributes
+    ----------
+    restitution
+        e, ratio of the angular velocities after and before an impact [-].
+    lower, upper
+        Limits of its confidence interval; NaN where the data leave no degree of freedom.
+    impacts
+        Impacts that speak about e.
+    scatter
+        Standard deviation of the data about the fit, in their own unit (rad or s); NaN likewise.
+    computed
+        What conservation of momentum gives for this block, 1 - 1.5 sin²α if it is uniform [-].
+    """
+
+    restitution: float
+    lower: float
+    upper: float
+    impacts: int
+    scatter: float
+    computed: float
+
+
+def peak_after(
+    block: Block, speed: float, pole: int = 1, *, linear: bool = False, g: float = STANDARD_GRAVITY
+) -> float:
+    """Peak rotation of a block that leaves its base with an angular velocity.
+
+    Parameters
+    ----------
+    speed
+        Magnitude of the angular velocity just after the impact [rad/s].
+    pole
+        Corner it rocks on.
+    linear
+        Use the slender linearised equation (thesis eq. 2.9).
+
+    Returns
+    -------
+    Magnitude of the rotation [rad]; NaN if it would go over.
+    """
+    alpha, x = block.critical_angle(pole), speed**2 / block.frequency(pole, g) ** 2
+    # written so that small speeds keep their digits
+    if linear:
+        y = x / alpha**2
+        return alpha * y / (1 + math.sqrt(1 - y)) if y < 1 else math.nan
+    sine, cosine = math.sin(alpha), math.cos(alpha)
+    gain = x * cosine + x**2 / 4  # sin²α - sin²(α - θ)
+    if cosine + x / 2 >= 1 or gain >= sine**2:
+        return math.nan
+    return math.asin(x * sine / 2 + cosine * gain / (sine + math.sqrt(sine**2 - gain)))
+
+
+def speed_before(
+    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = STANDARD_GRAVITY
+) -> float:
+    """Angular velocity [rad/s] with which a block comes down from rest at a rotation [rad]."""
+    alpha, p = block.critical_angle(pole), block.frequency(pole, g)
+    if linear:
+        return p * math.sqrt(peak * (2 * alpha - peak))
+    # cos(α - θ) - cos α as a product, which keeps its digits for small rotations
+    return p * math.sqrt(4 * math.sin(alpha - peak / 2) * math.sin(peak / 2))
+
+
+def quarter_period(
+    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = STANDARD_GRAVITY
+) -> float:
+    """Time from rest at a rotation ``peak`` [rad] to the impact [s]; thesis eq. 2.20 if linear.
+
+    The nonlinear one is the integral of dθ/θ' with the energy of eq. 2.4, by Gauss-Legendre after
+    θ = θ0 (1 - u²), which takes the singularity away.
+    """
+    alpha, p = block.critical_angle(pole), block.frequency(pole, g)
+    if linear:
+        phi = peak / alpha
+        return math.atanh(math.sqrt(phi * (2 - phi))) / p
+    u = (_NODES + 1) / 2
+    fall = peak * u**2
+    speed = p * np.sqrt(4 * np.sin(alpha - peak + fall / 2) * np.sin(fall / 2))
+    return float(np.sum(_WEIGHTS / 2 * 2 * peak * u / speed))
+
+
+def restitution_from_peaks(
+    block: Block,
+    peaks: ArrayLike,
+    *,
+    linear: bool = False,
+    confidence: float = 0.95,
+    g: float = STANDARD_GRAVITY,
+) -> RestitutionFit:
+    """Fit e to successive peak rotations, by least squares on the rotations.
+
+    Parameters
+    ----------
+    block
+        The block.
+    peaks
+        Peak rotations in their order [rad], shape (n,), n ≥ 2; alternating in sign, or magnitudes.
+        They alternate between the corners; the first is on that of the first peak's sign.
+    linear
+        Use the slender linearised equation (thesis eq. 2.9).
+    confidence
+        Level of the interval.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two peaks, one is not between zero and the critical angle, or the
+        signs neither alternate nor agree.
+    """
+    values, poles = _checked_peaks(block, peaks)
+
+    def model(parameters: Floats) -> Floats:
+        first, e = parameters
+        speed = speed_before(block, first, poles[0], linear=linear, g=g)
+        found = [first]
+        for pole in poles[1:]:
+            speed *= e
+            found.append(peak_after(block, speed, pole, linear=linear, g=g))
+        return np.array(found)
+
+    # the ratio of the first and the last speed is already an estimate
+    speeds = [
+        speed_before(block, peak, pole, linear=linear, g=g)
+        for peak, pole in zip(values, poles, strict=True)
+    ]
+    start = (speeds[-1] / speeds[0]) ** (1 / (len(values) - 1))
+    ceiling = min(block.critical_angle(pole) for pole in poles)
+    fit = _least_squares(
+        lambda q: model(q) - values,
+        [values[0], start],
+        ([1e-9 * ceiling, 1e-3], [ceiling * (1 - 1e-9), 1.0]),
+    )
+    return _summary(block, fit, 1, len(values) - 1, confidence)
+
+
+def restitution_from_impacts(
+    block: Block,
+    times: ArrayLike,
+    *,
+    first_pole: int = 1,
+    linear: bool = False,
+    confidence: float = 0.95,
+    g: float = STANDARD_GRAVITY,
+) -> RestitutionFit:
+    """Fit e to the times of successive impacts, by least squares on the times.
+
+    Parameters
+    ----------
+    block
+        The block.
+    times
+        Times of successive impacts [s], shape (n,), n ≥ 3, rising; none may be left out.
+    first_pole
+        Corner the block rocks on between the first two.
+    linear, confidence
+        As for :func:`restitution_from_peaks`.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than three times or they do not rise.
+    """
+    values = _numbers("impact times", times, 3)
+    intervals = np.diff(values)
+    if (intervals <= 0).any():
+        bad = int(np.flatnonzero(intervals <= 0)[0]) + 1
+        raise InputError(
+            f"impact times: entry {bad} is not later than the one before it; sort them."
+        )
+    poles = [first_pole * (-1) ** k for k in range(len(intervals))]
+
+    def flight(speed: float, pole: int) -> float:
+        peak = peak_after(block, speed, pole, linear=linear, g=g)
+        if math.isnan(peak):
+            return math.nan
+        return 2 * quarter_period(block, peak, pole, linear=linear, g=g)
+
+    def model(parameters: Floats) -> Floats:
+        begin, speed, e = parameters
+        found = [begin]
+        for pole in poles:
+            found.append(found[-1] + flight(speed, pole))
+            speed *= e
+        return np.array(found)
+
+    largest = min(
+        speed_before(block, block.critical_angle(pole), pole, linear=linear, g=g)
+        for pole in (+1, -1)
+    ) * (1 - 1e-12)
+    speeds = [
+        _speed_of_flight(lambda s, pole=pole: flight(s, pole), float(T), largest)  # type: ignore[misc]
+        for T, pole in zip(intervals, poles, strict=True)
+    ]
+    start = min(max((speeds[-1] / speeds[0]) ** (1 / (len(speeds) - 1)), 0.01), 0.9999)
+    fit = _least_squares(
+        lambda q: model(q) - values,
+        [values[0], speeds[0], start],
+        ([-np.inf, 1e-9 * largest, 1e-3], [np.inf, largest, 1.0]),
+    )
+    return _summary(block, fit, 2, len(intervals) - 1, confidence)
+
+
+def restitution_from_history(
+    block: Block,
+    time: ArrayLike,
+    theta: ArrayLike,
+    *,
+    confidence: float = 0.95,
+    g: float = STANDARD_GRAVITY,
+) -> RestitutionFit:
+    """Fit e to a sampled history of free rocking, by least squares on the rotations.
+
+    Rotation and angular velocity at the first sample are fitted too, so the release need not be
+    at rest.  The noise of the samples is taken as independent; low-frequency noise makes the
+    interval too narrow.
+
+    Parameters
+    ----------
+    block
+        The block.
+    time
+        Times of the samples [s], shape (n,), evenly spaced, none before the release.
+    theta
+        Rotations [rad], shape (n,), clockwise positive.
+    confidence
+        Level of the interval.
+
+    Raises
+    ------
+    InputError
+        If the samples are not even, a rotation reaches the critical angle, or the history holds
+        fewer than two impacts.
+    """
+    t, values = _numbers("time", time, 8), _numbers("theta", theta, 8)
+    if t.shape != values.shape:
+        raise InputError(f"theta: {values.size} rotations for {t.size} times; give one per time.")
+    dt = float((t[-1] - t[0]) / (t.size - 1))
+    if dt <= 0 or np.abs(np.diff(t) - dt).max() > 1e-3 * dt:
+        raise InputError("time: samples must be evenly spaced and rising; resample the history.")
+    peaks = _peaks_of(values)
+    if len(peaks) < 3:
+        raise InputError(
+            f"theta: the history rises {len(peaks)} time(s) above its noise; restitution needs at "
+            "least two impacts between three peaks."
+        )
+    guess = restitution_from_peaks(block, peaks, g=g).restitution
+    quiet = np.zeros(t.size)
+
+    def model(parameters: Floats) -> Floats:
+        theta0, omega0, e = parameters
+        response = simulate(
+            block, quiet, dt, theta0=theta0, omega0=omega0, restitution=float(e), g=g
+        )
+        return response.theta[: t.size, 0]
+
+    slope = float(np.polyfit(t[:5] - t[0], values[:5], 1)[0])
+    top = block.critical_angle(1 if peaks[0] > 0 else -1)
+    # a first sample near the base must not start on the wrong side of it
+    begin = float(np.clip(values[0], -0.999 * top, 0.999 * top))
+    fit = _least_squares(
+        lambda q: model(q) - values,
+        [begin, slope, min(guess, 0.999)],
+        ([-top, -np.inf, 1e-3], [top, np.inf, 1.0]),
+        scale=[top, top * block.frequency(g=g), 1.0],
+    )
+    return _summary(block, fit, 2, len(peaks) - 1, confidence)
+
+
+def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
+    try:
+        values = np.asarray(data, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name}: expected a list of numbers.") from error
+    if values.ndim != 1 or values.size < least:
+        raise InputError(f"{name}: expected at least {least} numbers in a row, got {values.shape}.")
+    if not np.isfinite(values).all():
+        bad = int(np.flatnonzero(~np.isfinite(values))[0])
+        raise InputError(f"{name}: entry {bad} is not a finite number; leave it out.")
+    return values
+
+
+def _checked_peaks(block: Block, peaks: ArrayLike) -> tuple[Floats, list[int]]:
+    values = _numbers("peaks", peaks, 2)
+    first = 1 if values[0] > 0 else -1
+    poles = [first * (-1) ** k for k in range(values.size)]
+    alternate = np.sign(values) == poles
+    if not (alternate.all() or (values > 0).all()):
+        raise InputError(
+            "peaks: they must alternate in sign or all be positive; one is missing or doubled."
+        )
+    values = np.abs(values)
+    for k, (value, pole) in enumerate(zip(values, poles, strict=True)):
+        if not 0 < value < block.critical_angle(pole):
+            raise InputError(
+                f"peaks: entry {k} of {value:.4g} rad is not below the critical angle of "
+                f"{block.critical_angle(pole):.4g} rad; give radians."
+            )
+    return values, poles
+
+
+def _peaks_of(theta: Floats) -> list[float]:
+    """Signed peaks between changes of sign, as long as they stand out of the noise."""
+    # second differences of a smooth history are small: what they hold is noise
+    noise = 1.4826 * float(np.median(np.abs(np.diff(theta, 2)))) / math.sqrt(6)
+    floor = max(8 * noise, 1e-3 * float(np.abs(theta).max()))
+    peaks: list[float] = []
+    for value in theta:
+        if abs(value) < floor:
+            continue
+        if peaks and value * peaks[-1] > 0:
+            peaks[-1] = max(peaks[-1], value) if value > 0 else min(peaks[-1], value)
+        elif peaks and abs(value) > 1.5 * abs(peaks[-1]):
+            break
+        else:
+            peaks.append(float(value))
+    return peaks
+
+
+def _speed_of_flight(flight: Callable[[float], float], interval: float, largest: float) -> float:
+    low = 1e-9 * largest
+    if flight(largest) <= interval:
+        return largest
+    if flight(low) >= interval:
+        return low
+    return float(brentq(lambda s: flight(s) - interval, low, largest, xtol=1e-14))
+
+
+def _least_squares(
+    residual: Callable[[Floats], Floats],
+    start: list[float],
+    bounds: tuple[list[float], list[float]],
+    scale: list[float] | None = None,
+) -> OptimizeResult:
+    low, high = (np.array(side) for side in bounds)
+    inside = np.clip(start, np.nextafter(low, high), np.nextafter(high, low))
+
+    def finite(q: Floats) -> Floats:
+        # parameters with which the block would go over explain nothing
+        return np.nan_to_num(residual(q), nan=1e3)
+
+    return least_squares(
+        finite, inside, bounds=(low, high), jac="3-point", x_scale="jac" if scale is None else scale,
+        xtol=1e-13, ftol=1e-13, gtol=1e-13,
+    )  # fmt: skip
+
+
+def _summary(
+    block: Block, fit: OptimizeResult, at: int, impacts: int, confidence: float
+) -> RestitutionFit:
+    """Interval of parameter ``at`` by Student's t and the curvature of the sum of squares."""
+    if not 0 < confidence < 1:
+        raise InputError(f"confidence: expected a level between 0 and 1, got {confidence}.")
+    n, k = fit.jac.shape
+    e = float(fit.x[at])
+    computed = block.momentum_restitution()
+    if n <= k:
+        return RestitutionFit(e, math.nan, math.nan, impacts, math.nan, computed)
+    variance = 2 * fit.cost / (n - k)
+    covariance = variance * np.linalg.pinv(fit.jac.T @ fit.jac)
+    half = float(student.ppf((1 + confidence) / 2, n - k)) * math.sqrt(covariance[at, at])
+    return RestitutionFit(
+        e, max(e - half, 0.0), min(e + half, 1.0), impacts, math.sqrt(variance), computed
+    )

@@ -1,0 +1,144 @@
+"""Rocking spectra: peak rotation and velocity of geometrically similar blocks (thesis section 2.3).
+
+As a response spectrum shows oscillators of one damping over their period, a rocking spectrum shows blocks
+of one slenderness over 2π/p (Makris and Konstantinidis 2003, Earthquake Eng. Struct. Dyn. 32, 265-289).
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.inputs import fastest_frequency
+from rockfrag.rocking.parameters import Restitution
+from rockfrag.units import STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RockingSpectrum:
+    """Peak rotations and velocities of uniform blocks.
+
+    Attributes
+    ----------
+    period
+        2π/p of the blocks [s], shape (k,).
+    alpha
+        Critical angles of the blocks, their slenderness [rad], shape (j,).
+    rotation
+        max |θ| / α [-], shape (j, k); infinite where the block overturns, zero where it never rocks.
+    velocity
+        max |θ'| / p [rad], shape (j, k); infinite where the block overturns.
+    """
+
+    period: Floats
+    alpha: Floats
+    rotation: Floats
+    velocity: Floats
+
+    @property
+    def overturned(self) -> NDArray[np.bool_]:
+        """Whether the block overturns, shape (j, k)."""
+        return np.isinf(self.rotation)
+
+
+def uniform_block(alpha: float, period: float, g: float = STANDARD_GRAVITY) -> Block:
+    """Return the uniform block of critical angle α [rad] and apparent period 2π/p [s].
+
+    Its size follows from p = √(3g/4R) (thesis eq. 2.17); its density is 1000 kg/m³ for a depth of
+    1 m, which matters to nothing.
+
+    Raises
+    ------
+    InputError
+        If the angle is not between 0 and π/2 or the period is not positive.
+    """
+    if not 0 < alpha < math.pi / 2:
+        raise InputError(f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}.")
+    if not (math.isfinite(period) and period > 0):
+        raise InputError(f"period: 2π/p must be a positive number of seconds, got {period}.")
+    radius = 3 * g * period**2 / (16 * math.pi**2)
+    width, height = 2 * radius * math.sin(alpha), 2 * radius * math.cos(alpha)
+    return Block(width, height, 1000 * width * height)
+
+
+def rocking_spectrum(
+    motion: Motion,
+    periods: ArrayLike,
+    alpha: ArrayLike | Sequence[float],
+    *,
+    restitution: Restitution = None,
+    g: float = STANDARD_GRAVITY,
+    threads: int | None = None,
+) -> RockingSpectrum:
+    """Rocking spectrum of a motion, for free-standing uniform blocks.
+
+    Parameters
+    ----------
+    motion
+        Ground acceleration, linear between samples; the free rocking after it counts too.
+    periods
+        2π/p [s], shape (k,).
+    alpha
+        Critical angles [rad], one or several, shape (j,).
+    restitution
+        The same measured restitution for all; None conserves momentum (thesis eq. 2.14).
+
+    Raises
+    ------
+    InputError
+        If a period or an angle cannot be used.
+    """
+    period = np.atleast_1d(np.asarray(periods, dtype=np.float64))
+    angle = np.atleast_1d(np.asarray(alpha, dtype=np.float64))
+    if period.ndim != 1 or angle.ndim != 1 or period.size == 0 or angle.size == 0:
+        raise InputError("rocking spectrum: give at least one period and one angle, in a row each.")
+    blocks = [uniform_block(float(a), float(T), g) for a in angle for T in period]
+    found = overturns(
+        blocks,
+        [motion.acceleration],
+        motion.dt,
+        [1.0],
+        restitution=[restitution] * len(blocks),
+        g=g,
+        threads=threads,
+    )
+    shape = (angle.size, period.size)
+    rotation = found.peak_rotation.reshape(shape)
+    p = np.array([fastest_frequency(block, g) for block in blocks]).reshape(shape)
+    velocity = np.where(np.isinf(rotation), np.inf, found.peak_velocity.reshape(shape) / p)
+    return RockingSpectrum(period, angle, rotation, velocity)
+
+
+def spectra(
+    motion: Motion,
+    periods: ArrayLike,
+    alpha: ArrayLike | Sequence[float],
+    dampings: Sequence[float] = (0.02, 0.05, 0.10),
+    *,
+    restitution: Restitution = None,
+    threads: int | None = None,
+) -> tuple[list[ResponseSpectrum], RockingSpectrum]:
+    """Response spectra (one per damping) and the rocking spectrum of a motion, over the same periods.
+
+    Parameters
+    ----------
+    periods
+        Natural periods of the oscillators, and 2π/p of the blocks [s], shape (k,).
+    alpha
+        Critical angles of the blocks [rad], shape (j,).
+    dampings
+        Fractions of critical damping of the oscillators [-].
+    """
+    return (
+        [response_spectrum(motion, periods, damping) for damping in dampings],
+        rocking_spectrum(motion, periods, alpha, restitution=restitution, threads=threads),
+    )

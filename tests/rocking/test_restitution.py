@@ -1,0 +1,152 @@
+"""Restitution is recovered from free rocking, whatever was measured of it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import Block, Response, simulate
+from rockfrag.rocking.restitution import (
+    peak_after,
+    quarter_period,
+    restitution_from_history,
+    restitution_from_impacts,
+    restitution_from_peaks,
+    speed_before,
+)
+
+T2 = Block(0.124, 0.496, 2.790)
+STATUE = Block(0.40, 1.20, 300.0, inertia=45.0, cg_height=0.50, cg_offset=0.04)
+
+
+def free_rocking(
+    block: Block, e: float, start: float = 0.6, seconds: float = 4.0, dt: float = 0.002
+) -> Response:
+    """Release from ``start`` critical angles."""
+    return simulate(
+        block,
+        np.zeros(int(seconds / dt)),
+        dt,
+        theta0=start * block.critical_angle(1),
+        restitution=e,
+    )
+
+
+def impact_times(response: Response) -> np.ndarray:
+    return response.events.query("kind == 'impact'")["time"].to_numpy()
+
+
+def peaks_between_impacts(response: Response, count: int) -> np.ndarray:
+    """Release, then what energy gives after each impact's speed."""
+    block = response.body
+    assert isinstance(block, Block)
+    after = [row[0] for row in response.events.query("kind == 'impact'")["omega_after"]]
+    peaks = [response.theta[0, 0]]
+    peaks += [math.copysign(peak_after(block, abs(w), 1 if w > 0 else -1), w) for w in after]
+    return np.array(peaks[:count])
+
+
+@pytest.mark.parametrize("block", [T2, STATUE], ids=["uniform", "off-centre"])
+@pytest.mark.parametrize("e", [0.7, 0.87, 0.95])
+def test_exact_times_and_peaks_give_the_restitution_back(block: Block, e: float) -> None:
+    response = free_rocking(block, e)
+    by_times = restitution_from_impacts(block, impact_times(response)[:7], first_pole=-1)
+    by_peaks = restitution_from_peaks(block, peaks_between_impacts(response, 7))
+    assert by_times.restitution == pytest.approx(e, abs=1e-6)
+    assert by_peaks.restitution == pytest.approx(e, abs=1e-8)
+    assert by_times.impacts == 5 and by_peaks.impacts == 6
+
+
+def test_peaks_of_simulated_history_are_those_of_energy() -> None:
+    response = free_rocking(T2, 0.9, dt=0.0005)
+    times = impact_times(response)
+    between = (response.time > times[0]) & (response.time < times[1])
+    assert np.abs(response.theta[between, 0]).max() == pytest.approx(
+        abs(peaks_between_impacts(response, 2)[1]), rel=1e-5
+    )
+
+
+def test_linear_decay_of_t2_is_that_of_the_closed_relation() -> None:
+    # verification table: .5 .38639 .30596 .24560 with e = .911765
+    e = T2.momentum_restitution()
+    alpha, speed, phi = T2.alpha, speed_before(T2, 0.5 * T2.alpha, linear=True), [0.5]
+    for _ in range(3):
+        speed *= e
+        phi.append(peak_after(T2, speed, linear=True) / alpha)
+    assert phi == pytest.approx([0.5, 0.38639, 0.30596, 0.24560], abs=1e-5)
+    fit = restitution_from_peaks(T2, np.array(phi) * alpha, linear=True)
+    assert fit.restitution == pytest.approx(e, abs=1e-9)
+    assert fit.computed == pytest.approx(0.911765, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("block", "expected"),
+    [
+        (Block(0.124, 0.372, 2.172), 0.215637),
+        (T2, 0.245912),
+        (Block(0.124, 0.620, 3.456), 0.273302),
+    ],
+    ids=["T1", "T2", "T3"],
+)
+def test_nonlinear_quarter_period(block: Block, expected: float) -> None:
+    assert quarter_period(block, block.alpha / 2) == pytest.approx(expected, abs=1e-6)
+
+
+def test_noisy_peaks_and_times_cover_the_truth_as_often_as_promised() -> None:
+    e, rng = 0.9, np.random.default_rng(3)
+    response = free_rocking(T2, e)
+    peaks, times = peaks_between_impacts(response, 8), impact_times(response)[:9]
+    covered = np.zeros(2)
+    for _ in range(50):
+        fits = (
+            restitution_from_peaks(T2, peaks + rng.normal(0, 0.001, peaks.size), confidence=0.9),
+            restitution_from_impacts(T2, times + rng.normal(0, 0.001, times.size), confidence=0.9),
+        )
+        covered += [fit.lower <= e <= fit.upper for fit in fits]
+    # 90 % of 50 within three standard deviations of a binomial
+    assert (covered >= 45 - 6.4).all()
+
+
+@pytest.mark.parametrize("e", [0.8, 0.92])
+@pytest.mark.parametrize("noise", [0.0, 0.002])
+def test_sampled_history_gives_the_restitution_back(e: float, noise: float) -> None:
+    response = free_rocking(T2, e, seconds=2.0, dt=0.005)
+    n = 400
+    theta = response.theta[:n, 0] + np.random.default_rng(11).normal(0, noise, n)
+    fit = restitution_from_history(T2, response.time[:n], theta)
+    assert fit.restitution == pytest.approx(e, abs=1e-6 + noise)
+    if noise:
+        assert fit.lower < e < fit.upper
+        assert fit.scatter == pytest.approx(noise, rel=0.15)
+
+
+def test_without_spare_data_there_is_no_interval() -> None:
+    fit = restitution_from_peaks(T2, [0.10, 0.07])
+    assert 0 < fit.restitution < 1
+    assert math.isnan(fit.lower) and math.isnan(fit.upper)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: restitution_from_peaks(T2, [0.1]), "at least 2 numbers"),
+        (lambda: restitution_from_peaks(T2, [0.1, -0.05, -0.02]), "alternate in sign"),
+        (lambda: restitution_from_peaks(T2, [5.0, 3.0]), "critical angle"),
+        (lambda: restitution_from_peaks(T2, [0.1, math.nan]), "entry 1 is not a finite"),
+        (lambda: restitution_from_peaks(T2, [0.1, 0.07, 0.05], confidence=2.0), "between 0 and 1"),
+        (lambda: restitution_from_impacts(T2, [0.0, 0.5]), "at least 3 numbers"),
+        (lambda: restitution_from_impacts(T2, [0.0, 0.5, 0.4]), "entry 2 is not later"),
+        (lambda: restitution_from_history(T2, np.arange(9) ** 2, np.ones(9)), "evenly spaced"),
+        (lambda: restitution_from_history(T2, np.arange(9), np.ones(8)), "one per time"),
+        (
+            lambda: restitution_from_history(T2, np.arange(9) * 0.01, np.full(9, 0.1)),
+            "at least two impacts",
+        ),
+        (lambda: restitution_from_history(T2, np.arange(9), ["a"] * 9), "list of numbers"),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused_in_one_sentence(call, message: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError, match=message) as caught:
+        call()
+    assert str(caught.value).count(". ") == 0
