@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
@@ -126,6 +126,7 @@ def test_a_clipped_accelerometer_gives_a_lower_bound_only():
     assert measured(Outcome(0.3, 0.4), Accelerometer(0.5), "T1") == Outcome(0.3, 0.4)
 
 
+@settings(deadline=None, derandomize=True)
 @given(verdicts=sweeps, step=st.floats(0.003, 0.3), start=st.floats(0.01, 0.5))
 def test_the_bounds_hold_a_survival_and_an_overturning(verdicts, step, start):
     amplitudes = grid(verdicts)
@@ -137,6 +138,7 @@ def test_the_bounds_hold_a_survival_and_an_overturning(verdicts, step, start):
         assert known[outcome.upper_g]
 
 
+@settings(deadline=None, derandomize=True)
 @given(verdicts=sweeps)
 def test_fine_steps_find_the_first_overturning(verdicts):
     amplitudes = grid(verdicts)
@@ -144,6 +146,7 @@ def test_fine_steps_find_the_first_overturning(verdicts):
     assert step_protocol(amplitudes, verdicts, fine) == first_overturning(amplitudes, verdicts)
 
 
+@settings(deadline=None, derandomize=True)
 @given(verdicts=sweeps, step=st.floats(0.003, 0.3))
 def test_no_protocol_overturns_below_the_first_overturning(verdicts, step):
     amplitudes = grid(verdicts)
@@ -152,6 +155,7 @@ def test_no_protocol_overturns_below_the_first_overturning(verdicts, step):
         assert outcome.upper_g >= first_overturning(amplitudes, verdicts).upper_g
 
 
+@settings(deadline=None, derandomize=True)
 @given(verdicts=sweeps)
 def test_survival_windows_lie_between_first_and_always(verdicts):
     amplitudes = grid(verdicts)
@@ -163,6 +167,7 @@ def test_survival_windows_lie_between_first_and_always(verdicts):
     assert bool(windows) == (not first.censored and always.lower_g > first.upper_g)
 
 
+@settings(deadline=None, derandomize=True)
 @given(growth=st.floats(0.01, 0.5), threshold=st.floats(0.1, 1.5))
 def test_a_monotone_specimen_is_bracketed_within_one_step(growth, threshold):
     protocol = Protocol(GeometricSteps(0.05, growth), limit_g=3.0)

@@ -1,0 +1,72 @@
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.fragility.censored import brackets_from_table, fit_brackets
+from rockfrag.pedestal.pairs import pair_tests
+from rockfrag.shaketable.measured import read_measured
+from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.steps import GeometricSteps
+from rockfrag.shaketable.sweeps import tests_from_sweep as read_sweep
+
+AMPLITUDES = 0.05 * 1.02 ** np.arange(150)
+
+
+@pytest.fixture
+def simulated():
+    """Tests of synthetic towers that overturn above a threshold of their own, one of them censored."""
+    rng = np.random.default_rng(7)
+    sweeps = []
+    for tower in ("T1", "T2", "T3"):
+        for event in ("A", "B", "C", "D"):
+            for floor in ("GF", "F3", "F5"):
+                for pedestal in ("P", "NP"):
+                    threshold = 0.3 * np.exp(0.3 * rng.normal())
+                    over = threshold < AMPLITUDES
+                    sweeps.append(
+                        pd.DataFrame(
+                            {
+                                "configuration": f"{tower} {pedestal}",
+                                "tower": tower,
+                                "pedestal": pedestal,
+                                "motion": f"{event}_{floor}",
+                                "event": event,
+                                "floor": floor,
+                                "amplitude_g": AMPLITUDES,
+                                "overturned": over,
+                                "overturned_body": np.where(over, "statue", ""),
+                            }
+                        )
+                    )
+    return read_sweep(
+        pd.concat(sweeps),
+        Protocol(GeometricSteps(0.05, 0.05)),
+        readings=["step_protocol"],
+        limits_g={"A_GF": 0.3},
+    )
+
+
+@pytest.fixture
+def measured(simulated, tmp_path):
+    """The same tests, written down as a laboratory would and read as a measured table."""
+    path = tmp_path / "measured.csv"
+    names = (
+        "test,tower,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
+    )
+    simulated[names.split(",")].to_csv(path, index=False)
+    return read_measured(path)
+
+
+def test_measured_and_simulated_tests_are_the_same_table(simulated, measured):
+    assert (simulated["censored"] == "right").any()
+    pd.testing.assert_frame_equal(
+        measured.drop(columns="reading"), simulated.drop(columns="reading")
+    )
+
+
+def test_measured_tests_go_through_the_statistics_of_the_simulated_ones(simulated, measured):
+    pd.testing.assert_frame_equal(pair_tests(measured).table, pair_tests(simulated).table)
+    fits = [fit_brackets(brackets_from_table(table)) for table in (measured, simulated)]
+    assert fits[0].theta == fits[1].theta
+    assert fits[0].beta == fits[1].beta
+    assert fits[0].theta == pytest.approx(0.3, rel=0.15)
