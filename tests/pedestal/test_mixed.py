@@ -98,3 +98,29 @@ def test_too_few_motions_or_no_scatter_is_said(tests_table):
         fit_mixed(pairs[pairs["event"] == "Kobe"], EFFECT)
     with pytest.raises(InputError, match="no scatter"):
         fit_mixed(pairs.assign(d=0.0), EFFECT)
+
+
+def test_optimiser_that_returns_zero_as_converged_is_caught(tests_table, monkeypatch):
+    """The trap itself: an intercept of exactly zero, said to have converged."""
+    pairs = pair_tests(tests_table(1, sd_event=0.0)).table
+
+    class Zero:
+        fe_params = np.zeros(1)
+        vcomp = np.array([1e9, 1e-3])
+        scale = 0.02
+        converged = True
+
+    monkeypatch.setattr(
+        "statsmodels.regression.mixed_linear_model.MixedLM.fit", lambda self, **options: Zero()
+    )
+    with pytest.raises(FitDisagreementError, match="Intercept came out as 0"):
+        fit_mixed(pairs, EFFECT, optimiser="lbfgs")
+
+
+def test_variance_that_the_data_do_not_show_is_zero_whatever_the_optimiser_says(tests_table):
+    """Event means closer together than their motions allow: REML's event variance is zero."""
+    pairs = pair_tests(tests_table(1)).table
+    table = pairs.assign(d=pairs["d"] - pairs.groupby("event")["d"].transform("mean") + 0.1)
+    fit = fit_mixed(table, EFFECT)
+    assert fit.sd_event == pytest.approx(0, abs=2e-3)
+    assert fit.coefficients["estimate"][0] == pytest.approx(0.1, abs=1e-6)

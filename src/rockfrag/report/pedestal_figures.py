@@ -84,7 +84,7 @@ def pedestal_scatter(
     rows = -(-len(levels) // columns)
     width = {1: COLUMN_WIDTH, 2: 5.0, 3: PAGE_WIDTH}[columns]
     with figure_style():
-        figure = new_figure(width, 0.3 + rows * width / columns)
+        figure = new_figure(width, 0.45 + rows * (width / columns + 0.18))
         grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         for axes, level in zip(grid.flat, levels, strict=False):
             part = clean if panels is None else clean[clean[panels] == level]

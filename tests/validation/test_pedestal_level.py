@@ -1,0 +1,210 @@
+"""How often tests of the pedestal's effect call nothing something, in the thesis's crossed design.
+
+36 pairs: 3 towers under 12 motions, 3 floors of each of 4 events. d = event + motion + pair, all
+with mean zero, so that every rejection is false. The table in ``docs/validation-pedestal.md`` is what
+this file prints:
+
+    python tests/validation/test_pedestal_level.py
+"""
+
+import math
+import warnings
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy import stats
+
+from rockfrag.pedestal.bootstrap import bca_interval
+from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.exact import wilcoxon_exact
+from rockfrag.pedestal.mixed import EFFECT, fit_mixed
+from rockfrag.pedestal.multiplicity import holm
+from rockfrag.pedestal.units import contrast, mean_effect, t_estimate
+
+SEED = 20261121
+DATA_SETS = 20_000
+EVENTS, FLOORS, TOWERS = 4, 3, 3
+CHOSEN = "t, event means"
+
+# standard deviations of event, motion and pair; how the event effects are distributed; pairs missing
+DESIGNS = {
+    "pairs only": (0.0, 0.0, 0.134, "normal", 0),
+    "motions": (0.0, 0.10, 0.134, "normal", 0),
+    "events and motions, small": (0.05, 0.05, 0.134, "normal", 0),
+    "events and motions": (0.10, 0.10, 0.134, "normal", 0),
+    "events, large": (0.20, 0.10, 0.134, "normal", 0),
+    "5 pairs missing": (0.10, 0.10, 0.134, "normal", 5),
+    "events with heavy tails (t, 3 df)": (0.10, 0.10, 0.134, "heavy", 0),
+    "skewed events (exponential)": (0.10, 0.10, 0.134, "skewed", 0),
+}
+BEYOND = ("events with heavy tails (t, 3 df)", "skewed events (exponential)")
+
+
+def simulated(design: str, data_sets: int = DATA_SETS, seed: int = SEED) -> np.ndarray:
+    """Values of d under no effect, shape (data sets, events, floors, towers)."""
+    sd_event, sd_motion, sd_pair, law, missing = DESIGNS[design]
+    rng = np.random.default_rng([seed, list(DESIGNS).index(design)])
+    shape = (data_sets, EVENTS, 1, 1)
+    event = {
+        "normal": lambda: rng.normal(size=shape),
+        "heavy": lambda: rng.standard_t(3, size=shape) / math.sqrt(3),
+        "skewed": lambda: rng.exponential(size=shape) - 1,
+    }[law]()
+    d = sd_event * event
+    d = d + sd_motion * rng.normal(size=(data_sets, EVENTS, FLOORS, 1))
+    d = d + sd_pair * rng.normal(size=(data_sets, EVENTS, FLOORS, TOWERS))
+    if missing:
+        flat = d.reshape(data_sets, -1)
+        order = rng.permuted(np.tile(np.arange(flat.shape[1]), (data_sets, 1)), axis=1)
+        np.put_along_axis(flat, order[:, :missing], np.nan, axis=1)
+    return d
+
+
+def p_of_t(values: np.ndarray) -> np.ndarray:
+    """p values of one-sample t tests along the last axis, NaN left out."""
+    n = np.sum(np.isfinite(values), axis=-1)
+    t = np.nanmean(values, axis=-1) / (np.nanstd(values, axis=-1, ddof=1) / np.sqrt(n))
+    return 2 * stats.t.sf(np.abs(t), n - 1)
+
+
+def reml_se(d: np.ndarray) -> np.ndarray:
+    """Standard error of the mean by REML of balanced data: mean squares pooled where they fall."""
+    motion = d.mean(axis=3)
+    event = motion.mean(axis=2)
+    free = np.array([EVENTS * FLOORS * (TOWERS - 1), EVENTS * (FLOORS - 1), EVENTS - 1])
+    squares = [
+        np.sum((d - motion[..., None]) ** 2, axis=(1, 2, 3)) / free[0],
+        TOWERS * np.sum((motion - event[..., None]) ** 2, axis=(1, 2)) / free[1],
+        FLOORS * TOWERS * np.var(event, axis=1, ddof=1),
+    ]
+    pairs_motions = (free[0] * squares[0] + free[1] * squares[1]) / (free[0] + free[1])
+    motions_events = (free[1] * squares[1] + free[2] * squares[2]) / (free[1] + free[2])
+    everything = sum(n * s for n, s in zip(free, squares, strict=True)) / free.sum()
+    # pool adjacent violators from the lowest stratum up; what counts is the top stratum's value
+    lower = np.where(squares[1] < squares[0], pairs_motions, squares[1])
+    pooled_up = np.where(
+        squares[1] < squares[0],
+        everything,
+        np.where(motions_events < squares[0], everything, motions_events),
+    )
+    top = np.where(squares[2] < lower, pooled_up, squares[2])
+    return np.sqrt(top / (EVENTS * FLOORS * TOWERS))
+
+
+def levels(design: str, data_sets: int = DATA_SETS) -> dict[str, float]:
+    """Share of false rejections at 5 % of each test."""
+    d = simulated(design, data_sets)
+    flat = d.reshape(len(d), -1)
+    with warnings.catch_warnings():
+        # a motion may have lost all three of its pairs
+        warnings.simplefilter("ignore", RuntimeWarning)
+        motion = np.nanmean(d, axis=3)
+    result = {
+        "t, 36 pairs": p_of_t(flat),
+        "t, 12 motion means": p_of_t(motion.reshape(len(d), -1)),
+        CHOSEN: p_of_t(np.nanmean(motion, axis=2)),
+    }
+    if not np.isnan(d).any():
+        z = np.abs(flat.mean(axis=1)) / reml_se(d)
+        result["mixed model, z"] = 2 * stats.norm.sf(z)
+        result["mixed model, t with 3 df"] = 2 * stats.t.sf(z, EVENTS - 1)
+    return {name: float(np.mean(p < 0.05)) for name, p in result.items()}
+
+
+def frame(d: np.ndarray) -> pd.DataFrame:
+    """One data set as a table of pairs."""
+    index = np.indices(d.shape).reshape(3, -1)
+    names = [[f"E{i}" for i in index[0]], [f"F{i}" for i in index[1]], [f"T{i}" for i in index[2]]]
+    table = pd.DataFrame(dict(zip(("event", "floor", "tower"), names, strict=True)))
+    table["motion"] = table["event"] + table["floor"]
+    return table.assign(d=d.ravel())
+
+
+def further(design: str) -> dict[str, float]:
+    """Tests that are too slow, or too rarely used, for all data sets."""
+    d = simulated(design, 2_000)
+    motion = d.mean(axis=3)
+    floors = p_of_t(np.swapaxes(motion, 1, 2))
+    ranks = [wilcoxon_exact(one.ravel()).p for one in motion[:1_000]]
+    bounds = [bca_interval(one.ravel(), SEED, draws=999) for one in motion[:500]]
+    shifted = motion.mean(axis=2) + math.log(1.1)
+    same = [equivalence(t_estimate(one)).shown() for one in shifted]
+    difference = p_of_t(motion[:, :, 0] - motion[:, :, 1])
+    return {
+        "signed ranks, 12 motion means": float(np.mean(np.array(ranks) < 0.05)),
+        "BCa over 12 motions leaves 0 out": float(np.mean([lo > 0 or hi < 0 for lo, hi in bounds])),
+        "difference of two floors, t over events": float(np.mean(difference < 0.05)),
+        "any of 3 floors, Holm": float(np.mean([holm(p).min() < 0.05 for p in floors])),
+        "equivalence shown at a true change of 10 %": float(np.mean(same)),
+    }
+
+
+def tables() -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Both tables of the documentation."""
+    first = pd.DataFrame({design: levels(design) for design in DESIGNS}).T
+    second = pd.DataFrame(
+        {design: further(design) for design in ("pairs only", "motions", "events and motions")}
+    )
+    return first, second
+
+
+def markdown(table: pd.DataFrame, head: str) -> str:
+    rows = [[head, *table.columns], ["---"] * (len(table.columns) + 1)]
+    rows += [
+        [str(name), *("" if np.isnan(v) else f"{v:.3f}" for v in row)]
+        for name, row in zip(table.index, table.to_numpy(), strict=True)
+    ]
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("design", [name for name in DESIGNS if name not in BEYOND])
+def test_chosen_test_holds_its_level(design):
+    assert 0.03 <= levels(design)[CHOSEN] <= 0.07
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("design", BEYOND)
+def test_chosen_test_stays_near_its_level_beyond_the_normal(design):
+    assert levels(design)[CHOSEN] <= 0.09
+
+
+@pytest.mark.slow
+def test_naive_test_on_36_pairs_does_not():
+    assert levels("events and motions")["t, 36 pairs"] > 0.14
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("design", ["pairs only", "motions", "events and motions"])
+def test_other_decisions_hold_their_level(design):
+    found = further(design)
+    assert found["difference of two floors, t over events"] < 0.07
+    assert found["any of 3 floors, Holm"] < 0.07
+    assert found["equivalence shown at a true change of 10 %"] < 0.07
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("design", ["pairs only", "motions", "events, large"])
+def test_pooled_mean_squares_are_the_package_s_mixed_model(design):
+    """Also where REML sets a variance to zero, which is where optimisers go astray."""
+    d = simulated(design, 6)
+    package = [fit_mixed(frame(one), EFFECT).coefficients["se"][0] for one in d]
+    assert package == pytest.approx(reml_se(d), rel=1e-3)
+
+
+@pytest.mark.slow
+def test_fast_formula_is_the_package_s_own_test():
+    d = simulated("events and motions", 20)
+    fast = p_of_t(d.mean(axis=(2, 3)))
+    package = [mean_effect(frame(one)).p for one in d]
+    assert package == pytest.approx(fast, rel=1e-9)
+    floors = [contrast(frame(one), "floor", "F0", "F1").p for one in d]
+    assert floors == pytest.approx(
+        p_of_t(d.mean(axis=3)[:, :, 0] - d.mean(axis=3)[:, :, 1]), rel=1e-9
+    )
+
+
+if __name__ == "__main__":
+    one, two = tables()
+    print(markdown(one, "design"), markdown(two, "decision"), sep="\n\n")
