@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -69,6 +70,13 @@ class Plate:
     wide: bool = False
 
 
+def _forest(results: Results) -> Figure:
+    effects = results.effects
+    if effects is None:
+        raise ValueError("a study without pairs has no effect of a pedestal")
+    return forest_figure(effects[effects["reading"] == READING])
+
+
 _COUNTERPARTS = (
     Plate(
         "figure_4_1",
@@ -119,7 +127,7 @@ _COUNTERPARTS = (
         "pedestal_effect",
         "Amplitude with over amplitude without pedestal, with 95 % intervals; grey is the range "
         "that counts as no effect. Step protocol.",
-        lambda r: _forest(r),
+        _forest,
     ),
 )
 
@@ -141,7 +149,7 @@ def plates(study: Study) -> list[Plate]:
         Plate(
             f"verdicts_{tower}",
             f"{tower}: every amplitude that overturns it, per motion.",
-            lambda r, tower=tower: verdict_map(r.sweep, tower),
+            partial(_verdicts, tower=tower),
         )
         for tower in towers
     ]
@@ -151,7 +159,7 @@ def plates(study: Study) -> list[Plate]:
             f"{tower}: probability of overturning over the peak of the motion, with intervals over "
             "earthquakes; points are shares of all runs in bins. Below, the share of motions "
             "between their first and their last change of verdict.",
-            lambda r, tower=tower: _fragility(r, tower),
+            partial(_fragility, tower=tower),
         )
         for tower in towers
     ]
@@ -171,11 +179,8 @@ def pictures(study: Study, folder: Path) -> dict[str, Picture]:
     }
 
 
-def _forest(results: Results) -> Figure:
-    effects = results.effects
-    if effects is None:
-        raise ValueError("a study without pairs has no effect of a pedestal")
-    return forest_figure(effects[effects["reading"] == READING])
+def _verdicts(results: Results, tower: str) -> Figure:
+    return verdict_map(results.sweep, tower)
 
 
 def _fragility(results: Results, tower: str) -> Figure:
