@@ -39,7 +39,7 @@ def margins():
     return table.assign(
         axis="first_period_s",
         reading="step_protocol",
-        label=[f"T1 = {value:g} s" for value in table["value"]],
+        label=[f"first period {value:g} s" for value in table["value"]],
     )
 
 

@@ -7,6 +7,7 @@ from rockfrag.shaketable.settings import make_protocol, make_shaker, read_shaker
 from rockfrag.shaketable.shaker import (
     Demand,
     Shaker,
+    limits_g,
     produced_motion,
     required_corner,
     shaker_table,
@@ -34,6 +35,7 @@ __all__ = [
     "always_overturning",
     "climb",
     "first_overturning",
+    "limits_g",
     "make_protocol",
     "make_shaker",
     "produced_motion",

@@ -113,7 +113,7 @@ def _variant(settings: Mapping[str, Any], axis: str, value: Any, source: str) ->
         building = changed(floors={"GF": 0, "F3": third, "F5": fifth})
         return Variant(axis, float(third), f"levels {third} and {fifth}", building)
     if axis == "first_period_s":
-        return Variant(axis, value, f"T1 = {value:g} s", changed(first_period_s=value))
+        return Variant(axis, value, f"first period {value:g} s", changed(first_period_s=value))
     if axis == "damping_ratio":
         damping = {**settings.get("damping", {}), "ratio": value}
         return Variant(axis, value, f"damping {value:.0%}", changed(damping=damping))

@@ -219,6 +219,14 @@ def produced_motion(
     return _filtered(wanted, corner)
 
 
+def limits_g(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) -> dict[str, float]:
+    """Largest amplitude of each motion as it is [g], by its name; see :meth:`Shaker.limit`.
+
+    For tests of several specimens ``payload`` is the heaviest of them [kg].
+    """
+    return {motion.name: shaker.limit(motion, payload)[0] for motion in motions}
+
+
 def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) -> pd.DataFrame:
     """What each motion asks per g of its peak, and up to which amplitude it fits.
 
