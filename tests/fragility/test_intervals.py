@@ -7,6 +7,7 @@ import pytest
 from rockfrag.fragility.intervals import interval_over_motions, verdict_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.sweeps import fragility_table
 
 LEVELS = np.exp(np.arange(np.log(0.1), np.log(1.2), 0.1))
 
@@ -82,3 +83,58 @@ def test_one_motion_gives_no_interval_and_says_so():
     assert interval.method == "none"
     assert np.isnan(interval.theta[0])
     assert "One motion" in interval.warnings[0]
+
+
+def swept(capacities):
+    """Sweeps of motions with given capacities at common levels from 0.1 to 1 g."""
+    rows = [
+        {
+            "configuration": "T1",
+            "motion": f"m{k}",
+            "event": f"e{k}",
+            "amplitude_g": level,
+            "overturned": level > capacity,
+        }
+        for k, capacity in enumerate(capacities)
+        for level in np.geomspace(0.1, 1.0, 12)
+    ]
+    return pd.DataFrame(rows)
+
+
+@pytest.mark.parametrize(
+    ("capacities", "theta_known", "limits_known"),
+    [
+        ([0.3], True, False),  # one motion
+        ([9.0, 9.0], False, False),  # all survive
+        ([0.01, 0.02], False, False),  # all overturn at once
+        ([0.3, 0.3, 0.3], True, False),  # all in one step
+        ([0.01, 9.0], False, False),  # nothing between never and at once
+        ([0.3, 0.9], True, True),  # two motions
+        ([0.3, 0.32, 0.5, 9.0], True, True),
+    ],
+)
+def test_the_poorest_sweeps_give_a_stated_result(capacities, theta_known, limits_known):
+    table = fragility_table(swept(capacities))
+    assert (table["theta"].notna() == theta_known).all()
+    assert (table["theta_lower"].notna() == limits_known).all()
+    assert (table["warnings"].str.len() > 20).all() or len(capacities) >= 4
+    known = table[table["theta_lower"].notna()]
+    assert (known["theta_lower"] < known["theta"]).all()
+    assert (known["theta"] < known["theta_upper"]).all()
+    if len(capacities) == 2 and limits_known:
+        # two motions say nothing about the scatter of others
+        assert (table["beta_lower"] == 0).all() and np.isposinf(table["beta_upper"]).all()
+
+
+def test_bootstraps_with_few_groups_and_limits_over_motions_of_shared_events_warn():
+    data = swept_motions(8)
+    assert not interval_over_motions(data, method="jackknife").warnings
+    assert "covers less often" in interval_over_motions(data, method="bca").warnings[0]
+    table = pd.DataFrame(
+        {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
+    )
+    table["event"] = table["motion"].map(lambda name: int(name[1:]) % 4)
+    shared = outcomes_from_table(table, "amplitude_g", event="event")
+    assert interval_over_motions(shared).over == "event"
+    assert not interval_over_motions(shared).warnings
+    assert "come from 4 events" in interval_over_motions(shared, over="motion").warnings[0]

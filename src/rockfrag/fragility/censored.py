@@ -22,7 +22,7 @@ from rockfrag.fragility.intervals import (
     population,
     resampled_interval,
 )
-from rockfrag.fragility.lognormal import FragilityFit, curve_parameters
+from rockfrag.fragility.lognormal import LEAST_SLOPE, FragilityFit, curve_parameters
 from rockfrag.fragility.outcomes import Floats, labels, name_and_unit, numbers
 
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
@@ -146,6 +146,13 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
             "above and not estimated.",
         )
         return result(nan, nan, unknown, 0.0, "none: all tests survived")
+    if brackets.lower.max() == 0:
+        notes = (
+            *notes,
+            f"All {n} tests overturned at their first step, of {brackets.upper.min():g} "
+            f"{brackets.unit} or more: θ is below and not estimated.",
+        )
+        return result(nan, nan, unknown, 0.0, "none: all tests overturned at once")
     weights = np.ones((1, n))
     coefficients, information, log_likelihood = _fit_weighted(low, high, weights)
     theta, beta, spread = curve_parameters(coefficients[0], _inverse(information[0]))
@@ -157,6 +164,9 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
             "middle of that range and β its width / √12.",
         )
         return result(theta, beta, unknown, nan, "interval estimate (brackets overlap)")
+    if coefficients[0, 1] < LEAST_SLOPE:
+        notes = (*notes, "The brackets are too few or too wide to give a curve.")
+        return result(nan, nan, unknown, float(log_likelihood[0]), "none: no curve in the brackets")
     method = "lognormal, interval- and right-censored maximum likelihood"
     return result(theta, beta, spread, float(log_likelihood[0]), method)
 
@@ -244,8 +254,7 @@ def _common_bracket(low: Floats, high: Floats, weights: Floats) -> Floats:
     # equal amplitudes share a bracket of no width; 1e-6 keeps 1/β a number
     with np.errstate(invalid="ignore"):
         beta = np.maximum((right - left) / np.sqrt(12.0), 1e-6)
-        middle = 0.5 * (left + right)
-    result = np.column_stack([-middle / beta, 1.0 / beta])
+        result = np.column_stack([-0.5 * (left + right) / beta, 1.0 / beta])
     result[~closed] = np.nan
     result[np.isinf(right), 0] = -np.inf
     result[np.isinf(left), 0] = np.inf

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import special, stats
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.lognormal import LEAST_SLOPE
 from rockfrag.fragility.newton import Link, fit_batch, separated
 from rockfrag.fragility.outcomes import Floats, Outcomes
 
@@ -79,6 +80,7 @@ class Interval:
         centre = self.estimate[0] + self.estimate[1] * x
         if self.method == "jackknife":
             half = _student(self.level, len(self.replicates)) * _jackknife_error(predictors)
+            half = np.where(np.isfinite(half), half, np.inf)
             lower, upper = centre - half, centre + half
         else:
             tail = 0.5 - 0.5 * self.level
@@ -221,7 +223,7 @@ def resampled_interval(
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
     estimate = fit(np.ones((1, groups)))[0]
-    usable = np.isfinite(estimate).all() and estimate[1] > 0
+    usable = np.isfinite(estimate).all() and estimate[1] >= LEAST_SLOPE
     if groups < 2 or not usable:
         reason = (
             f"One {over} gives no interval for other {over}s."
@@ -231,6 +233,9 @@ def resampled_interval(
         return _none(estimate, level, groups, over, link, (*notes, reason))
     notes = (*notes, *_few_groups(method, groups, over))
     deleted = fit(_all_but_one(groups, seed))
+    if np.ptp(deleted, axis=0).max() < 1e-9:
+        reason = f"All {over}s agree within the steps of the amplitude, which gives no limits."
+        return _none(estimate, level, groups, over, link, (*notes, reason))
     if method == "jackknife":
         theta, beta = _jackknife_limits(estimate, deleted, level)
         return Interval(
@@ -316,7 +321,9 @@ def _student(level: float, groups: int) -> float:
 def _jackknife_error(left_out: Floats) -> Floats:
     """Return the standard error from delete-one-group values along the first axis (Tukey)."""
     groups = len(left_out)
-    offset = left_out - left_out.mean(axis=0)
+    # an infinite value makes the error NaN, which the caller turns into limits without an end
+    with np.errstate(invalid="ignore"):
+        offset = left_out - left_out.mean(axis=0)
     return np.asarray(np.sqrt((groups - 1) / groups * np.sum(offset**2, axis=0)))
 
 
@@ -334,7 +341,8 @@ def _jackknife_limits(
     half_beta = factor * float(_jackknife_error(left_out))
     if not np.isfinite(half):
         half = np.inf
-    if not (np.isfinite(centre) and np.isfinite(half_beta)):
+    # of two groups each alone has no scatter, so two say nothing about β
+    if groups < 3 or not (np.isfinite(centre) and np.isfinite(half_beta)):
         return (np.exp(log_theta - half), np.exp(log_theta + half)), (0.0, np.inf)
     return (
         (float(np.exp(log_theta - half)), float(np.exp(log_theta + half))),

@@ -17,6 +17,9 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.newton import Link, fit_batch, separated
 from rockfrag.fragility.outcomes import Floats, Outcomes
 
+LEAST_SLOPE = 1e-3
+"""A curve with a smaller slope in ln IM (β above 1000) is flat: the measure foretells nothing."""
+
 
 @dataclass(frozen=True)
 class FragilityFit:
@@ -122,7 +125,7 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     if separated(outcomes.log_im, failures, trials)[0]:
         coefficients, information = _penalised(outcomes, link)
         method = f"{link}, penalised likelihood (Firth)"
-        if coefficients[1] > 0:
+        if coefficients[1] >= LEAST_SLOPE:
             notes = (*notes, _separation_note(outcomes))
     else:
         try:
@@ -132,7 +135,7 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
             method = f"{link}, penalised likelihood (Firth)"
             notes = (*notes, "The maximum of the likelihood is not finite; the fit is penalised.")
     log_likelihood = _log_likelihood(outcomes, coefficients, link)
-    if coefficients[1] <= 0:
+    if coefficients[1] < LEAST_SLOPE:
         falling = (
             f"The probability of overturning does not rise with {outcomes.name}; there is no "
             "fragility curve in this measure."

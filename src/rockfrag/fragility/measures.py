@@ -156,7 +156,8 @@ def recommend_measure(
 
 def ranked(compared: pd.DataFrame, efficiency: str = "beta") -> pd.DataFrame:
     """Sort measures: least AIC first, within 2 of it by efficiency, those without a curve last."""
-    rising = compared["theta"].notna()
+    # without a likelihood (brackets that all overlap) a measure cannot be compared either
+    rising = compared["theta"].notna() & compared["aic"].notna()
     delta = compared["aic"] - compared.loc[rising, "aic"].min()
     near = rising & (delta <= EQUAL_AIC)
     order = compared.assign(
@@ -223,6 +224,11 @@ def recommendation(table: pd.DataFrame, pair: FragilitySurface | None, given: Se
     """Put a ranked table of measures into words."""
     if table["theta"].isna().all():
         return "The probability of overturning rises in none of the measures."
+    if table["aic"].isna().all():
+        return (
+            "The brackets of all motions overlap, so the measures cannot be compared; more "
+            "motions or smaller steps are needed."
+        )
     best = table.iloc[0]
     parts = []
     others = table.iloc[1:]

@@ -125,7 +125,7 @@ def recommend_sweep_measure(
     table = pd.DataFrame(rows).assign(chosen_share=_chosen_share(brackets, replicates, seed))
     table = ranked(table, "beta_amplitude")
     words = recommendation(table, None, given)
-    if table["theta"].isna().all():
+    if (table["theta"].isna() | table["aic"].isna()).all():
         return MeasureChoice("", "", table, None, words)
     best = table.iloc[0]
     return MeasureChoice(str(best["measure"]), str(best["im"]), table, None, words)
