@@ -1,7 +1,7 @@
 """Small records of every format, built here from the formats' definitions."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -378,6 +378,18 @@ def smc_precise(folder: Path) -> Built:
     return _smc(folder / "raw.smc", smc_text(values, 0, True, "1 UNCORRECTED ACCELEROGRAM"), values)
 
 
+def smc_uneven(folder: Path) -> Built:
+    """Pairs of time and acceleration on a line, at uneven times; the count is of all values."""
+    times = np.array([float(f"{t:.4e}") for t in np.cumsum(np.tile([0.004, 0.006], 21)) - 0.004])
+    both = np.array([float(f"{v:.4e}") for v in np.column_stack([times, 5 + 20 * times]).ravel()])
+    text = smc_text(both, 2, False, "1 UNCORRECTED ACCELEROGRAM").split("\n")
+    text[13] = f"{both.size:10d}" + text[13][10:]
+    text[17] = text[17][:15] + f"{1.7e38:15.7E}" + text[17][30:]
+    line = 5 + 20 * np.arange(int(times[-1] / 0.005 + 1e-9) + 1) * 0.005
+    built = _smc(folder / "uneven.smc", "\n".join(text), line)
+    return replace(built, tolerance=1e-3)
+
+
 def esm_text(values: NDArray[np.float64], kind: str, unit: str, first: str) -> str:
     lines = [
         "EVENT_NAME: GREECE",
@@ -557,6 +569,7 @@ BUILDERS: dict[str, Callable[[Path], Built]] = {
         usc,
         smc,
         smc_precise,
+        smc_uneven,
         esm,
         esm_turkish,
         geonet_v1a,

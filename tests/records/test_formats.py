@@ -100,6 +100,26 @@ def test_motions_are_in_metres_per_second_squared(built):
         assert motion.provenance[0]["sha256"] == read_record(built.path).sha256
 
 
+def test_a_csmip_header_of_another_network_is_read(builders, tmp_path):
+    built = builders["csmip_v2_modern"](tmp_path)
+    text = built.path.read_text().replace("STATION NO. 36456", "Station Id. WLT  ")
+    built.path.write_text(text.replace("36456-S4384-83123.01", "15481673.CI.WLT.--.HN"))
+    assert claims(str(built.path)) == ["CSMIP"]
+    stats = obspy.read(built.path)[0].stats
+    assert (stats.network, stats.station) == ("CI", "WLT")
+
+
+def test_a_cosmos_channel_may_be_named_in_a_comment_alone(builders, tmp_path):
+    built = builders["cosmos_v1"](tmp_path)
+    text = built.path.read_text().replace("Sta Chan  1: 340 deg", "Sta Chan   ?:Other  ")
+    whole = text.replace("     340", "    -999").split("\n")
+    at = next(i for i, line in enumerate(whole) if line.startswith("| "))
+    whole[at] = "|<SCNL>J2236.BNZ.CE.--    <AUTH> 2019/02/01 21:38:15.000"
+    built.path.write_text("\n".join(whole))
+    stats = obspy.read(built.path)[0].stats
+    assert (stats.channel, stats.rockfrag.component) == ("BNZ", "BNZ")
+
+
 @pytest.mark.parametrize(
     ("kind", "unit"), [("VELOCITY", "cm/s"), ("DISPLACEMENT", "cm"), ("ACCELERATION", "cm/s")]
 )

@@ -114,6 +114,7 @@ def _header(text: TextFile, first: int) -> tuple[int, _Header]:
     if at_reals < 0:
         text.fail("no real header below this line; the file is cut short", at_integers)
     numbers = reals(text, *_block(text, at_reals, _REALS, width=15))
+    at_samples = _above_samples(text, at_reals)
     words = text.lines(first, at_integers)
     unknown = _unknown(words)
     whole += [int(unknown)] * max(0, _AZIMUTH + 1 - len(whole))
@@ -121,13 +122,13 @@ def _header(text: TextFile, first: int) -> tuple[int, _Header]:
     stated = numbers[_STEP_MS] != unknown
     dt = numbers[_STEP_MS] / 1000 if stated else numbers[_RECORDER_STEP]
     header = _Header(
-        words=words,
+        words=[*words, *_comments(text, at_reals, at_samples)],
         dt=positive_step(text, dt, at_reals),
         start_time=_start(whole, numbers, unknown),
         azimuth=whole[_AZIMUTH],
         place=tuple(None if numbers[i] == unknown else numbers[i] for i in _PLACE),
     )
-    return _above_samples(text, at_reals), header
+    return at_samples, header
 
 
 def _above_samples(text: TextFile, at_reals: int) -> int:
@@ -140,6 +141,10 @@ def _above_samples(text: TextFile, at_reals: int) -> int:
     if line < 0:
         text.fail("no line with the number of samples below the header; the file is cut short")
     return line
+
+
+def _comments(text: TextFile, start: int, stop: int) -> list[str]:
+    return [line for line in text.lines(start, stop) if line.lstrip().startswith("|")]
 
 
 def _block(
@@ -189,17 +194,20 @@ def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTim
 
 
 def _channel(section: Section, samples: NDArray[np.float64], unit: str, header: _Header) -> Channel:
-    network = station = name = component = ""
+    network = station = location = code = name = component = ""
     for line in header.words:
         found = re.search(r"Code\s*:\s*(\w+)-(\w+)\s*(.*)$", line)
         if found:
             network, station, name = found[1], found[2], found[3].strip()
-        found = re.search(r"Sta\s+Cha\w*\s*:?\s*\d+\s*:\s*(.*?)\s*(?:\(|Location|$)", line)
+        found = re.search(r"Sta\s+Cha\w*\s*:?\s*[\d?]+\s*:\s*(.*?)\s*(?:\(|Location|$)", line)
         if found:
             component = re.sub(r"\s*deg\w*$", "", found[1], flags=re.IGNORECASE)
+        found = re.search(r"SCNL\W+(\w+)\.(\w+)\.(\w+)\.([\w-]+)", line)
+        if found:
+            code, location = found[2], found[4].strip("-")
     azimuth = header.azimuth
-    if not component:
-        component = f"{azimuth:03d}" if 0 <= azimuth <= 360 else _NAMED_AZIMUTHS.get(azimuth, "")
+    if component.lower() in ("", "other", "unknown"):
+        component = f"{azimuth:03d}" if 1 <= azimuth <= 360 else _NAMED_AZIMUTHS.get(azimuth, code)
     return Channel(
         npts=section.count,
         dt=header.dt,
@@ -208,6 +216,8 @@ def _channel(section: Section, samples: NDArray[np.float64], unit: str, header: 
         start_time=header.start_time,
         network=network,
         station=station,
+        location=location,
+        code=code,
         component=component,
         details={
             "station_name": name,

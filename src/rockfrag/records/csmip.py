@@ -58,6 +58,7 @@ _MAX_HEADER = 60
 class _Words:
     """What the text header of a channel says."""
 
+    network: str
     station: str
     station_name: str
     component: str
@@ -69,7 +70,7 @@ def _recognise(lines: list[str], name: str) -> bool:
     header = lines[:_MAX_HEADER]
     return (
         bool(_FIRST.match(lines[0]))
-        and any(re.match(r"\s*station\s+no\b", line, re.IGNORECASE) for line in header)
+        and any(re.match(r"\s*station\s+(?:no|id)\b", line, re.IGNORECASE) for line in header)
         and any(re.match(r"\s*chan\s*\d+\s*:", line, re.IGNORECASE) for line in header)
         and not any("RENADIC" in line.upper() for line in header)
     )
@@ -134,10 +135,10 @@ def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]
 def _words(text: TextFile, first: int, stop: int) -> _Words:
     """Read the text header: the line below the station's number has its name."""
     lines = text.lines(first, min(stop, first + _MAX_HEADER))
-    station = name = component = ""
+    network = station = name = component = ""
     start = None
     for number, line in enumerate(lines):
-        found = re.match(r"\s*station\s+no\.?\s*([A-Z]{0,2}\d+)?", line, re.IGNORECASE)
+        found = re.match(r"\s*station\s+(?:no|id)\.?\s*(\w+)?(?=\s|$)", line, re.IGNORECASE)
         if found and not station and not name:
             station = found[1] or ""
             name = re.split(r"\s{3,}", lines[number + 1].strip())[0] if lines[number + 1 :] else ""
@@ -146,10 +147,13 @@ def _words(text: TextFile, first: int, stop: int) -> _Words:
         )
         if found and not component:
             component = re.sub(r"\s*deg\w*\.?$", "", found[1], flags=re.IGNORECASE)
+        found = re.match(r"\s*\d+\.(\w\w)\.\w+\.[\w-]{2}\.", line)
+        if found and not network:
+            network = found[1]
         found = re.search(r"(?:start|trigger)\s+time\s*:(.*)$", line, re.IGNORECASE)
         if found and start is None:
             start = american_time(found[1])
-    return _Words(station, name, component, _event(lines), start)
+    return _Words(network, station, name, component, _event(lines), start)
 
 
 def _event(lines: list[str]) -> str:
@@ -166,6 +170,7 @@ def _channel(words: _Words, values: Channel) -> Channel:
         samples=values.samples,
         unit=values.unit,
         start_time=words.start_time,
+        network=words.network,
         station=words.station,
         component=words.component,
         details={"station_name": words.station_name, "event": words.event, **values.details},

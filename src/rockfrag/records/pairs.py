@@ -11,12 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.errors import InputError
 from rockfrag.records.blocks import reals
 from rockfrag.records.channel import Channel
 from rockfrag.records.numbers import NumberError, parse_columns, parse_separated
 from rockfrag.records.quantities import canonical_unit
 from rockfrag.records.text import TextFile
-from rockfrag.records.times import UNEVEN_STEP, check_rising, resolution_of, step_of_times
+from rockfrag.records.times import UNEVEN_STEP, check_rising, step_of_times
 
 _POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.IGNORECASE)
 _UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.IGNORECASE)
@@ -77,21 +78,27 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
     # 100 integers (16I5) and 50 reals (8F10) are seven lines each
     reals(text, at_numbers + 7, at_numbers + 14, 10, 50)
     values = _flat(text, at_numbers + 14, stop, 2 * count)
+    return pairs_of(values, unit, text, at_numbers + 14)
+
+
+def pairs_of(values: NDArray[np.float64], unit: str, text: TextFile, line: int) -> Pairs:
+    """Split times and accelerations that alternate, and tell whether the times are even.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two pairs, or a time is before the one above it.
+    """
     times, accelerations = values[0::2], values[1::2]
-    if times.size < 2:
-        text.fail("a record needs at least two points", at_numbers + 14)
-    falls = np.flatnonzero(np.diff(times) < 0)
-    if falls.size:
+    if times.size < 2 or times.size != accelerations.size:
+        text.fail("a record needs at least two pairs of time and acceleration", line)
+    if (np.diff(times) < 0).any():
         # rounding may make neighbours equal, never reverse them
-        check_rising(times, text, at_numbers + 14)
-    even = np.ptp(np.diff(times)) <= 1.01 * resolution_of(times) and _is_even(times)
-    dt = step_of_times(times, text, at_numbers + 14) if even else UNEVEN_STEP
-    return Pairs(times, accelerations, dt, bool(even), unit)
-
-
-def _is_even(times: NDArray[np.float64]) -> bool:
-    line = np.linspace(times[0], times[-1], times.size)
-    return bool((np.abs(times - line) <= 0.51 * resolution_of(times)).all())
+        check_rising(times, text, line)
+    try:
+        return Pairs(times, accelerations, step_of_times(times, text, line), True, unit)
+    except InputError:
+        return Pairs(times, accelerations, UNEVEN_STEP, False, unit)
 
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
@@ -116,6 +123,3 @@ def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float
             start,
         )
     return values
-
-
-__all__ = ["Pairs", "is_pairs_header", "read_pairs"]

@@ -3,6 +3,7 @@
 Eleven lines of text, 48 integers (8I10), 50 reals (5E15.7), as many lines of comment as the 16th
 integer says (each begins with ``|``), then as many samples as the 17th integer says, in cm/s². The
 fields are 8(1PE10.4E1), which need no blank between them, or 5E14.7 where the 47th integer is 8.
+Where the header has no sampling rate, the values are pairs of time [s] and acceleration.
 """
 
 import re
@@ -13,6 +14,7 @@ from obspy import UTCDateTime
 from rockfrag.records.blocks import Section, integers, positive_step, reals
 from rockfrag.records.channel import Channel
 from rockfrag.records.format import Format
+from rockfrag.records.pairs import pairs_of
 from rockfrag.records.text import TextFile
 
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
@@ -49,22 +51,27 @@ def _parse(text: TextFile) -> list[Channel]:
     at_reals = _TEXT_LINES + _INTEGER_LINES
     whole = integers(text, _TEXT_LINES, at_reals, 10, 48)
     numbers = reals(text, at_reals, _FIRST_DATA, 15, 50)
-    if numbers[_RATE] == numbers[_MISSING_REAL] or numbers[_RATE] <= 0:
-        text.fail("the header gives no sampling rate (unevenly digitised record)", at_reals)
     count, comments = whole[_COUNT], whole[_COMMENTS]
     if count < 1 or not 0 <= comments < len(text):
         text.fail(f"the header promises {count} samples and {comments} comments", _TEXT_LINES + 1)
     start = _FIRST_DATA + comments
     section = Section("acceleration", count, start, len(text), _width(text, start, whole))
-    dt = positive_step(text, float(f"{1 / numbers[_RATE]:.9g}"), at_reals)
+    rate = numbers[_RATE]
+    if rate == numbers[_MISSING_REAL]:
+        # without a rate the values are pairs of time and acceleration
+        values = pairs_of(section.samples(text), "cm/s2", text, start).channel()
+    else:
+        step = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
+        dt = positive_step(text, step, at_reals)
+        values = Channel(count, dt, lambda: section.samples(text), "cm/s2")
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
     missing = whole[_MISSING]
     return [
         Channel(
-            npts=count,
-            dt=dt,
-            samples=lambda: section.samples(text),
-            unit="cm/s2",
+            npts=values.npts,
+            dt=values.dt,
+            samples=values.samples,
+            unit=values.unit,
             start_time=_start(whole),
             station=_station_code(words[2], whole, missing),
             component=_component(whole, station[2].strip() if station else ""),
@@ -73,6 +80,7 @@ def _parse(text: TextFile) -> list[Channel]:
                 "event": " ".join(words[3].split()),
                 "corrected": held.startswith("CORRECTED"),
                 **_place(numbers),
+                **values.details,
             },
         )
     ]
