@@ -6,19 +6,11 @@ import pandas as pd
 
 from rockfrag.report.findings import READING, Finding, all_findings
 from rockfrag.report.ledger_html import ledger_html
-from rockfrag.report.page import Column, Picture, Section, render, table_html
+from rockfrag.report.page import Column, Picture, Section, comparison_html, render, table_html
 from rockfrag.studies import Study
 
 COMPARISONS = ("table_3_1", "table_3_3", "table_4_1")
 
-_COMPARED = (
-    Column("name", "Name"),
-    Column("quantity", "Quantity"),
-    Column("unit", "Unit"),
-    Column("computed", "Computed", 4),
-    Column("printed", "Printed"),
-    Column("agrees", "To the printed digits"),
-)
 _CAPTIONS = {
     "table_3_1": "Table 3.1: critical angle, radius, frequency parameter and slenderness of the "
     "blocks.",
@@ -43,8 +35,8 @@ def write_page(
         The study.
     tables
         Result tables by name, as in ``results/<study>/``: ``tests``, ``measures``, ``fragility``,
-        ``survival_windows``, ``table_3_1``, ``table_3_3``, ``table_4_1`` and, where the study has
-        pairs, ``pedestal/effects``, ``pedestal/whole``, ``pedestal/ranks`` and ``claims``.
+        ``survival_windows``, ``validity``, ``table_3_1``, ``table_3_3``, ``table_4_1`` and, where the study has
+        pairs, ``pedestal/effects``, ``pedestal/whole``, ``claims`` and ``contradictions``.
     pictures
         Figures by name, in the order in which they are to appear within a section.
     provenance
@@ -59,7 +51,7 @@ def write_page(
     if "pedestal/effects" in tables:
         sections.append(_pedestal(tables, pictures))
     if "claims" in tables:
-        sections.append(_claims(tables["claims"]))
+        sections.append(_claims(tables["claims"], tables["contradictions"]))
     return render(
         title=study.title,
         lead=_lead(study),
@@ -85,6 +77,7 @@ def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
         tables["tests"],
         tables.get("pedestal/effects"),
         tables["survival_windows"],
+        tables["validity"],
         [tables[name] for name in COMPARISONS],
         tables.get("claims"),
     )
@@ -103,7 +96,7 @@ def _bodies(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture])
             "conserved in impacts unless the study says otherwise."
         ],
         [
-            *(table_html(tables[name], _COMPARED, _CAPTIONS[name]) for name in COMPARISONS[::2]),
+            *(comparison_html(tables[name], _CAPTIONS[name]) for name in COMPARISONS[::2]),
             *_chosen(pictures, "bodies"),
         ],
     )
@@ -128,7 +121,7 @@ def _motions(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture]
             "the thesis does not describe. What is said of floors is said of that building."
         ],
         [
-            table_html(tables["table_3_3"], _COMPARED, _CAPTIONS["table_3_3"]),
+            comparison_html(tables["table_3_3"], _CAPTIONS["table_3_3"]),
             *_chosen(pictures, "figure_3_4", "building", "floor"),
             table_html(
                 tables["measures"], columns, "Intensity of every motion, before it is scaled."
@@ -179,6 +172,8 @@ def _fragility(
     level = f"{100 * study.fragility.confidence:g} %"
     curves = tables["fragility"].copy()
     curves["reading"] = curves["estimator"].str.replace("_", " ")
+    order = {one.name: i for i, one in enumerate(study.configurations)}
+    curves = curves.sort_values("configuration", key=lambda names: names.map(order), kind="stable")
     columns = (
         Column("configuration", "Configuration"),
         Column("im", "Measure"),
@@ -238,7 +233,8 @@ def _pedestal(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture
         [
             "Ratio of the overturning amplitude with the pedestal (P) to that without (NP), paired "
             "by tower and motion. Motions of one earthquake are not independent, so intervals rest "
-            "on earthquakes. “Detectable” is the ratio that would be found with 80 % power."
+            "on earthquakes. “Detectable” is the ratio that would be found with 80 % power. An interval "
+            "without width means that all pairs have the same amplitude, to the steps tested."
         ],
         [
             *_chosen(pictures, "pedestal"),
@@ -252,7 +248,13 @@ def _pedestal(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture
     )
 
 
-def _claims(claims: pd.DataFrame) -> Section:
+def _claims(claims: pd.DataFrame, contradictions: pd.DataFrame) -> Section:
+    columns = (
+        Column("statements", "Statements"),
+        Column("what", "What"),
+        Column("why", "Why"),
+        Column("in_these_tests", "In these tests"),
+    )
     return Section(
         "claims",
         "The thesis’s statements",
@@ -260,5 +262,8 @@ def _claims(claims: pd.DataFrame) -> Section:
             "Each statement with its test and verdict. A verdict on simulated tests says what the "
             "model does, not what the laboratory saw."
         ],
-        [ledger_html(claims)],
+        [
+            ledger_html(claims),
+            table_html(contradictions, columns, "Where the thesis contradicts itself."),
+        ],
     )

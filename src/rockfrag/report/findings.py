@@ -25,6 +25,7 @@ def all_findings(
     tests: pd.DataFrame,
     effects: pd.DataFrame | None,
     windows: pd.DataFrame,
+    validity: pd.DataFrame,
     comparisons: Sequence[pd.DataFrame],
     claims: pd.DataFrame | None,
 ) -> list[Finding]:
@@ -38,6 +39,8 @@ def all_findings(
         The pedestal's effect by reading and scope, or None if there are no pairs.
     windows
         Survival windows of every sweep.
+    validity
+        Contact forces of every test.
     comparisons
         Printed and computed tables.
     claims
@@ -47,7 +50,11 @@ def all_findings(
     found = [amplitudes_found(laboratory)]
     if effects is not None:
         found += [pedestal_effect(effects), pedestal_by_floor(effects)]
-    found += [slenderness_effect(laboratory), readings_differ(tests, windows)]
+    found += [
+        slenderness_effect(laboratory),
+        readings_differ(tests, windows),
+        model_allowed(validity),
+    ]
     printed = pd.concat(comparisons, ignore_index=True) if comparisons else pd.DataFrame()
     if len(printed) and printed["agrees"].notna().any():
         found.append(printed_tables(printed))
@@ -156,6 +163,25 @@ def slenderness_effect(tests: pd.DataFrame) -> Finding:
         else "The mean amplitude does not fall in the order of the towers"
     )
     return Finding(headline, f"Mean amplitude {'; '.join(parts)}.")
+
+
+def model_allowed(validity: pd.DataFrame) -> Finding:
+    """Say what friction the model needs, and whether a block would have jumped."""
+    friction = validity["friction_demand"]
+    jumps = int((validity["least_normal_force_n"] <= 0).sum())
+    text = (
+        f"Without sliding, half of the tests need a coefficient of friction above "
+        f"{friction.median():.2f} somewhere and the most demanding one {friction.max():.2f}."
+    )
+    headline = "Pure rocking needs more friction than most surfaces have"
+    if friction.median() < 0.6:
+        headline = "Pure rocking needs friction that ordinary surfaces have"
+    text += (
+        " No block would have lifted off its support."
+        if jumps == 0
+        else f" In {jumps} tests a block would have lifted off."
+    )
+    return Finding(headline, text)
 
 
 def readings_differ(tests: pd.DataFrame, windows: pd.DataFrame) -> Finding:

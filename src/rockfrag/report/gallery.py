@@ -62,12 +62,11 @@ class Results:
 
 @dataclass(frozen=True)
 class Plate:
-    """One figure: its name, its caption, how it is drawn, and whether it needs the page's width."""
+    """One figure: its name, its caption, and how it is drawn."""
 
     name: str
     caption: str
     draw: Callable[[Results], Figure]
-    wide: bool = False
 
 
 def _forest(results: Results) -> Figure:
@@ -82,13 +81,11 @@ _COUNTERPARTS = (
         "figure_4_1",
         "Counterpart of figure 4.1: overturning amplitude against slenderness, with means.",
         lambda r: slenderness_figure(r.laboratory, slenderness=r.slenderness),
-        wide=True,
     ),
     Plate(
         "figure_4_2",
         "Counterpart of figure 4.2: the same for each floor.",
         lambda r: slenderness_figure(r.laboratory, by_floor=True, slenderness=r.slenderness),
-        wide=True,
     ),
     Plate(
         "figure_4_3",
@@ -104,7 +101,6 @@ _COUNTERPARTS = (
         "figure_4_5",
         "Counterpart of figure 4.5: figure 4.3 for each floor.",
         lambda r: pedestal_scatter(r.laboratory, "floor", slenderness=r.slenderness),
-        wide=True,
     ),
     Plate(
         "figure_4_6a",
@@ -115,13 +111,11 @@ _COUNTERPARTS = (
         "figure_4_6b",
         "Counterpart of figure 4.6b: the same for each tower.",
         lambda r: sides_figure(r.laboratory, "floor", panels="tower", slenderness=r.slenderness),
-        wide=True,
     ),
     Plate(
         "figure_4_7",
         "Counterpart of figure 4.7: figure 4.3 for each earthquake.",
         lambda r: pedestal_scatter(r.laboratory, "event", slenderness=r.slenderness),
-        wide=True,
     ),
     Plate(
         "pedestal_effect",
@@ -174,8 +168,7 @@ def figure_names(study: Study) -> list[str]:
 def pictures(study: Study, folder: Path) -> dict[str, Picture]:
     """Figures with their captions, from the files in ``folder``."""
     return {
-        plate.name: Picture(folder / f"{plate.name}.svg", plate.caption, plate.caption, plate.wide)
-        for plate in plates(study)
+        plate.name: Picture(folder / f"{plate.name}.svg", plate.caption) for plate in plates(study)
     }
 
 

@@ -2,6 +2,7 @@
 
 import base64
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup
 
 from rockfrag.report.findings import Finding
+
+_PIXELS_PER_POINT = 96 / 72 * 1.22
+_COLUMN = round(252 * _PIXELS_PER_POINT)
 
 
 @dataclass(frozen=True)
@@ -35,12 +39,21 @@ class Column:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure on the page: a path to an SVG, its caption, and words for those who cannot see it."""
+    """A figure on the page: a path to an SVG, and its caption."""
 
     path: Path
     caption: str
-    alternative: str
-    wide: bool = False
+
+    @property
+    def width(self) -> int:
+        """Width on a wide screen [px], a little above the printed one so that text reads well."""
+        found = re.search(rb'<svg[^>]* width="([0-9.]+)pt"', self.path.read_bytes())
+        return round(float(found[1]) * _PIXELS_PER_POINT) if found else _COLUMN
+
+    @property
+    def wide(self) -> bool:
+        """Whether it needs more than a column, so that it scrolls on a narrow screen."""
+        return self.width > 1.5 * _COLUMN
 
     @property
     def source(self) -> Markup:
@@ -77,6 +90,50 @@ def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> 
         )
         for row in table.to_dict("records")
     )
+    return _framed(caption, head, rows)
+
+
+def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
+    """Render computed values with the printed ones below them, a row per name.
+
+    Parameters
+    ----------
+    comparison
+        See :func:`rockfrag.report.thesis_tables.compare`.
+    caption
+        What the table shows.
+    """
+    quantities = comparison[["quantity", "unit"]].drop_duplicates().to_numpy().tolist()
+    rows: dict[tuple[str, str], Any] = {
+        (r["name"], r["quantity"]): r for r in comparison.to_dict("records")
+    }
+    head = Markup("<th>Name</th>") + Markup("").join(
+        Markup('<th class="number">{}{}</th>').format(name, "" if unit == "-" else f" [{unit}]")
+        for name, unit in quantities
+    )
+    body = Markup("").join(
+        Markup("<tr><td>{}</td>{}</tr>").format(
+            name,
+            Markup("").join(_compared(rows.get((name, quantity))) for quantity, _ in quantities),
+        )
+        for name in dict.fromkeys(comparison["name"])
+    )
+    printed = comparison["printed"].ne("").any()
+    note = " Below each value the printed one; ✓ where they agree to its digits." if printed else ""
+    return _framed(caption + note, head, body)
+
+
+def _compared(row: Mapping[str, Any] | None) -> Markup:
+    if row is None:
+        return Markup('<td class="number">–</td>')
+    printed = Markup("")
+    if row["printed"]:
+        sign = "✓" if row["agrees"] else "≠"
+        printed = Markup("<br><small>{} {}</small>").format(row["printed"], sign)
+    return Markup('<td class="number">{}{}</td>').format(cell(row["computed"], 4), printed)
+
+
+def _framed(caption: str, head: Markup, rows: Markup) -> Markup:
     return Markup(
         '<figure class="table"><figcaption>{}</figcaption><div class="scroll" tabindex="0"><table>'
         "<thead><tr>{}</tr></thead><tbody>{}</tbody></table></div></figure>"
