@@ -85,6 +85,19 @@ def test_flipped_bytes_give_an_error_or_finite_samples(built, tmp_path, data):
     check_flipped(built, tmp_path, data)
 
 
+@QUICK
+@given(data=st.data())
+def test_a_blank_line_anywhere_is_skipped_or_an_error(built, tmp_path, data):
+    lines = lines_of(built)
+    lines.insert(data.draw(st.integers(0, len(lines))), b"\n")
+    path = tmp_path / built.path.name
+    path.write_bytes(b"".join(lines))
+    samples = outcome(path)
+    if samples is not None:
+        for left, right in zip(samples, read_all(built.path), strict=True):
+            np.testing.assert_array_equal(left, right)
+
+
 @pytest.mark.slow
 @LONG
 @given(data=st.data())

@@ -29,19 +29,24 @@ from rockfrag.records.text import TextFile
 _FIRST = re.compile(
     r"^\s*(?:un)?(?:raw|processed|corrected)?\s*\w+.*\(\s*Format\s+v\s*0?1\.\d+", re.IGNORECASE
 )
-_INTEGERS = re.compile(rb"^\s*(\d+)\s+Integer-header values follow on\s+(\d+)\s+lines", re.I | re.M)
-_REALS = re.compile(rb"^\s*(\d+)\s+Real-header values follow on\s+(\d+)\s+lines", re.I | re.M)
-_COMMENTS = re.compile(rb"^\s*(\d+)\s+Comment line", re.I | re.M)
-_VALUES = re.compile(rb"^\s*\d+\s+\w[\w ]*?\s+p(?:oin)?ts\b", re.I | re.M)
+_INTEGERS = re.compile(
+    rb"^[ \t]*(\d+)[ \t]+Integer-header values follow on[ \t]+(\d+)[ \t]+lines", re.I | re.M
+)
+_REALS = re.compile(
+    rb"^[ \t]*(\d+)[ \t]+Real-header values follow on[ \t]+(\d+)[ \t]+lines", re.I | re.M
+)
+_COMMENTS = re.compile(rb"^[ \t]*(\d+)[ \t]+Comment line", re.I | re.M)
+_VALUES = re.compile(rb"^[ \t]*\d+[ \t]+\w[\w ]*?[ \t]+p(?:oin)?ts\b", re.I | re.M)
 _VALUES_LINE = re.compile(
     r"^\s*(?P<count>\d+)\s+(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
     r"(?:\(\s*(?P<code>\d+)\s*\))?",
     re.IGNORECASE,
 )
 _END = re.compile(
-    rb"^\s*(?:/&|End-of-data)|\(Format\s+v|^\s*\d+\s+\w[\w ]*?\s+p(?:oin)?ts\b", re.I | re.M
+    rb"^[ \t]*(?:/&|End-of-data)|\(Format[ \t]+v|^[ \t]*\d+[ \t]+\w[\w ]*?[ \t]+p(?:oin)?ts\b",
+    re.I | re.M,
 )
-_HEAD = re.compile(rb"\(\s*Format\s+v", re.I)
+_HEAD = re.compile(rb"\(\s*Format[ \t]+v", re.I)
 
 _UNITS_BY_CODE = {
     2: "g",

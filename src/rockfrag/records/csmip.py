@@ -28,7 +28,7 @@ from rockfrag.records.text import TextFile
 from rockfrag.records.times import american_time
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.IGNORECASE)
-_HEAD = re.compile(rb"^\s*(?:UN)?CORRECTED\s+ACC?ELERO(?:GRAM|GRAPH)\b", re.I | re.M)
+_HEAD = re.compile(rb"^[ \t]*(?:UN)?CORRECTED[ \t]+ACC?ELERO(?:GRAM|GRAPH)\b", re.I | re.M)
 _VOLUME_2 = re.compile(
     r"^\s*(?P<count>\d+)\s+points?\s+of\s+(?P<quantity>accel|veloc|displ)\w*\s+data\s+equally\s+"
     r"spaced\s+at\s+(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*sec(?P<rest>.*)$",
@@ -40,11 +40,11 @@ _VOLUME_1 = re.compile(
     re.IGNORECASE,
 )
 _VALUES = re.compile(
-    rb"^\s*\d+\s+(?:points?\s+of\s+(?:accel|veloc|displ)\w*\s+data\s+equally"
-    rb"|(?:accel|veloc|displ)\w*\s+points?\s+at\s)",
+    rb"^[ \t]*\d+[ \t]+(?:points?[ \t]+of[ \t]+(?:accel|veloc|displ)\w*[ \t]+data[ \t]+equally"
+    rb"|(?:accel|veloc|displ)\w*[ \t]+points?[ \t]+at\s)",
     re.I | re.M,
 )
-_END = re.compile(_VALUES.pattern + rb"|^\s*/&|" + _HEAD.pattern, re.I | re.M)
+_END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M)
 _UNIT = re.compile(
     r"(?:units?\s*(?::|of|are|=)|\bin)\s*(?P<unit>[CM]*M\s*/\s*S\w*(?:\s*/\s*S\w*)?\d?|CM|G\s*/\s*10|"
     r"1/10\s*G|G)(?![A-Z])",
@@ -102,7 +102,7 @@ def _parse(text: TextFile) -> list[Channel]:
 
 def _channel_lines(text: TextFile) -> Iterator[tuple[int, int]]:
     """Yield the first line of each channel and the line after its last."""
-    end = re.compile(rb"^\s*/&", re.M)
+    end = re.compile(rb"^[ \t]*/&", re.M)
     first = text.find(_HEAD)
     while first >= 0:
         stop = text.until(end, first)

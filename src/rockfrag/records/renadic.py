@@ -14,8 +14,8 @@ from rockfrag.records.text import TextFile
 from rockfrag.records.times import american_time
 
 _FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.IGNORECASE)
-_HEAD = re.compile(rb"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.I | re.M)
-_END = re.compile(rb"^\s*/&", re.M)
+_HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)
+_END = re.compile(rb"^[ \t]*/&", re.M)
 _HEADER = 13
 
 

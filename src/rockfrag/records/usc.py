@@ -11,7 +11,9 @@ from rockfrag.records.pairs import read_pairs
 from rockfrag.records.text import TextFile
 
 _FIRST = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME\s+I\b", re.IGNORECASE)
-_HEAD = re.compile(rb"^.*OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME", re.I | re.M)
+_HEAD = re.compile(
+    rb"^.*OF[ \t]+UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA[ \t]+OF[ \t]+VOLUME", re.I | re.M
+)
 _HEADER = 13
 _LENGTH = slice(72, 76)
 
@@ -30,7 +32,7 @@ def _parse(text: TextFile) -> list[Channel]:
     while first >= 0:
         following = text.find(_HEAD, first + 1)
         stop = len(text) if following < 0 else following
-        last = text.find(re.compile(rb"^\s*/&", re.M), first, stop)
+        last = text.find(re.compile(rb"^[ \t]*/&", re.M), first, stop)
         pairs = read_pairs(text, first, stop if last < 0 else last)
         channels.append(_channel(text, first, pairs.channel()))
         first = following
