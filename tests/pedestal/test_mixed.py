@@ -124,3 +124,18 @@ def test_variance_that_the_data_do_not_show_is_zero_whatever_the_optimiser_says(
     fit = fit_mixed(table, EFFECT)
     assert fit.sd_event == pytest.approx(0, abs=2e-3)
     assert fit.coefficients["estimate"][0] == pytest.approx(0.1, abs=1e-6)
+
+
+@pytest.mark.parametrize("formula", [EFFECT, EFFECT_BY_FLOOR])
+def test_large_sets_use_the_direct_search_alone_with_the_same_result(
+    tests_table, monkeypatch, formula
+):
+    pairs = pair_tests(tests_table(1)).table
+    both = fit_mixed(pairs, formula).coefficients
+    monkeypatch.setattr("rockfrag.pedestal.mixed.LARGEST_FOR_STATSMODELS", 10)
+    direct = fit_mixed(pairs, formula)
+    assert direct.notes[0].endswith("direct search of the restricted likelihood only")
+    for column in ("estimate", "se"):
+        assert direct.coefficients[column].to_numpy() == pytest.approx(
+            both[column].to_numpy(), abs=1e-6
+        )

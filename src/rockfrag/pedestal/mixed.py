@@ -9,6 +9,7 @@ search.  A fit that fails is an error, never a number.
 
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -20,6 +21,8 @@ from rockfrag.pedestal.units import CONFIDENCE, Array
 
 VARIANCES = {"event": "0+C(event)", "motion": "0+C(event):C(floor)"}
 OPTIMISER = "bfgs"
+LARGEST_FOR_STATSMODELS = 150
+"""Rows up to which statsmodels fits too; its dense algebra takes minutes for 400."""
 SHORTFALL = 0.05
 """Largest shortfall of log-likelihood that still counts as the same maximum [-]."""
 
@@ -73,30 +76,37 @@ class _Direct:
     covariance: Array
 
 
-def _indicator(labels: pd.Series) -> Array:
-    return pd.get_dummies(labels).to_numpy(dtype=float)
-
-
 class _Reml:
-    """Restricted likelihood of y = X β + event + motion + residual."""
+    """Restricted likelihood of y = X β + event + motion + residual.
 
-    def __init__(self, y: Array, x: Array, event: Array, motion: Array) -> None:
-        self.y, self.x = y, x
-        self.kernels = (event @ event.T, motion @ motion.T)
+    Motions lie within events, so the covariance falls into a block per event.
+    """
+
+    def __init__(self, y: Array, x: Array, rows: pd.DataFrame) -> None:
+        self.free = len(y) - x.shape[1]
+        places = rows.reset_index(drop=True).groupby("event").indices.values()
+        floors = rows["floor"].to_numpy()
+        self.blocks = [
+            (y[i], x[i], (floors[i][:, None] == floors[i][None, :]).astype(float)) for i in places
+        ]
 
     def at(self, ratios: Array) -> _Direct:
         """Everything at given ratios of the variances of event and motion to the residual's."""
-        v = np.eye(len(self.y)) + ratios[0] * self.kernels[0] + ratios[1] * self.kernels[1]
-        v_x = np.linalg.solve(v, self.x)
-        v_y = np.linalg.solve(v, self.y)
-        information = self.x.T @ v_x
-        beta = np.asarray(np.linalg.solve(information, self.x.T @ v_y), dtype=np.float64)
-        residual = self.y - self.x @ beta
-        free = len(self.y) - self.x.shape[1]
-        scale = float(residual @ np.linalg.solve(v, residual)) / free
+        columns = self.blocks[0][1].shape[1]
+        information = np.zeros((columns, columns))
+        response, squares, log_det = np.zeros(columns), 0.0, 0.0
+        for y, x, same_motion in self.blocks:
+            v = np.eye(len(y)) + ratios[0] + ratios[1] * same_motion
+            solved = np.linalg.solve(v, np.column_stack([x, y]))
+            information += x.T @ solved[:, :-1]
+            response += x.T @ solved[:, -1]
+            squares += float(y @ solved[:, -1])
+            log_det += float(np.linalg.slogdet(v)[1])
+        beta = np.asarray(np.linalg.solve(information, response), dtype=np.float64)
+        scale = (squares - float(beta @ response)) / self.free
         loglik = -0.5 * (
-            free * (np.log(2 * np.pi * scale) + 1)
-            + np.linalg.slogdet(v)[1]
+            self.free * (np.log(2 * np.pi * scale) + 1)
+            + log_det
             + np.linalg.slogdet(information)[1]
         )
         covariance: Array = scale * np.linalg.inv(information)
@@ -156,37 +166,30 @@ def fit_mixed(rows: pd.DataFrame, formula: str, optimiser: str = OPTIMISER) -> M
             "add motions or read the means only."
         )
     notes: list[str] = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        model = smf.mixedlm(
-            formula, rows.assign(one=1), groups="one", re_formula="0", vc_formula=VARIANCES
+    model = smf.mixedlm(
+        formula, rows.assign(one=1), groups="one", re_formula="0", vc_formula=VARIANCES
+    )
+    y, x = np.asarray(model.endog, dtype=float), np.asarray(model.exog, dtype=float)
+    terms = list(model.exog_names)
+    least_squares: Array = np.linalg.lstsq(x, y, rcond=None)[0]
+    if np.linalg.matrix_rank(x) < x.shape[1]:
+        raise InputError(f"Mixed model {formula}: a cell of the design is empty; fill it.")
+    if np.ptp(y - x @ least_squares) < 1e-12 * max(1.0, float(np.ptp(y))):
+        raise InputError(
+            f"Mixed model {formula}: the data have no scatter to model; read the means."
         )
-        y, x = np.asarray(model.endog, dtype=float), np.asarray(model.exog, dtype=float)
-        least_squares: Array = np.linalg.lstsq(x, y, rcond=None)[0]
-        if np.linalg.matrix_rank(x) < x.shape[1]:
-            raise InputError(f"Mixed model {formula}: a cell of the design is empty; fill it.")
-        if np.ptp(y - x @ least_squares) < 1e-12 * max(1.0, float(np.ptp(y))):
-            raise InputError(
-                f"Mixed model {formula}: the data have no scatter to model; read the means."
-            )
-        fitted = model.fit(reml=True, method=optimiser)
-    if caught:
-        notes.append(f"statsmodels warned {len(caught)} time(s) while optimising")
-    motion = rows["event"].astype(str) + "/" + rows["floor"].astype(str)
-    reml = _Reml(y, x, _indicator(rows["event"]), _indicator(motion))
+    reml = _Reml(y, x, rows)
     direct = reml.maximum()
     balanced = random_effects_balanced(rows)
     expected = least_squares if balanced else direct.beta
-    estimate = np.asarray(fitted.fe_params, dtype=float)
-    terms = list(model.exog_names)
     se = np.sqrt(np.diag(direct.covariance))
+    if len(rows) > LARGEST_FOR_STATSMODELS:
+        estimate = direct.beta
+        notes.append(f"{len(rows)} rows: direct search of the restricted likelihood only")
+    else:
+        estimate, more = _by_statsmodels(model, optimiser, reml, direct)
+        notes.extend(more)
     check_fixed_effects(terms, formula, estimate, expected, se, balanced)
-    theirs = reml.at(np.asarray(fitted.vcomp, dtype=float) / float(fitted.scale))
-    if theirs.loglik < direct.loglik - SHORTFALL:
-        notes.append(
-            f"statsmodels stopped {direct.loglik - theirs.loglik:.2f} short of the largest "
-            "log-likelihood; variances and standard errors are those of the direct maximum"
-        )
     events = int(rows["event"].nunique())
     return MixedFit(
         formula=formula,
@@ -198,6 +201,25 @@ def fit_mixed(rows: pd.DataFrame, formula: str, optimiser: str = OPTIMISER) -> M
         balanced=balanced,
         notes=tuple(notes),
     )
+
+
+def _by_statsmodels(
+    model: Any, optimiser: str, reml: _Reml, direct: _Direct
+) -> tuple[Array, list[str]]:
+    """Fixed effects by statsmodels, and what to know about how its optimiser went."""
+    notes = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        fitted = model.fit(reml=True, method=optimiser)
+    if caught:
+        notes.append(f"statsmodels warned {len(caught)} time(s) while optimising")
+    theirs = reml.at(np.asarray(fitted.vcomp, dtype=float) / float(fitted.scale))
+    if theirs.loglik < direct.loglik - SHORTFALL:
+        notes.append(
+            f"statsmodels stopped {direct.loglik - theirs.loglik:.2f} short of the largest "
+            "log-likelihood; variances and standard errors are those of the direct maximum"
+        )
+    return np.asarray(fitted.fe_params, dtype=float), notes
 
 
 def check_fixed_effects(
