@@ -210,6 +210,27 @@ def test_units_that_peer_like_headers_state(builders, tmp_path, words, unit):
     assert obspy.read(built.path)[0].stats.rockfrag.unit == unit
 
 
+@pytest.mark.parametrize(
+    "header",
+    [
+        "ACCELERATION IN UNITS OF G\nNPTS= 43, DT= .01\n",
+        "Source: me\nTime[s] Accel[g]\n",
+        "#Earthquake Information\n#StationCode: ECU\n#SampleRate(Hz): 100\n"
+        "#AmplitudeUnit: gal\n#DataSequence: Time U(+)\n",
+    ],
+)
+def test_what_a_stricter_format_knows_is_not_plain_text(tmp_path, header):
+    path = tmp_path / "short.txt"
+    columns = 1 if "NPTS" in header else 2
+    rows = "".join(
+        f"{i * 0.01:10.3f}{np.sin(i):10.5f}"[20 - 10 * columns :] + "\n" for i in range(43)
+    )
+    path.write_text(header + rows)
+    assert len(claims(str(path))) == 1
+    assert claims(str(path)) != ["PLAINTEXT"]
+    assert obspy.read(path)[0].stats.npts == 43
+
+
 def test_peer_columns_that_touch_are_read(builders, tmp_path):
     built = builders["at2_peer"](tmp_path)
     header = built.path.read_text().split("\n")[:4]
@@ -219,6 +240,33 @@ def test_peer_columns_that_touch_are_read(builders, tmp_path):
     rows = ["".join(fields[i : i + 5]) for i in range(0, len(fields), 5)]
     built.path.write_text("\n".join(header + rows) + "\n")
     np.testing.assert_allclose(obspy.read(built.path)[0].data, values, rtol=1e-8)
+
+
+@pytest.mark.slow
+def test_reading_a_long_peer_record_takes_at_most_three_times_what_numpy_takes(tmp_path):
+    import time
+
+    path = tmp_path / "long.AT2"
+    values = np.random.default_rng(1).normal(size=200_000)
+    fields = [f"{value:15.7E}" for value in values.tolist()]
+    rows = ["".join(fields[i : i + 5]) for i in range(0, len(fields), 5)]
+    header = ["PEER", "E, S, 090", "ACCELERATION IN UNITS OF G", "NPTS= 200000, DT= .005 SEC"]
+    path.write_text("\n".join(header + rows) + "\n")
+
+    def shortest(read):
+        times = []
+        for _ in range(5):
+            start = time.process_time()
+            read()
+            times.append(time.process_time() - start)
+        return min(times)
+
+    def from_string():
+        return np.fromstring(path.read_text().split("SEC\n", 1)[1], sep=" ")
+
+    numpy = min(shortest(from_string), shortest(lambda: np.loadtxt(path, skiprows=4)))
+    assert shortest(lambda: obspy.read(path)) < 3 * numpy
+    assert shortest(lambda: read_motion(path)) < 3 * numpy
 
 
 def test_a_long_line_of_anything_is_recognised_or_not_at_once(tmp_path):

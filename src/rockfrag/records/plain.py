@@ -16,7 +16,7 @@ from obspy import Stream
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
-from rockfrag.records import seismosoft
+from rockfrag.records import at2, cosmos, csmip, cwa, esm, geonet, renadic, seismosoft, smc, usc
 from rockfrag.records.blocks import positive_step
 from rockfrag.records.channel import Channel
 from rockfrag.records.format import Format
@@ -31,6 +31,9 @@ _COMMENT = re.compile(r"^\s*(?:#|%|!|//|\"?\s*$)")
 _UNIT = re.compile(r"[\[(_\s](?P<unit>[^\[\]()\s,;]+)[\])]?\s*$")
 _OTHERS = re.compile(r"\b(veloc\w*|vel|displ\w*|disp)\b", re.IGNORECASE)
 _MAX_HEADER = 20
+_STRICTER = (at2, cosmos, csmip, cwa, esm, geonet, renadic, seismosoft, smc, usc)
+"""Formats with a header that says what they are; what they know is not plain text."""
+
 _MIN_ROWS = 3
 _MAX_WORDS = 2
 """Lines of free text that may stand above the numbers where no titles of columns follow them."""
@@ -52,10 +55,12 @@ class _Layout:
 
 def _recognise(lines: list[str], name: str) -> bool:
     layout = _layout(lines)
-    if layout is None or seismosoft.FORMAT.recognise(lines, name):
+    if layout is None:
         return False
     rows = [line for line in lines[layout.start :] if line.strip()]
     if not rows or not all(_is_row(line) for line in rows):
+        return False
+    if any(module.FORMAT.recognise(lines, name) for module in _STRICTER):
         return False
     if layout.npts is not None:
         return True
