@@ -268,11 +268,19 @@ class Model:
         """
         energy = self.kinetic_energy(old, theta, before) * (1 + 1e-9)
         for measured in (True, False):
-            for new, after in self.admissible_impacts(old, closing, theta, before, measured):
-                if self.kinetic_energy(new, theta, after) <= energy:
-                    return new, after
-                break
-        raise ArithmeticError(f"no impact is admissible at {old}, {closing}, {theta}, {before}")
+            outcomes = self.admissible_impacts(old, closing, theta, before, measured)
+            outcome = next(outcomes, None) or self._together(old, closing, theta, before)
+            if self.kinetic_energy(outcome[0], theta, outcome[1]) <= energy:
+                return outcome
+        raise ArithmeticError(f"energy grows at {old}, {closing}, {theta}, {before}")
+
+    def _together(
+        self, old: State, closing: State, theta: Pair, before: Pair
+    ) -> tuple[State, Pair]:
+        """Keep together what met, where no other outcome is possible (thesis, after eq. 2.78)."""
+        new = (0 if closing[0] else old[0], 0 if closing[1] else old[1])
+        poles = (float(new[0] or 1), float(new[1] or 1))
+        return new, self.projected(poles, new, old, theta, before)
 
     def admissible_impacts(
         self, old: State, closing: State, theta: Pair, before: Pair, measured: bool = False
