@@ -161,7 +161,7 @@ def test_brackets_without_resolution_or_without_overturning_are_stated():
 @pytest.mark.parametrize("step", [0.02, 0.20])
 def test_the_step_hazard_recovers_a_weibull_capacity_whatever_the_step(step):
     theta, shape = 0.35, 3.0
-    exponent = np.random.default_rng(8).exponential(size=1200)
+    exponent = np.random.default_rng(8).exponential(size=500)
     capacity = theta * (exponent / np.log(2)) ** (1 / shape)
     tests = step_tests(np.maximum(capacity, 0.06), step)
     fit = fit_step_hazard(shakes_of(tests[tests.lower_g > 0.05], step))

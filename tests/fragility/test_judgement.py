@@ -224,14 +224,14 @@ def crossed(motions, samples, seed, sd=(0.4, 0.2, 0.1)):
 
 
 def test_the_variance_splits_into_the_parts_that_made_it():
-    split = split_variance(crossed(300, 300, 9), parameters=["restitution", "width"])
+    split = split_variance(crossed(200, 200, 9), parameters=["restitution", "width"])
     part = split.table.set_index("component")["standard_deviation"]
-    assert part["motion"] == pytest.approx(0.4, rel=0.12)
-    assert part["parameters"] == pytest.approx(0.2, rel=0.12)
+    assert part["motion"] == pytest.approx(0.4, rel=0.15)
+    assert part["parameters"] == pytest.approx(0.2, rel=0.15)
     assert part["motion x parameters"] == pytest.approx(0.1, rel=0.05)
-    assert part["parameters: restitution"] == pytest.approx(0.16, rel=0.12)
-    assert part["parameters: width"] == pytest.approx(0.12, rel=0.12)
-    assert part["fit"] == pytest.approx(part["motion"] / np.sqrt(300), rel=0.02)
+    assert part["parameters: restitution"] == pytest.approx(0.16, rel=0.15)
+    assert part["parameters: width"] == pytest.approx(0.12, rel=0.15)
+    assert part["fit"] == pytest.approx(part["motion"] / np.sqrt(200), rel=0.02)
     shares = split.table.set_index("component")["share"]
     assert shares[["motion", "parameters", "motion x parameters"]].sum() == pytest.approx(1.0)
 

@@ -56,7 +56,7 @@ def coverage(n: int, method: str, over: str, data_sets: int = DATA_SETS) -> pd.D
     """Coverage of 90 % limits for one design, method and unit of resampling, both estimators."""
     events, each = DESIGNS[n]
     rng = np.random.default_rng([SEED, n])
-    found, warned = {"brackets": [], "verdicts": []}, set()
+    found, warned = {"brackets": [], "verdicts": []}, []
     for k in range(data_sets):
         brackets, verdicts = simulated(events, each, rng)
         fitters = {
@@ -71,8 +71,9 @@ def coverage(n: int, method: str, over: str, data_sets: int = DATA_SETS) -> pd.D
                 fit, groups, over=over, notes=notes, method=method, replicates=200, seed=k
             )
             found[name].append(holds(interval))
-            warned.add(bool(interval.warnings))
-    assert len(warned) == 1  # the warning depends on the design, not on the data
+            warned.append(bool(interval.warnings))
+    # a rare data set has all four motions in one step: no limits, said so, and counted as a miss
+    assert np.mean(warned) in (0.0, 1.0) or np.mean(warned) < 0.01
     rows = []
     for name, hits in found.items():
         theta, beta, curve = np.mean(hits, axis=0)
@@ -86,7 +87,7 @@ def coverage(n: int, method: str, over: str, data_sets: int = DATA_SETS) -> pd.D
                 "theta": theta,
                 "beta": beta,
                 "curve": curve,
-                "warns": warned == {True},
+                "warns": np.mean(warned) == 1.0,
             }
         )
     return pd.DataFrame(rows)

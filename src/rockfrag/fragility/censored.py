@@ -289,7 +289,9 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats,
             if waiting.size == 0:
                 break
         moved = np.abs(size[:, None] * step).max(axis=1) / np.abs(coefficients[active]).max(axis=1)
-        active = active[moved > 1e-10]
+        # a slope that sinks below what counts as a curve would sink for ever
+        flat = coefficients[active, 1] < 0.1 * LEAST_SLOPE
+        active = active[(moved > 1e-10) & ~flat]
         if active.size == 0:
             break
     return coefficients, -hessian, value
