@@ -1,9 +1,25 @@
 """How kernels are compiled: once per machine, cached where the installation can be written."""
 
+import hashlib
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numba
+
+
+@cache
+def _digest() -> str:
+    """Digest of all kernels' sources.
+
+    Numba looks at a function's own file only, and would keep using machine code that holds an old copy of
+    a kernel from another file.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("_*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -12,9 +28,17 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     Multiplications and additions may be contracted to one rounding; nothing else is reordered, so
     results do not depend on how cases are grouped or threaded.
     """
-    options = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
+    options: dict[str, Any] = {
+        "nogil": True,
+        "error_model": "numpy",
+        "fastmath": {"contract"},
+    }
     try:
-        return numba.njit(cache=True, **options)(function)  # type: ignore[no-any-return]
+        compiled: Any = numba.njit(cache=True, **options)(function)
     except RuntimeError:
         # numba finds no folder it may write its cache to: compile for this process alone
-        return numba.njit(**options)(function)  # type: ignore[no-any-return]
+        compiled = numba.njit(**options)(function)
+    else:
+        index = compiled._cache._cache_file
+        index._source_stamp = (index._source_stamp, _digest())
+    return compiled  # type: ignore[no-any-return]

@@ -15,6 +15,7 @@ import numba
 import numpy as np
 
 from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._pendulum import rate, rates, sine_cosine, travel
 
 LANES = 32
 BLOCK = 16
@@ -41,61 +42,6 @@ RESULTS = 6
 
 MAX_IMPACTS_PER_SAMPLE = 400
 HALF_TURN = 0.5 * math.pi
-
-
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
-def _sine_cosine(x):
-    """Sine and cosine for |x| ≤ π/2 to 1e-10, and to rounding for |x| ≤ 0.6."""
-    y = x * x
-    s = -1.0 / 1307674368000.0
-    s = s * y + 1.0 / 6227020800.0
-    s = s * y - 1.0 / 39916800.0
-    s = s * y + 1.0 / 362880.0
-    s = s * y - 1.0 / 5040.0
-    s = s * y + 1.0 / 120.0
-    s = s * y - 1.0 / 6.0
-    c = 1.0 / 20922789888000.0
-    c = c * y - 1.0 / 87178291200.0
-    c = c * y + 1.0 / 479001600.0
-    c = c * y - 1.0 / 3628800.0
-    c = c * y + 1.0 / 40320.0
-    c = c * y - 1.0 / 720.0
-    c = c * y + 1.0 / 24.0
-    c = c * y - 0.5
-    return x + x * y * s, 1.0 + y * c
-
-
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
-def _rates(s0, c0, w, kappa, a, ramp):
-    """Taylor coefficients 1 to 5 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0."""
-    w1 = kappa * (s0 + a * c0)
-    s1 = c0 * w
-    c1 = -s0 * w
-    w2 = 0.5 * kappa * (s1 + a * c1 + ramp * c0)
-    s2 = 0.5 * (c0 * w1 + c1 * w)
-    c2 = -0.5 * (s0 * w1 + s1 * w)
-    w3 = (1.0 / 3.0) * kappa * (s2 + a * c2 + ramp * c1)
-    s3 = (1.0 / 3.0) * (c0 * w2 + c1 * w1 + c2 * w)
-    c3 = -(1.0 / 3.0) * (s0 * w2 + s1 * w1 + s2 * w)
-    w4 = 0.25 * kappa * (s3 + a * c3 + ramp * c2)
-    s4 = 0.25 * (c0 * w3 + c1 * w2 + c2 * w1 + c3 * w)
-    c4 = -0.25 * (s0 * w3 + s1 * w2 + s2 * w1 + s3 * w)
-    w5 = 0.2 * kappa * (s4 + a * c4 + ramp * c3)
-    return w1, w2, w3, w4, w5
-
-
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
-def _travel(w, w1, w2, w3, w4, w5, t):
-    """ψ(t) - ψ(0)."""
-    return t * (
-        w + t * (0.5 * w1 + t * (1 / 3 * w2 + t * (0.25 * w3 + t * (0.2 * w4 + t * (1 / 6 * w5)))))
-    )
-
-
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
-def _rate(w, w1, w2, w3, w4, w5, t):
-    """ψ'(t)."""
-    return w + t * (w1 + t * (w2 + t * (w3 + t * (w4 + t * w5))))
 
 
 # Rows of the lanes, in one flat array so that the compiler sees that rows do not overlap.
@@ -136,10 +82,10 @@ def advance(x):
         w = x[RATE + i]
         kappa = x[KAPPA + i]
         a = x[A0 + i]
-        s, c = _sine_cosine(psi)
-        w1, w2, w3, w4, w5 = _rates(s, c, w, kappa, a, x[A1 + i] - a)
-        p = psi + _travel(w, w1, w2, w3, w4, w5, 1.0)
-        v = _rate(w, w1, w2, w3, w4, w5, 1.0)
+        s, c = sine_cosine(psi)
+        w1, w2, w3, w4, w5 = rates(s, c, w, kappa, a, x[A1 + i] - a)
+        p = psi + travel(w, w1, w2, w3, w4, w5, 1.0)
+        v = rate(w, w1, w2, w3, w4, w5, 1.0)
         x[NEW_PSI + i] = p
         x[NEW_RATE + i] = v
         certain = (w < 0.0) & (0.5 * w * w >= kappa * (x[CREST + i] - c + x[BOUND + i] * s))
@@ -169,18 +115,18 @@ def _flight(gap, w, w1, w2, w3, w4, w5):
         gap = 0.0
         guess = -2.0 * w / w1 if w1 > 0.0 else 0.5
         low = min(1e-3, 0.5 * guess)
-        while _travel(w, w1, w2, w3, w4, w5, low) >= 0.0:
+        while travel(w, w1, w2, w3, w4, w5, low) >= 0.0:
             low *= 0.1
             if low < 1e-13:
                 return 2.0
     else:
-        over = gap + _travel(w, w1, w2, w3, w4, w5, 1.0)
-        guess = 1.0 - over / max(1e-300, _rate(w, w1, w2, w3, w4, w5, 1.0))
+        over = gap + travel(w, w1, w2, w3, w4, w5, 1.0)
+        guess = 1.0 - over / max(1e-300, rate(w, w1, w2, w3, w4, w5, 1.0))
     for _ in range(100):
         if not low < guess < high:
             guess = 0.5 * (low + high)
-        f = gap + _travel(w, w1, w2, w3, w4, w5, guess)
-        d = _rate(w, w1, w2, w3, w4, w5, guess)
+        f = gap + travel(w, w1, w2, w3, w4, w5, guess)
+        d = rate(w, w1, w2, w3, w4, w5, guess)
         if f < 0.0:
             low = guess
         else:
@@ -200,17 +146,17 @@ def _graze(gap, w, w1, w2, w3, w4, w5):
     high = 1.0
     while high - low > 1e-9:
         t = 0.5 * (low + high)
-        if _rate(w, w1, w2, w3, w4, w5, t) > 0.0:
+        if rate(w, w1, w2, w3, w4, w5, t) > 0.0:
             low = t
         else:
             high = t
-    if gap + _travel(w, w1, w2, w3, w4, w5, low) < 0.0:
+    if gap + travel(w, w1, w2, w3, w4, w5, low) < 0.0:
         return 2.0
     high = low
     low = 0.0
     while high - low > 1e-15:
         t = 0.5 * (low + high)
-        if gap + _travel(w, w1, w2, w3, w4, w5, t) < 0.0:
+        if gap + travel(w, w1, w2, w3, w4, w5, t) < 0.0:
             low = t
         else:
             high = t
@@ -293,34 +239,36 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
         angle = b[j + ALPHA]
         full = b[j + SWING]
         left = 1.0 - tau
-        rate = w * left
+        speed = w * left
         gap = psi - angle
         if gap >= 0.0:
             s, c = b[j + SIN], b[j + COS]
         else:
-            s, c = _sine_cosine(psi)
-        w1, w2, w3, w4, w5 = _rates(s, c, rate, full * left * left, side * now, side * ramp_all * left)
-        p = psi + _travel(rate, w1, w2, w3, w4, w5, 1.0)
-        v = _rate(rate, w1, w2, w3, w4, w5, 1.0)
+            s, c = sine_cosine(psi)
+        w1, w2, w3, w4, w5 = rates(
+            s, c, speed, full * left * left, side * now, side * ramp_all * left
+        )
+        p = psi + travel(speed, w1, w2, w3, w4, w5, 1.0)
+        v = rate(speed, w1, w2, w3, w4, w5, 1.0)
         t = 2.0
         if p >= angle:
-            t = _flight(gap, rate, w1, w2, w3, w4, w5)
+            t = _flight(gap, speed, w1, w2, w3, w4, w5)
             if t > 1.0:
                 # it never left the ground
                 return 0.0, 0.0, 0
-        elif rate > 0.0 and v < 0.0:
-            t = _graze(gap, rate, w1, w2, w3, w4, w5)
+        elif speed > 0.0 and v < 0.0:
+            t = _graze(gap, speed, w1, w2, w3, w4, w5)
         if t > 1.0:
             _note(tally, p, v / left, angle, full)
-            if rate < 0.0 and v > 0.0:
-                turn = rate / (rate - v)
-                low = psi + _travel(rate, w1, w2, w3, w4, w5, turn)
+            if speed < 0.0 and v > 0.0:
+                turn = speed / (speed - v)
+                low = psi + travel(speed, w1, w2, w3, w4, w5, turn)
                 _note(tally, low, 0.0, angle, full)
             return p, v / left, side
-        v = max(0.0, _rate(rate, w1, w2, w3, w4, w5, t)) / left
+        v = max(0.0, rate(speed, w1, w2, w3, w4, w5, t)) / left
         if gap >= 0.0:
             # the highest point of a flight that begins and ends in this step
-            low = psi + _travel(rate, w1, w2, w3, w4, w5, 0.5 * t)
+            low = psi + travel(speed, w1, w2, w3, w4, w5, 0.5 * t)
             _note(tally, low, v, angle, full)
         tally[SPEED] = max(tally[SPEED], v)
         tally[IMPACTS] += 1.0

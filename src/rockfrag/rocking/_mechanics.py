@@ -24,7 +24,8 @@ ETA1R, ETA1L, ETA2R, ETA2L = 14, 15, 16, 17
 FIXED = 18  # 1 if block 1 cannot move
 LINEAR = 19  # 0 exact; 1 eq. 2.60-2.65; 2 eq. 2.9 (lone block)
 GRAVITY = 20
-PARAMETERS = 21
+MEASURED = 21  # 1 if an impulse acts elsewhere than at its pole
+PARAMETERS = 22
 
 
 @kernel
@@ -185,6 +186,8 @@ def settle(p, c1, c2, theta1, omega1, theta2, omega2, a):
     consistent one is taken: an opening contact accelerates away from its corner, a closed one pushes
     at both corners.
     """
+    if c1 != 0 and c2 != 0:
+        return c1, c2
     fallback1 = c1
     fallback2 = c2
     for opened in range(3):
@@ -229,20 +232,25 @@ def settle(p, c1, c2, theta1, omega1, theta2, omega2, a):
 
 
 @kernel
-def _metric(p, ta1, ta2, tb1, tb2, theta1, theta2):
-    """Kinetic-metric products of the velocity fields about (ta1, ta2) with those about (tb1, tb2)."""
+def _between(p, theta1, theta2):
+    """Cosine and sine of θ2 - θ1; 1 and 0 in the linearised equations."""
+    if p[LINEAR] > 0.0 or theta1 == theta2:
+        return 1.0, 0.0
+    return math.cos(theta2 - theta1), math.sin(theta2 - theta1)
+
+
+@kernel
+def _metric(p, ta1, ta2, tb1, tb2, c, s):
+    """Kinetic-metric products of the velocity fields about (ta1, ta2) with those about (tb1, tb2).
+
+    c and s are the cosine and sine of θ2 - θ1.
+    """
     ax, ay = arm1(p, ta1)
     bx, by = arm1(p, tb1)
     dax, day = reach(p, ta1, ta2)
     dbx, dby = reach(p, tb1, tb2)
     rax, ray = arm2(p, ta2)
     rbx, rby = arm2(p, tb2)
-    if p[LINEAR] > 0.0:
-        c = 1.0
-        s = 0.0
-    else:
-        c = math.cos(theta2 - theta1)
-        s = math.sin(theta2 - theta1)
     m1 = p[M1]
     m2 = p[M2]
     k11 = p[I1] + m1 * (ax * bx + ay * by) + m2 * (dax * dbx + day * dby)
@@ -265,7 +273,8 @@ def kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2):
     """Kinetic energy relative to the ground [J]."""
     s1 = c1 if c1 != 0 else 1
     s2 = c2 if c2 != 0 else 1
-    k11, k12, _, k22 = _metric(p, s1, s2, s1, s2, theta1, theta2)
+    c, s = _between(p, theta1, theta2)
+    k11, k12, _, k22 = _metric(p, s1, s2, s1, s2, c, s)
     return 0.5 * (k11 * omega1 * omega1 + 2.0 * k12 * omega1 * omega2 + k22 * omega2 * omega2)
 
 
@@ -288,10 +297,10 @@ def potential_energy(p, c1, c2, theta1, theta2):
 
 
 @kernel
-def _row1(p, t1, t2, n1, n2, c1, c2, theta1, theta2, w1n, w2n, w1o, w2o, glued):
+def _row1(p, t1, t2, n1, n2, c1, c2, c, s, w1n, w2n, w1o, w2o, glued):
     """Impulse moment on the field that turns block 1 (both if ``glued``) about (t1, t2)."""
-    k11, k12, k21, k22 = _metric(p, t1, t2, n1, n2, theta1, theta2)
-    b11, b12, b21, b22 = _metric(p, t1, t2, c1, c2, theta1, theta2)
+    k11, k12, k21, k22 = _metric(p, t1, t2, n1, n2, c, s)
+    b11, b12, b21, b22 = _metric(p, t1, t2, c1, c2, c, s)
     total = k11 * w1n + k12 * w2n - b11 * w1o - b12 * w2o
     if glued:
         total += k21 * w1n + k22 * w2n - b21 * w1o - b22 * w2o
@@ -299,15 +308,15 @@ def _row1(p, t1, t2, n1, n2, c1, c2, theta1, theta2, w1n, w2n, w1o, w2o, glued):
 
 
 @kernel
-def _row2(p, t1, t2, n1, n2, c1, c2, theta1, theta2, w1n, w2n, w1o, w2o):
+def _row2(p, t1, t2, n1, n2, c1, c2, c, s, w1n, w2n, w1o, w2o):
     """Impulse moment on the field that turns block 2 about t2."""
-    _, _, k21, k22 = _metric(p, t1, t2, n1, n2, theta1, theta2)
-    _, _, b21, b22 = _metric(p, t1, t2, c1, c2, theta1, theta2)
+    _, _, k21, k22 = _metric(p, t1, t2, n1, n2, c, s)
+    _, _, b21, b22 = _metric(p, t1, t2, c1, c2, c, s)
     return k21 * w1n + k22 * w2n - b21 * w1o - b22 * w2o
 
 
 @kernel
-def _after(p, c1, c2, n1, n2, t1, t2, theta1, omega1, theta2, omega2):
+def _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2):
     """Velocities after an impact that takes the poles from (c1, c2) to (n1, n2), 0 being stuck."""
     o1 = c1 if c1 != 0 else 1
     o2 = c2 if c2 != 0 else 1
@@ -315,8 +324,8 @@ def _after(p, c1, c2, n1, n2, t1, t2, theta1, omega1, theta2, omega2):
         return 0.0, 0.0
     p1 = n1 if n1 != 0 else 1
     p2 = n2 if n2 != 0 else 1
-    k11, k12, k21, k22 = _metric(p, t1, t2, p1, p2, theta1, theta2)
-    b11, b12, b21, b22 = _metric(p, t1, t2, o1, o2, theta1, theta2)
+    k11, k12, k21, k22 = _metric(p, t1, t2, p1, p2, c, s)
+    b11, b12, b21, b22 = _metric(p, t1, t2, o1, o2, c, s)
     q1 = b11 * omega1 + b12 * omega2
     q2 = b21 * omega1 + b22 * omega2
     if n1 == 0:
@@ -333,6 +342,7 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
     """Try the states an impact may lead to, open before stuck; the first admissible one."""
     o1 = c1 if c1 != 0 else 1
     o2 = c2 if c2 != 0 else 1
+    c, s = _between(p, theta1, theta2)
     # velocities that rounding alone leaves count as none
     tiny = 1e-13 * (abs(omega1) + abs(omega2))
     free1 = closes1 or c1 == 0
@@ -368,7 +378,7 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
                     t1 = n1 * (p[ETA1R] if n1 > 0 else p[ETA1L])
                 if closes2 and n2 != 0:
                     t2 = n2 * (p[ETA2R] if n2 > 0 else p[ETA2L])
-            w1, w2 = _after(p, c1, c2, n1, n2, t1, t2, theta1, omega1, theta2, omega2)
+            w1, w2 = _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2)
             if free1 and n1 != 0 and n1 * w1 <= tiny:
                 continue
             if free2 and n2 != 0 and n2 * (w2 - w1) <= tiny:
@@ -378,20 +388,20 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
             good = True
             if n1 == 0 and p[FIXED] == 0.0:
                 slack = 1e-12 * p[I1] * (abs(omega1) + abs(omega2))
-                for s in (1, -1):
+                for corner in (1, -1):
                     moment = _row1(
-                        p, float(s), t2, p1, p2, o1, o2, theta1, theta2,
+                        p, float(corner), t2, p1, p2, o1, o2, c, s,
                         w1, w2, omega1, omega2, n2 == 0,
                     )  # fmt: skip
-                    if s * moment < -slack:
+                    if corner * moment < -slack:
                         good = False
             if good and n2 == 0:
                 slack = 1e-12 * p[I2] * (abs(omega1) + abs(omega2))
-                for s in (1, -1):
+                for corner in (1, -1):
                     moment = _row2(
-                        p, t1, float(s), p1, p2, o1, o2, theta1, theta2, w1, w2, omega1, omega2
+                        p, t1, float(corner), p1, p2, o1, o2, c, s, w1, w2, omega1, omega2
                     )
-                    if s * moment < -slack:
+                    if corner * moment < -slack:
                         good = False
             if good:
                 return n1, n2, w1, w2
@@ -400,7 +410,7 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
     n2 = 0 if free2 else c2
     t1 = float(n1) if n1 != 0 else 1.0
     t2 = float(n2) if n2 != 0 else 1.0
-    w1, w2 = _after(p, c1, c2, n1, n2, t1, t2, theta1, omega1, theta2, omega2)
+    w1, w2 = _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2)
     return n1, n2, w1, w2
 
 
@@ -414,8 +424,19 @@ def impact(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2):
     this configuration, the impulse acts at the pole.
     """
     n1, n2, w1, w2 = _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, True)
+    if p[MEASURED] == 0.0:
+        return n1, n2, w1, w2
     before = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
     after = kinetic_energy(p, n1, n2, theta1, w1, theta2, w2)
     if after > before * (1.0 + 1e-9):
         n1, n2, w1, w2 = _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, False)
     return n1, n2, w1, w2
+
+
+@kernel
+def stick(p, c1, c2, n1, n2, theta1, omega1, theta2, omega2):
+    """Velocities after an impact that is made to end in the state (n1, n2)."""
+    c, s = _between(p, theta1, theta2)
+    t1 = float(n1) if n1 != 0 else 1.0
+    t2 = float(n2) if n2 != 0 else 1.0
+    return _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2)

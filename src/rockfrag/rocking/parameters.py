@@ -121,6 +121,7 @@ def body_parameters(
         if ground is not None:
             p[km.ETA1R] = impulse_position(pedestal, ground, +1)
             p[km.ETA1L] = impulse_position(pedestal, ground, -1)
+    p[km.MEASURED] = float(ground is not None or interface is not None)
     p[[km.M2, km.I2, km.B2]] = statue.mass, statue.centroidal_inertia, statue.b
     p[[km.C2X, km.C2Y]] = centre
     if interface is not None:

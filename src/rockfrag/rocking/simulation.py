@@ -116,7 +116,7 @@ def _response(
     ground = np.zeros(n)
     ground[: min(n, values.size)] = values[:n]
     normal, friction = contact_forces(body, ground, state, theta, omega, alpha, g)
-    time = np.arange(n) * dt
+    time = np.arange(n, dtype=np.float64) * float(dt)
     table = _event_table(events, blocks)
     fallen = int(summary[kmarch.FALLEN])
     return Response(
