@@ -1,0 +1,92 @@
+"""Tables 3.1, 3.3 and 4.1 come out to the printed digits."""
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.records.reading import read_motion
+from rockfrag.report.thesis_tables import (
+    TABLE_3_1,
+    TABLE_3_3,
+    TABLE_4_1,
+    block_properties,
+    compare,
+    ground_measures,
+    uplift_accelerations,
+    uplift_table,
+)
+from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.studies import load_study
+
+CONFIG = Path(__file__).resolve().parents[2] / "config"
+PRINTED = CONFIG / "printed"
+
+
+def test_table_3_1_comes_out():
+    study = load_study(CONFIG / "thesis.yaml")
+    table = compare(block_properties(study.specimens), TABLE_3_1, PRINTED / "table_3_1.csv")
+    assert len(table) == 16
+    assert table["agrees"].all()
+
+
+def test_table_4_1_comes_out():
+    study = load_study(CONFIG / "thesis.yaml")
+    table = compare(uplift_table(study.configurations), TABLE_4_1, PRINTED / "table_4_1.csv")
+    assert len(table) == 9
+    assert table["agrees"].all()
+
+
+def test_table_3_3_comes_out(shared: Path):
+    names = {"Friuli": "Friuli", "Kobe": "Kobe", "Loma Prieta": "Loma_Prieta"}
+    names["Northridge"] = "Northridge"
+    motions = []
+    for name, file in names.items():
+        motion = read_motion(shared / "records" / f"{file}.dat")
+        motions.append(motion.__class__(motion.acceleration, motion.dt, name))
+    table = compare(ground_measures(motions), TABLE_3_3, PRINTED / "table_3_3.csv")
+    assert len(table) == 12
+    assert table["agrees"].all()
+
+
+def test_a_value_off_in_the_last_printed_digit_does_not_agree(tmp_path: Path):
+    printed = tmp_path / "table.csv"
+    printed.write_text((PRINTED / "table_3_1.csv").read_text().replace("19.61", "19.62"))
+    block = load_study(CONFIG / "thesis.yaml").specimens["T1"]
+    table = compare(block_properties({"T1": block}), TABLE_3_1, printed)
+    assert table.set_index("quantity")["agrees"].to_dict()["R"] is False
+
+
+def test_without_printed_values_nothing_agrees_or_disagrees():
+    table = compare(block_properties({"X": Block(1, 2, 3)}), TABLE_3_1, None)
+    assert table["agrees"].isna().all()
+
+
+def test_a_printed_value_that_is_no_number_is_named(tmp_path: Path):
+    printed = tmp_path / "table.csv"
+    printed.write_text((PRINTED / "table_3_1.csv").read_text().replace("19.61", "about 20"))
+    with pytest.raises(InputError, match="radius_cm"):
+        compare(block_properties({"X": Block(1, 2, 3)}), TABLE_3_1, printed)
+
+
+def test_an_eccentric_block_uplifts_about_its_nearer_edge():
+    straight, leaning = Block(1, 4, 10), Block(1, 4, 10, cg_offset=0.1)
+    assert uplift_accelerations(straight)[1] == pytest.approx(0.25 * 9.81)
+    assert uplift_accelerations(leaning)[1] == pytest.approx(0.2 * 9.81)
+
+
+def test_a_heavy_pedestal_takes_the_threshold_of_pattern_3_to_its_own():
+    statue, pedestal = Block(0.1, 0.4, 1e-6), Block(0.4, 0.4, 1e3)
+    both, alone = uplift_accelerations(Stack(pedestal, statue))
+    assert both == pytest.approx(9.81, rel=1e-6)
+    assert alone == pytest.approx(0.25 * 9.81)
+
+
+def test_comparison_keeps_the_printed_decimals(tmp_path: Path):
+    study = load_study(CONFIG / "thesis.yaml")
+    table = compare(block_properties(study.specimens), TABLE_3_1, PRINTED / "table_3_1.csv")
+    path = tmp_path / "table.csv"
+    table.to_csv(path, index=False)
+    again = pd.read_csv(path, dtype={"printed": str})
+    assert again["printed"].tolist() == table["printed"].tolist()

@@ -1,0 +1,66 @@
+"""A small study on synthetic motions that needs no network."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+CATALOGUE = (
+    "name,event,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
+)
+
+SPECIMENS = (
+    "name,width_cm,height_cm,mass_g\nT1,12.4,37.2,2172\nT2,12.4,49.6,2790\nP,18.4,20.8,2300\n"
+)
+
+CONFIGURATIONS = "name,tower,pedestal\nT1,T1,\nT2,T2,\nP&T1,T1,P\nP&T2,T2,P\n"
+
+
+def study_content() -> dict:
+    return {
+        "study": "tiny",
+        "title": "Two towers under made-up motions",
+        "seed": 3,
+        "motions": {"catalogue": "motions.csv"},
+        "bodies": {"specimens": "specimens.csv", "configurations": "configurations.csv"},
+        "amplitudes": {"lowest_g": 0.2, "highest_g": 1.6, "step_percent": 8},
+        "protocol": {"step_percent": 16},
+        "fragility": {"measures": ["pga_g"], "confidence": 0.9},
+    }
+
+
+def write_study(folder: Path, content: dict) -> Path:
+    """Write a study's configuration and return its path."""
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(content, sort_keys=False))
+    return path
+
+
+def write_record(path: Path, seed: int) -> None:
+    """Two columns, seconds and g: a seeded burst of band-limited noise."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(800) * 0.01
+    envelope = np.exp(-(((time - 2.5) / 1.2) ** 2))
+    phases = rng.uniform(0, 2 * np.pi, 30)
+    frequencies = rng.uniform(0.5, 5.0, 30)
+    waves = np.sin(2 * np.pi * np.outer(time, frequencies) + phases).sum(axis=1)
+    acceleration = 0.3 * envelope * waves / np.abs(envelope * waves).max()
+    rows = [f"{t:.2f} {a:.6f}" for t, a in zip(time, acceleration, strict=True)]
+    path.write_text("\n".join(rows) + "\n")
+
+
+@pytest.fixture
+def study_folder(tmp_path: Path) -> Path:
+    """A folder with a space in its name, holding a whole small study."""
+    folder = tmp_path / "a study"
+    folder.mkdir()
+    rows = [CATALOGUE]
+    for number, event in enumerate(("First", "First", "Second", "Second", "Third", "Fourth")):
+        write_record(folder / f"record{number}.txt", seed=number)
+        rows.append(f"motion {number},{event},,,,,,folder,record{number}.txt,,g,made up\n")
+    (folder / "motions.csv").write_text("".join(rows))
+    (folder / "specimens.csv").write_text(SPECIMENS)
+    (folder / "configurations.csv").write_text(CONFIGURATIONS)
+    write_study(folder, study_content())
+    return folder

@@ -1,0 +1,161 @@
+"""A study that cannot run is refused before anything runs, in one sentence with file and key."""
+
+import copy
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from rockfrag.errors import InputError
+from rockfrag.studies import load_study
+
+from .conftest import SPECIMENS, study_content, write_study
+
+Change = Callable[[dict], object]
+
+
+def refusal(folder: Path, content: dict) -> str:
+    path = write_study(folder, content)
+    with pytest.raises(InputError) as caught:
+        load_study(path)
+    message = str(caught.value)
+    assert "\n" not in message
+    assert message.startswith(str(folder))
+    return message
+
+
+def test_the_studies_of_the_project_are_right():
+    root = Path(__file__).resolve().parents[2]
+    for name in ("thesis", "smoke", "wide"):
+        assert load_study(root / "config" / f"{name}.yaml").name == name
+
+
+def test_the_thesis_has_72_tests():
+    study = load_study(Path(__file__).resolve().parents[2] / "config" / "thesis.yaml")
+    assert len(study.catalogue) * 3 * len(study.configurations) == 72
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda c: c["amplitudes"].update(hihgest_g=2), ["amplitudes.hihgest_g", "highest_g"]),
+        (lambda c: c["amplitudes"].pop("lowest_g"), ["amplitudes.lowest_g", "missing", "of g"]),
+        (lambda c: c["amplitudes"].update(lowest_g=-0.1), ["amplitudes.lowest_g", "-0.1"]),
+        (lambda c: c["amplitudes"].update(lowest_g="0.1 m/s2"), ["amplitudes.lowest_g", "of g"]),
+        (lambda c: c["amplitudes"].update(lowest_g=3), ["amplitudes.highest_g", "more than"]),
+        (lambda c: c["amplitudes"].update(highest_g=float("nan")), ["amplitudes.highest_g"]),
+        (lambda c: c["amplitudes"].update(highest_g=float("inf")), ["amplitudes.highest_g"]),
+        (lambda c: c["protocol"].update(step_percent=0), ["protocol.step_percent", "percent"]),
+        (lambda c: c["bodies"].update(use=["T9"]), ["bodies.use[0]", "P&T1", "T9"]),
+        (lambda c: c["motions"].update(use=["Nowhere"]), ["motions.use[0]", "motion 0"]),
+        (lambda c: c["motions"].update(catalogue="no.csv"), ["motions.catalogue", "no.csv"]),
+        (lambda c: c["motions"].update(processing=[{"step": "smooth"}]), ["smooth", "highpass"]),
+        (lambda c: c["motions"].update(processing=[{"step": "highpass"}]), ["corner_hz"]),
+        (lambda c: c.update(building="no.yaml"), ["building", "no.yaml"]),
+        (lambda c: c.update(printed="nowhere"), ["printed", "table_3_1.csv"]),
+        (lambda c: c.update(study="../elsewhere"), ["study", "lower-case"]),
+        (lambda c: c.update(seed=1.5), ["seed", "whole number"]),
+        (lambda c: c.update(seed=True), ["seed", "whole number"]),
+        (lambda c: c.pop("seed"), ["seed", "missing"]),
+        (lambda c: c.update(fragility=None), ["fragility", "mapping"]),
+    ],
+)
+def test_a_wrong_key_or_value_is_named_with_what_was_expected(
+    study_folder: Path, change: Change, words: list[str]
+):
+    content = copy.deepcopy(study_content())
+    change(content)
+    message = refusal(study_folder, content)
+    for word in words:
+        assert word in message
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        (SPECIMENS.replace("12.4,37.2", "-12.4,37.2"), ["line 2", "width_cm", "above 0", "-12.4"]),
+        (SPECIMENS.replace("width_cm", "width_inch"), ["width_inch", "width_cm"]),
+        (SPECIMENS.replace("2172", "2 kg"), ["line 2", "mass_g", "2 kg"]),
+        (SPECIMENS.replace("2172", "nan"), ["line 2", "mass_g"]),
+        (SPECIMENS.replace("2172", "1e400"), ["line 2", "mass_g"]),
+        (SPECIMENS.replace("T2,", "T1,"), ["line 3", "T1", "twice"]),
+        (SPECIMENS.replace("2172", "2172,7"), ["line 2", "4 cells"]),
+        ("", ["header"]),
+        (SPECIMENS.replace("18.4", "10.4"), ["configurations.csv, line 4", "beyond"]),
+    ],
+)
+def test_a_wrong_cell_is_named_with_line_and_column(
+    study_folder: Path, table: str, words: list[str]
+):
+    (study_folder / "specimens.csv").write_text(table)
+    message = refusal(study_folder, study_content())
+    for word in words:
+        assert word in message
+
+
+def test_an_unknown_block_in_a_configuration_is_named(study_folder: Path):
+    (study_folder / "configurations.csv").write_text("name,tower,pedestal\nX,T7,\n")
+    message = refusal(study_folder, study_content())
+    assert "line 2, column tower" in message
+    assert "T7" in message
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("study: [1\n", ["line"]),
+        ("study: a\nstudy: b\n", ["line 2", "twice"]),
+        ("- a\n- b\n", ["mapping"]),
+        ("", ["mapping"]),
+        ("study: \t x\n  y: 2\n", ["line"]),
+    ],
+)
+def test_what_is_not_a_mapping_is_refused(study_folder: Path, text: str, words: list[str]):
+    path = study_folder / "study.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        load_study(path)
+    assert "\n" not in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_bytes_that_are_no_text_and_absent_files_are_refused(study_folder: Path):
+    (study_folder / "study.yaml").write_bytes(b"\xff\xfe\x00study")
+    with pytest.raises(InputError, match="UTF-8"):
+        load_study(study_folder / "study.yaml")
+    with pytest.raises(InputError, match="cannot be read"):
+        load_study(study_folder / "absent.yaml")
+    with pytest.raises(InputError, match="cannot be read"):
+        load_study(study_folder)
+
+
+ANYTHING = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner),
+    max_leaves=5,
+)
+
+
+@settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    key=st.sampled_from(
+        ["study", "title", "seed", "motions", "bodies", "amplitudes", "protocol", "fragility"]
+    ),
+    value=ANYTHING,
+)
+def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(
+    study_folder: Path, key: str, value: object
+):
+    from rockfrag.studies import study_from
+
+    content = {**study_content(), key: value}
+    try:
+        study_from(content, study_folder / "study.yaml")
+    except InputError as error:
+        assert "\n" not in str(error)
+        assert key in str(error)

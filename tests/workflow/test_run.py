@@ -1,0 +1,80 @@
+"""The workflow itself, on a small study with synthetic motions and without network."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from .conftest import study_content, write_study
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def snakemake(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [
+            *(sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")),
+            *("--directory", str(folder), "--configfile", str(folder / "study.yaml")),
+            *arguments,
+        ],
+        capture_output=True,
+        text=True,
+        timeout=500,
+        check=False,
+    )
+
+
+def tables_of(folder: Path) -> dict[str, bytes]:
+    results = folder / "results"
+    return {
+        path.relative_to(results).as_posix(): path.read_bytes()
+        for path in sorted(results.rglob("*"))
+        if path.suffix in (".csv", ".parquet", ".svg", ".png", ".html")
+    }
+
+
+def test_a_wrong_configuration_stops_before_anything_runs(study_folder: Path):
+    content = study_content()
+    content["amplitudes"]["hihgest_g"] = 2
+    write_study(study_folder, content)
+    done = snakemake(study_folder, "--cores", "1")
+    assert done.returncode != 0
+    assert "Traceback" not in done.stderr
+    assert "study.yaml: key amplitudes.hihgest_g is not known" in done.stderr
+    assert not (study_folder / "results").exists()
+
+
+def test_a_study_runs_from_records_to_report_and_then_has_nothing_to_do(study_folder: Path):
+    done = snakemake(study_folder, "--cores", "2")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = study_folder / "results" / "tiny"
+    tests = pd.read_csv(results / "tests.csv")
+    laboratory = tests[tests["reading"] == "step_protocol"]
+    assert len(laboratory) == 6 * 4
+    # every test has an amplitude or says why not
+    known = laboratory["amplitude_g"].notna()
+    assert (laboratory["remark"].fillna("")[~known] != "").all()
+    assert pd.read_parquet(results / "tests.parquet").shape == tests.shape
+    report = (results / "report.html").read_text()
+    assert 'src="http' not in report
+    assert "Simulated, not measured" in report
+    assert {path.name for path in study_folder.iterdir() if path.is_dir()} <= {
+        ".snakemake",
+        "results",
+    }
+
+    again = snakemake(study_folder, "--cores", "2", "--dry-run")
+    assert "Nothing to be done" in again.stdout + again.stderr
+
+
+@pytest.mark.slow
+def test_two_runs_write_the_same_bytes_whatever_the_number_of_cores(study_folder: Path):
+    runs = []
+    for cores in ("1", "2"):
+        done = snakemake(study_folder, "--cores", cores, "--forceall")
+        assert done.returncode == 0, done.stderr[-3000:]
+        runs.append(tables_of(study_folder))
+    assert len(runs[0]) > 50
+    assert runs[0] == runs[1]

@@ -1,0 +1,53 @@
+"""The sweep: every amplitude of every motion, the same whatever the threads."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.studies.amplitudes import Amplitudes
+from rockfrag.studies.configurations import Configuration
+from rockfrag.studies.digest import STAGES, source_digest
+from rockfrag.studies.sweep import sweep
+
+TOWER = Block(0.124, 0.372, 2.172)
+STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
+AMPLITUDES = Amplitudes(0.2, 1.0, 10)
+
+
+def motions() -> list[Motion]:
+    time = np.arange(300) * 0.01
+    return [
+        Motion(np.sin(2 * np.pi * f * time) * (time < 1.5), 0.01, f"{f} Hz", {"event": "E"})
+        for f in (1.0, 2.0)
+    ]
+
+
+def test_amplitudes_grow_by_the_step_up_to_the_highest():
+    values = Amplitudes(0.5, 2.0, 100).values_g
+    assert values == pytest.approx([0.5, 1.0, 2.0])
+    ratios = AMPLITUDES.values_g[1:] / AMPLITUDES.values_g[:-1]
+    assert ratios == pytest.approx(1.1)
+
+
+@pytest.mark.parametrize("body", [TOWER, STACK])
+def test_a_sweep_does_not_depend_on_threads_or_on_the_batch(body: Block | Stack):
+    configuration = Configuration("X", "T", "P" if isinstance(body, Stack) else "", body)
+    whole = sweep(configuration, motions(), AMPLITUDES, threads=2)
+    parts = [sweep(configuration, [motion], AMPLITUDES, threads=1) for motion in motions()]
+    pd.testing.assert_frame_equal(whole, pd.concat(parts, ignore_index=True), check_exact=True)
+
+
+def test_below_its_threshold_a_block_never_moves():
+    table = sweep(Configuration("X", "T", "", TOWER), motions(), AMPLITUDES)
+    low = table["amplitude_g"] < 1 / 3
+    assert (table.loc[low, "peak_rotation_statue"] == 0).all()
+    assert table.loc[~low, "peak_rotation_statue"].iloc[-1] > 0
+    assert set(table["overturned_body"]) <= {"", "statue"}
+
+
+def test_the_digest_of_a_stage_covers_those_before_it():
+    digests = [source_digest(stage) for stage in STAGES]
+    assert digests == [source_digest(stage) for stage in STAGES]
+    assert len(set(digests[:-2])) == len(STAGES) - 2
