@@ -57,7 +57,7 @@ def test_jackknife_over_events_is_the_t_interval_on_exact_balanced_data(tests_ta
 def test_censored_tests_do_not_bias_the_effect(tests_table):
     """Unfinished tests make the mean of complete pairs low; the likelihood is not."""
     truth, full, kept, fitted = 0.15, [], [], []
-    for seed in range(8):
+    for seed in range(5):
         tests = tests_table(seed, effect=truth, sd_event=0.0, sd_motion=0.0)
         cut = censor(tests, 0.45)
         assert 0.02 < (cut["censored"] == "right").mean() < 0.5
@@ -75,7 +75,7 @@ def test_censored_tests_do_not_bias_the_effect(tests_table):
 def test_wide_steps_are_intervals_and_not_figures(tests_table):
     """Steps of 20 %: the reported figure is the end of the step, the truth anywhere inside."""
     truth, fitted = 0.1, []
-    for seed in range(12):
+    for seed in range(5):
         tests = tests_table(seed, effect=truth, sd_event=0.0, sd_motion=0.0)
         steps = np.floor(np.log(tests["amplitude_g"] / 0.05) / math.log(1.2))
         lower = 0.05 * 1.2**steps

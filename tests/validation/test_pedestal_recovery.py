@@ -1,0 +1,234 @@
+"""Whether every estimator of the pedestal's effect finds the effect that was put in.
+
+Tests of the thesis's design are simulated: ln a of a tower, a floor and an event, a random effect of
+the pair, scatter per test, and a true effect of the pedestal that varies with event and motion. Some
+are swept in steps of 20 %, some end at the shaker's limit. The table in
+``docs/validation-pedestal.md`` is what this file prints:
+
+    python tests/validation/test_pedestal_recovery.py
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.pedestal.censored import fit_censored, most_likely_effect
+from rockfrag.pedestal.exact import wilcoxon_exact
+from rockfrag.pedestal.measurement import noise_from_repetitions
+from rockfrag.pedestal.mixed import AMPLITUDE, EFFECT, EFFECT_BY_FLOOR, fit_mixed, long_rows
+from rockfrag.pedestal.pairs import pair_tests
+from rockfrag.pedestal.units import contrast, mean_effect, slope_effect, unit_means
+
+SEED = 20261121
+EVENTS = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
+FLOORS = {"GF": 0.10, "F3": -0.05, "F5": -0.05}
+TOWERS = {"T1": (3, 0.50), "T2": (4, 0.38), "T3": (5, 0.30)}
+EFFECT_SIZE, SLOPE = 0.10, 0.04
+SD_EVENT, SD_MOTION, SD_PAIR, SD_TEST = 0.06, 0.05, 0.15, 0.095
+LIMIT, STEP = 0.50, 1.2
+
+
+def simulated(seed: int) -> pd.DataFrame:
+    """72 tests with exact figures."""
+    rng = np.random.default_rng([SEED, seed])
+    rows = []
+    for event in EVENTS:
+        by_event, level_event = rng.normal(0, SD_EVENT), rng.normal(0, 0.1)
+        for floor, by_floor in FLOORS.items():
+            by_motion = rng.normal(0, SD_MOTION)
+            for tower, (slenderness, amplitude) in TOWERS.items():
+                pair = math.log(amplitude) + level_event + rng.normal(0, SD_PAIR)
+                effect = EFFECT_SIZE + by_floor + SLOPE * (slenderness - 4) + by_event + by_motion
+                for pedestal in ("NP", "P"):
+                    ln_a = pair + effect * (pedestal == "P") + rng.normal(0, SD_TEST)
+                    rows.append((tower, pedestal, event, floor, f"{event}-{floor}", math.exp(ln_a)))
+    names = ["tower", "pedestal", "event", "floor", "motion", "amplitude_g"]
+    table = pd.DataFrame(rows, columns=names).assign(censored="none")
+    return table.assign(lower_g=table["amplitude_g"], upper_g=table["amplitude_g"])
+
+
+def stepped(tests: pd.DataFrame) -> pd.DataFrame:
+    """The same tests raised in steps of 20 % from 0.05 g; the figure is the end of the last step."""
+    steps = np.floor(np.log(tests["amplitude_g"] / 0.05) / math.log(STEP))
+    lower = 0.05 * STEP**steps
+    return tests.assign(lower_g=lower, upper_g=lower * STEP, amplitude_g=lower * STEP)
+
+
+def cut(tests: pd.DataFrame) -> pd.DataFrame:
+    """The same tests on a shaker that ends at ``LIMIT``."""
+    over = tests["upper_g"] > LIMIT
+    ended = tests.copy()
+    ended.loc[over, "censored"] = "right"
+    ended.loc[over, "lower_g"] = np.minimum(ended.loc[over, "lower_g"], LIMIT)
+    ended.loc[over & (tests["lower_g"] > LIMIT), "lower_g"] = LIMIT
+    ended.loc[over, ["upper_g", "amplitude_g"]] = np.nan
+    return ended
+
+
+def pairs_of(tests: pd.DataFrame) -> pd.DataFrame:
+    return pair_tests(tests).table
+
+
+def mixed(formula: str, term: str) -> Callable[[pd.DataFrame], float]:
+    def estimate(tests: pd.DataFrame) -> float:
+        rows = pairs_of(tests)
+        fit = fit_mixed(long_rows(rows) if formula == AMPLITUDE else rows, formula)
+        return float(fit.coefficients.set_index("term").loc[term, "estimate"])
+
+    return estimate
+
+
+# what is estimated, how, the truth, and the number of data sets
+ESTIMATORS: dict[str, tuple[Callable[[pd.DataFrame], float], float, int]] = {
+    "mean of d": (lambda t: mean_effect(pairs_of(t)).mean, EFFECT_SIZE, 200),
+    "Hodges-Lehmann, motions": (
+        lambda t: wilcoxon_exact(unit_means(pairs_of(t), "motion")).estimate,
+        EFFECT_SIZE,
+        200,
+    ),
+    "GF minus F3": (
+        lambda t: contrast(pairs_of(t), "floor", "GF", "F3").mean,
+        FLOORS["GF"] - FLOORS["F3"],
+        200,
+    ),
+    "slope of d on H/B": (lambda t: slope_effect(pairs_of(t)).mean, SLOPE, 200),
+    "mixed model d ~ 1": (mixed(EFFECT, "Intercept"), EFFECT_SIZE, 60),
+    "mixed model, slope": (mixed(EFFECT_BY_FLOOR, "s_c"), SLOPE, 60),
+    "mixed model of 72 tests, pedestal on F3": (
+        mixed(AMPLITUDE, "C(ped)[T.1]"),
+        EFFECT_SIZE + FLOORS["F3"],
+        60,
+    ),
+    "interval likelihood, exact figures": (most_likely_effect, EFFECT_SIZE, 60),
+    "interval likelihood, steps of 20 %": (
+        lambda t: most_likely_effect(stepped(t)),
+        EFFECT_SIZE,
+        60,
+    ),
+    "interval likelihood, limit 0.5 g": (lambda t: most_likely_effect(cut(t)), EFFECT_SIZE, 60),
+    "interval likelihood, steps and limit": (
+        lambda t: most_likely_effect(cut(stepped(t))),
+        EFFECT_SIZE,
+        60,
+    ),
+    "mean of complete pairs, limit 0.5 g": (
+        lambda t: mean_effect(pairs_of(cut(t))).mean,
+        EFFECT_SIZE,
+        200,
+    ),
+}
+BIASED = "mean of complete pairs, limit 0.5 g"
+
+
+def recovery(name: str) -> dict[str, float]:
+    """Truth, mean estimate, its standard error, and the scatter of one estimate."""
+    estimate, truth, data_sets = ESTIMATORS[name]
+    found = np.array([estimate(simulated(seed)) for seed in range(data_sets)])
+    return {
+        "truth": truth,
+        "mean estimate": float(found.mean()),
+        "standard error": float(found.std(ddof=1) / math.sqrt(data_sets)),
+        "scatter of one": float(found.std(ddof=1)),
+        "data sets": data_sets,
+    }
+
+
+def variances() -> pd.DataFrame:
+    """Standard deviations that the models find, against those put in (root mean of squares)."""
+    found = []
+    for seed in range(60):
+        tests = simulated(seed)
+        rows = pairs_of(tests)
+        rows = rows.assign(d=rows["d"] - rows["floor"].map(FLOORS) - SLOPE * rows["s_c"])
+        fit = fit_mixed(rows, EFFECT)
+        likely = fit_censored(stepped(tests)) if seed < 10 else None
+        found.append(
+            (
+                fit.sd_event,
+                fit.sd_motion,
+                fit.sd_residual,
+                likely.sd_pair if likely else math.nan,
+                likely.sd_test if likely else math.nan,
+            )
+        )
+    mean = np.sqrt(np.nanmean(np.square(found), axis=0))
+    spread = math.sqrt(SD_TEST**2 + (SD_EVENT**2 + SD_MOTION**2) / 2)
+    return pd.DataFrame(
+        {
+            "truth": [SD_EVENT, SD_MOTION, math.sqrt(2) * SD_TEST, SD_PAIR, spread],
+            "root mean square": mean,
+        },
+        index=[
+            "mixed model, event",
+            "mixed model, motion",
+            "mixed model, pair",
+            "interval likelihood, pair",
+            "interval likelihood, test (with the effect's own scatter)",
+        ],
+    )
+
+
+def coverage_of_censored(data_sets: int = 40) -> float:
+    """Share of 95 % intervals of the interval likelihood (jackknife over events) with the truth."""
+    held = 0
+    for seed in range(data_sets):
+        effect = fit_censored(cut(simulated(seed))).effect
+        held += effect.lower <= EFFECT_SIZE <= effect.upper
+    return held / data_sets
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in ESTIMATORS if name != BIASED])
+def test_estimator_finds_what_was_put_in(name):
+    row = recovery(name)
+    assert abs(row["mean estimate"] - row["truth"]) < 3 * row["standard error"]
+
+
+@pytest.mark.slow
+def test_leaving_censored_pairs_out_biases_the_effect_and_the_likelihood_does_not():
+    """On the same data, against the mean that a stronger shaker would have found."""
+    sets = [simulated(seed) for seed in range(40)]
+    full = np.array([mean_effect(pairs_of(one)).mean for one in sets])
+    kept = np.array([mean_effect(pairs_of(cut(one))).mean for one in sets]) - full
+    likely = np.array([most_likely_effect(cut(one)) for one in sets]) - full
+    assert abs(kept.mean()) > 3 * kept.std(ddof=1) / math.sqrt(len(sets))
+    assert abs(likely.mean()) < abs(kept.mean()) / 2
+
+
+@pytest.mark.slow
+def test_variances_are_found():
+    table = variances()
+    assert (table["root mean square"] / table["truth"]).between(0.75, 1.3).all()
+
+
+@pytest.mark.slow
+def test_censored_intervals_cover():
+    assert coverage_of_censored() >= 0.85
+
+
+@pytest.mark.slow
+def test_noise_of_a_test_is_covered_by_its_interval():
+    rng = np.random.default_rng(SEED)
+    held = 0
+    for _ in range(500):
+        group = pd.Series(np.repeat(np.arange(10), 3))
+        noise = noise_from_repetitions(pd.Series(rng.normal(0, 0.1, 30)), group)
+        held += noise.lower <= 0.1 <= noise.upper
+    assert 0.92 <= held / 500 <= 0.98
+
+
+if __name__ == "__main__":
+    print("| estimator | truth | mean estimate | standard error | scatter of one | data sets |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for label in ESTIMATORS:
+        one = recovery(label)
+        numbers = [f"{value:.3f}" for value in list(one.values())[:-1]]
+        print(f"| {label} | {' | '.join(numbers)} | {one['data sets']} |")
+    print("\n| standard deviation | truth | root mean square |\n| --- | --- | --- |")
+    spread = variances()
+    for label, (truth, mean) in zip(spread.index, spread.to_numpy(), strict=True):
+        print(f"| {label} | {truth:.3f} | {mean:.3f} |")
+    print(f"\ncoverage of 95 % intervals, limit 0.5 g, 40 data sets: {coverage_of_censored():.2f}")
