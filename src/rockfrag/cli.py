@@ -142,7 +142,7 @@ def _check_image(path: str | None) -> None:
 
 
 def _check_config(options: argparse.Namespace) -> int:
-    from rockfrag.studies import load_study
+    from rockfrag.studies.loading import load_study
 
     study = load_study(options.file)
     if options.report:

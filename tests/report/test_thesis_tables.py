@@ -18,7 +18,7 @@ from rockfrag.report.thesis_tables import (
     uplift_table,
 )
 from rockfrag.rocking.bodies import Block, Stack
-from rockfrag.studies import load_study
+from rockfrag.studies.loading import load_study
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 PRINTED = CONFIG / "printed"

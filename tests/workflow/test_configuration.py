@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.studies import load_study
+from rockfrag.studies.loading import load_study
 
 from .conftest import SPECIMENS, study_content, write_study
 
@@ -151,11 +151,11 @@ ANYTHING = st.recursive(
 def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(
     study_folder: Path, key: str, value: object
 ):
-    from rockfrag.studies import study_from
+    from rockfrag.studies.loading import checked_study
 
     content = {**study_content(), key: value}
     try:
-        study_from(content, study_folder / "study.yaml")
+        checked_study(content, study_folder / "study.yaml")
     except InputError as error:
         assert "\n" not in str(error)
         assert key in str(error)

@@ -5,7 +5,7 @@ import sys
 
 from rockfrag.errors import InputError
 from rockfrag.report.gallery import figure_names
-from rockfrag.studies import study_from
+from rockfrag.studies.loading import checked_study
 from rockfrag.studies.digest import source_digest
 from rockfrag.studies.pedestal import PEDESTAL_TABLES
 from rockfrag.studies.study import PRINTED_TABLES
@@ -14,7 +14,7 @@ from rockfrag.studies.study import RECORDS_FOLDER as RECORDS
 STUDY_FILE = os.path.relpath(workflow.configfiles[-1])
 
 try:
-    STUDY = study_from(config, STUDY_FILE)
+    STUDY = checked_study(config, STUDY_FILE)
 except InputError as error:
     # nothing has run yet: one sentence, no traceback, exit status 1
     sys.exit(str(error))

@@ -6,8 +6,8 @@ from rockfrag.files import write_table
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.steps import GeometricSteps
 from rockfrag.shaketable.sweeps import tests_from_sweep
-from rockfrag.studies import study_from
 from rockfrag.studies.log import logged
+from rockfrag.studies.study import study_from
 
 with logged(snakemake.log[0], "protocol") as log:
     study = study_from(snakemake.config, snakemake.params.study)

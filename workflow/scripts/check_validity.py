@@ -5,8 +5,8 @@ import pandas as pd
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
 from rockfrag.report.findings import READING
-from rockfrag.studies import study_from
 from rockfrag.studies.log import logged
+from rockfrag.studies.study import study_from
 from rockfrag.studies.validity import validity_table
 
 with logged(snakemake.log[0], "validity") as log:

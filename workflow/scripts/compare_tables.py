@@ -11,8 +11,8 @@ from rockfrag.report.thesis_tables import (
     ground_measures,
     uplift_table,
 )
-from rockfrag.studies import study_from
 from rockfrag.studies.log import logged
+from rockfrag.studies.study import study_from
 
 with logged(snakemake.log[0], "tables") as log:
     study = study_from(snakemake.config, snakemake.params.study)

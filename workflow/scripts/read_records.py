@@ -4,9 +4,8 @@ from pathlib import Path
 
 from rockfrag.records.catalogue import load_motion
 from rockfrag.records.motion import write_motion_set
-from rockfrag.studies import study_from
 from rockfrag.studies.log import logged
-from rockfrag.studies.study import RECORDS_FOLDER
+from rockfrag.studies.study import RECORDS_FOLDER, study_from
 
 with logged(snakemake.log[0], "read") as log:
     study = study_from(snakemake.config, snakemake.params.study)

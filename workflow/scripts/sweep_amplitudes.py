@@ -4,8 +4,8 @@ import pandas as pd
 
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
-from rockfrag.studies import study_from
 from rockfrag.studies.log import logged
+from rockfrag.studies.study import study_from
 from rockfrag.studies.sweep import sweep
 
 BATCH = 12

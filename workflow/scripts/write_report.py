@@ -8,8 +8,8 @@ from rockfrag.files import write_text
 from rockfrag.report.contents import write_page
 from rockfrag.report.gallery import pictures
 from rockfrag.report.provenance import provenance
-from rockfrag.studies import study_from
 from rockfrag.studies.log import logged
+from rockfrag.studies.study import study_from
 
 with logged(snakemake.log[0], "report") as log:
     study = study_from(snakemake.config, snakemake.params.study)

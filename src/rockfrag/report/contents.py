@@ -7,7 +7,7 @@ import pandas as pd
 from rockfrag.report.findings import READING, Finding, all_findings
 from rockfrag.report.ledger_html import ledger_html
 from rockfrag.report.page import Column, Picture, Section, comparison_html, render, table_html
-from rockfrag.studies import Study
+from rockfrag.studies.study import Study
 
 COMPARISONS = ("table_3_1", "table_3_3", "table_4_1")
 

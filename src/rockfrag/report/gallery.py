@@ -22,7 +22,7 @@ from rockfrag.report.pedestal_figures import (
     slenderness_figure,
 )
 from rockfrag.report.sweep_figures import verdict_map
-from rockfrag.studies import Study
+from rockfrag.studies.study import Study
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
-"""Studies: what is to be computed, read from a configuration file and checked first."""
+"""Studies: what is to be computed, read from a configuration file and checked first.
 
-from rockfrag.studies.study import Study, load_study, study_from
-
-__all__ = ["Study", "load_study", "study_from"]
+:func:`rockfrag.studies.loading.load_study` reads and checks; the workflow's jobs use
+:func:`rockfrag.studies.study.study_from`, which loads less.
+"""

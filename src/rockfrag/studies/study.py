@@ -8,16 +8,13 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
-from rockfrag.motions.processing import check_steps
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.fetching import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block
 from rockfrag.studies.amplitudes import Amplitudes
 from rockfrag.studies.configurations import Configuration, read_configurations, read_specimens
 from rockfrag.studies.validation import check_schema, read_schema
-from rockfrag.studies.yaml_file import read_yaml
 
 RECORDS_FOLDER = "resources/records"
 """Where fetched records are kept, from the folder in which the workflow runs."""
@@ -103,19 +100,17 @@ class Study:
         return [*dict.fromkeys(fetched), *(str(folder / name.partition("#")[0]) for name in own)]
 
 
-def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's configuration file and everything small that it names, and check them all.
+def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
+    """Make a study of a configuration that was read from ``path``.
+
+    Steps of processing and the building are left to :func:`rockfrag.studies.loading.checked_study`,
+    which needs the packages that carry them out.
 
     Raises
     ------
     InputError
         One sentence with the file, the key or row, what was expected and what was found.
     """
-    return study_from(read_yaml(path), path)
-
-
-def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
-    """Make a study of a configuration that was read from ``path``; see :func:`load_study`."""
     source = Path(path)
     check_schema(content, read_schema("study.schema.json"), str(source))
     bodies, motions = content["bodies"], content["motions"]
@@ -123,16 +118,11 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     configurations_file = _file(source, "bodies.configurations", bodies["configurations"])
     specimens = read_specimens(specimens_file)
     known = read_configurations(configurations_file, specimens)
-    processing = tuple(motions.get("processing", ()))
     building = content.get("building")
     try:
-        check_steps(processing)
         amplitudes = Amplitudes(**content["amplitudes"])
     except InputError as error:
         raise InputError(f"{source}: {error}") from error
-    building_file = None if building is None else _file(source, "building", building)
-    if building_file is not None:
-        read_building(building_file)
     catalogue_file = _file(source, "motions.catalogue", motions["catalogue"])
     return Study(
         name=content["study"],
@@ -141,8 +131,8 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         source=source,
         catalogue_file=catalogue_file,
         catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
-        processing=processing,
-        building=building_file,
+        processing=tuple(motions.get("processing", ())),
+        building=None if building is None else _file(source, "building", building),
         specimens_file=specimens_file,
         configurations_file=configurations_file,
         specimens=specimens,

@@ -1,0 +1,40 @@
+"""Reading a study before anything runs, with every check that can be made beforehand."""
+
+import os
+from collections.abc import Mapping
+from typing import Any
+
+from rockfrag.building.settings import read_building
+from rockfrag.errors import InputError
+from rockfrag.motions.processing import check_steps
+from rockfrag.studies.study import Study, study_from
+from rockfrag.studies.yaml_file import read_yaml
+
+
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Read a study's configuration file and everything small that it names, and check them all.
+
+    Raises
+    ------
+    InputError
+        One sentence with the file, the key or row, what was expected and what was found.
+    """
+    return checked_study(read_yaml(path), path)
+
+
+def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
+    """Make a study of a configuration that was read from ``path``, and check what it refers to.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_study`.
+    """
+    study = study_from(content, path)
+    try:
+        check_steps(study.processing)
+    except InputError as error:
+        raise InputError(f"{study.source}: key motions.processing: {error}") from error
+    if study.building is not None:
+        read_building(study.building)
+    return study
