@@ -31,7 +31,7 @@ from rockfrag.rocking._mechanics import (
     stick,
 )
 from rockfrag.rocking._series import ORDER, closing_time, slope, value
-from rockfrag.rocking._step import GAP, ROWS, TH1, TH2, series
+from rockfrag.rocking._step import CRITICAL, FREQUENCY2, GAP, ROWS, TH1, TH2, series
 
 # Entries of the summary of a march.
 (
@@ -99,7 +99,7 @@ def barrier(p):
                 wx, wy = first_moment2(p, s2)
                 vx, vy = vx + wx, vy + wy
                 least = min(least, math.hypot(vx, vy) - vy)
-    return least * p[20]
+    return least * p[GRAVITY]
 
 
 @kernel
@@ -275,6 +275,7 @@ def march(
     elif omega2 != omega1:
         c2 = 1 if omega2 > omega1 else -1
     c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, acceleration[0] * scale)
+    _ways_to_balance(p, q)
     least_energy = barrier(p)
     rest_low, rest_high = rest_interval(p)
     # no chatter is closed above this speed: 0.2 D/p with the D of a still ground
@@ -515,26 +516,40 @@ def _track(p, c1, c2, q, at, t1, w1, t2, w2, h, summary):
     if q[TH1, 1] * w1 < 0.0:
         tau = q[TH1, 1] / (q[TH1, 1] - w1 * h) * at
         summary[PEAK1] = max(summary[PEAK1], abs(value(q[TH1], tau)))
-    g = p[20]
     if c2 != 0:
-        vx, vy = first_moment2(p, c2)
-        critical = math.atan2(-c2 * vx, vy)
-        frequency2 = g * math.hypot(vx, vy) / inertia2(p, c2)
-        away = (critical - c2 * t2) / critical
+        column = 6 if c2 > 0 else 7
+        critical = q[CRITICAL, column]
+        away = 1.0 - c2 * t2 / critical
         speed = w2 / critical
-        summary[CLOSEST] = min(
-            summary[CLOSEST], math.sqrt(away * away + speed * speed / frequency2)
-        )
+        square = away * away + speed * speed / q[FREQUENCY2, column]
+        if square < summary[CLOSEST] * summary[CLOSEST]:
+            summary[CLOSEST] = math.sqrt(square)
         summary[RATIO2] = max(summary[RATIO2], c2 * t2 / critical)
     if c1 != 0:
-        critical, vx, vy, inertia = _balance(p, c1, c2)
-        frequency2 = g * math.hypot(vx, vy) / inertia
-        away = (critical - c1 * t1) / critical
+        column = 1 + c2 + (0 if c1 > 0 else 3)
+        critical = q[CRITICAL, column]
+        away = 1.0 - c1 * t1 / critical
         speed = w1 / critical
-        summary[CLOSEST] = min(
-            summary[CLOSEST], math.sqrt(away * away + speed * speed / frequency2)
-        )
+        square = away * away + speed * speed / q[FREQUENCY2, column]
+        if square < summary[CLOSEST] * summary[CLOSEST]:
+            summary[CLOSEST] = math.sqrt(square)
         summary[RATIO1] = max(summary[RATIO1], c1 * t1 / critical)
+
+
+@kernel
+def _ways_to_balance(p, q):
+    """Fill rows CRITICAL and FREQUENCY2: the pedestal's in columns 0 to 5, the statue's in 6 and 7."""
+    for c1 in (1, -1):
+        for c2 in (-1, 0, 1):
+            critical, vx, vy, inertia = _balance(p, c1, c2)
+            column = 1 + c2 + (0 if c1 > 0 else 3)
+            q[CRITICAL, column] = critical
+            q[FREQUENCY2, column] = p[GRAVITY] * math.hypot(vx, vy) / inertia
+    for c2 in (1, -1):
+        vx, vy = first_moment2(p, c2)
+        column = 6 if c2 > 0 else 7
+        q[CRITICAL, column] = math.atan2(-c2 * vx, vy)
+        q[FREQUENCY2, column] = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, c2)
 
 
 @kernel
@@ -555,7 +570,7 @@ def _work(p, c1, c2, q, end, h, a0, ramp):
             t2 = value(q[TH2], tau)
             w1 = slope(q[TH1], tau)
             w2 = slope(q[TH2], tau)
-            if p[19] > 0.0:
+            if p[LINEAR] > 0.0:
                 rate = v1y * w1 + v2y * w2
             else:
                 rate = w1 * (v1y * math.cos(t1) - v1x * math.sin(t1))

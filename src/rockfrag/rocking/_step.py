@@ -14,7 +14,9 @@ from rockfrag.rocking._series import ORDER, extend_circular, extend_rotation
 
 # Rows of the scratch array that a march allocates once.
 TH1, TH2, SIN1, COS1, SIN2, COS2, SIND, COSD, DELTA, GAP = range(10)
-ROWS = 10
+# Critical angles and squared frequencies of the ways to balance: see _march.
+CRITICAL, FREQUENCY2 = 10, 11
+ROWS = 12
 
 
 @kernel

@@ -15,7 +15,7 @@ from rockfrag.rocking import _march as kmarch
 from rockfrag.rocking._ensemble import march_cases
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.inputs import (
-    CLOSING_SPEED,
+    COARSE_CLOSING_SPEED,
     FREE_TIME,
     STEP,
     checked_acceleration,
@@ -192,7 +192,7 @@ def _stacks(
     def work(first: int, last: int) -> None:
         march_cases(
             first, last, parameters, substeps, free, samples, offsets, dts, factors,
-            CLOSING_SPEED, table[first:last],
+            COARSE_CLOSING_SPEED, table[first:last],
         )  # fmt: skip
 
     _in_parallel(len(table), workers, work)

@@ -13,7 +13,10 @@ STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""
 
 CLOSING_SPEED = 1e-6
-"""Separation speed after an impact [rad/s] below which a contact stays closed."""
+"""Separation speed after an impact [rad/s] below which a contact stays closed in a kept history."""
+
+COARSE_CLOSING_SPEED = 1e-4
+"""Likewise where only the verdict matters: it leaves verdicts as they are (``docs/rocking.md``)."""
 
 FREE_TIME = 60.0
 """Free rocking after the motion is followed for at most this long, in units of 1/p."""
