@@ -28,6 +28,7 @@ FLOORS = {"GF": 0.10, "F3": -0.05, "F5": -0.05}
 TOWERS = {"T1": (3, 0.50), "T2": (4, 0.38), "T3": (5, 0.30)}
 EFFECT_SIZE, SLOPE = 0.10, 0.04
 SD_EVENT, SD_MOTION, SD_PAIR, SD_TEST = 0.06, 0.05, 0.15, 0.095
+SD_LEVEL = 0.1  # of ln a between events, with and without pedestal alike
 LIMIT, STEP = 0.50, 1.2
 
 
@@ -36,7 +37,7 @@ def simulated(seed: int) -> pd.DataFrame:
     rng = np.random.default_rng([SEED, seed])
     rows = []
     for event in EVENTS:
-        by_event, level_event = rng.normal(0, SD_EVENT), rng.normal(0, 0.1)
+        by_event, level_event = rng.normal(0, SD_EVENT), rng.normal(0, SD_LEVEL)
         for floor, by_floor in FLOORS.items():
             by_motion = rng.normal(0, SD_MOTION)
             for tower, (slenderness, amplitude) in TOWERS.items():
@@ -155,17 +156,25 @@ def variances() -> pd.DataFrame:
             )
         )
     mean = np.sqrt(np.nanmean(np.square(found), axis=0))
-    spread = math.sqrt(SD_TEST**2 + (SD_EVENT**2 + SD_MOTION**2) / 2)
+    # what the effect itself varies by: event, motion, floor and slope; half of it on each test
+    varying = SD_EVENT**2 + SD_MOTION**2 + np.var(list(FLOORS.values())) + SLOPE**2 * 2 / 3
+    spread = math.sqrt(SD_TEST**2 + varying / 2)
     return pd.DataFrame(
         {
-            "truth": [SD_EVENT, SD_MOTION, math.sqrt(2) * SD_TEST, SD_PAIR, spread],
+            "truth": [
+                SD_EVENT,
+                SD_MOTION,
+                math.sqrt(2) * SD_TEST,
+                math.hypot(SD_PAIR, SD_LEVEL),
+                spread,
+            ],
             "root mean square": mean,
         },
         index=[
             "mixed model, event",
             "mixed model, motion",
             "mixed model, pair",
-            "interval likelihood, pair",
+            "interval likelihood, pair (with the level of the event)",
             "interval likelihood, test (with the effect's own scatter)",
         ],
     )
