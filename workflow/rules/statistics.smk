@@ -57,8 +57,28 @@ rule check_validity:
         "../scripts/check_validity.py"
 
 
+rule test_theory:
+    input:
+        motions=f"{RESULTS}/motions/ground.parquet",
+        specimens=str(STUDY.specimens_file),
+        configurations=str(STUDY.configurations_file),
+    output:
+        tables("claims_theory"),
+    log:
+        f"{RESULTS}/logs/test_theory.log",
+    params:
+        study=STUDY_FILE,
+        settings=settings("bodies", "seed"),
+        code=source_digest("claims"),
+    conda:
+        "../envs/rockfrag.yaml"
+    script:
+        "../scripts/test_theory.py"
+
+
 rule test_claims:
     input:
+        theory=f"{RESULTS}/claims_theory.parquet",
         tests=f"{RESULTS}/tests.parquet",
         validity=f"{RESULTS}/validity.parquet",
         measures=f"{RESULTS}/measures.parquet",

@@ -16,9 +16,11 @@ with logged(snakemake.log[0], "claims") as log:
     tests = tests[tests["reading"] == READING].merge(forces, on="test", how="left")
     measures = pd.read_parquet(snakemake.input.measures)
     claims = ledger(
-        tests, basis="simulated", seed=study.seed, measures=measures, bodies=study.specimens
+        tests, basis="simulated", seed=study.seed, measures=measures, bodies=study.tested_blocks
     )
+    theory = pd.read_parquet(snakemake.input.theory)
+    claims = pd.concat([theory, claims], ignore_index=True)
     write_table(claims, *snakemake.output[:2])
-    evidence = Evidence(tests, "simulated", study.seed, measures, study.specimens)
+    evidence = Evidence(tests, "simulated", study.seed, measures, study.tested_blocks)
     write_table(contradictions(evidence), *snakemake.output[2:])
     log.info("%s", ", ".join(f"{n} {v}" for v, n in claims["verdict"].value_counts().items()))

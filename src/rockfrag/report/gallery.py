@@ -180,6 +180,8 @@ def _fragility(results: Results, tower: str) -> Figure:
     rows = results.sweep[results.sweep["tower"] == tower]
     level = results.study.fragility.confidence
     curves, outcomes, windows = {}, {}, {}
+    # with the pedestal first: it then has the same colour as in the other figures
+    rows = rows.sort_values("pedestal", ascending=False, kind="stable")
     for name, part in rows.groupby("configuration", sort=False):
         found = fit_incremental(part, event="event", level=level)
         curves[str(name)] = found.probability

@@ -11,7 +11,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.fetching import PROVENANCE, WHEELS
-from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.studies.amplitudes import Amplitudes
 from rockfrag.studies.configurations import Configuration, read_configurations, read_specimens
 from rockfrag.studies.validation import check_schema, read_schema
@@ -90,6 +90,20 @@ class Study:
             for side in ("P", "NP")
         }
         return bool(sides["P"] & sides["NP"])
+
+    @property
+    def tested_blocks(self) -> dict[str, Block]:
+        """Blocks of the towers tested and, as ``P``, the first pedestal: the ledger's names."""
+        blocks = {one.tower: self.specimens[one.tower] for one in self.configurations}
+        pedestals = [one.pedestal for one in self.configurations if one.pedestal]
+        if pedestals:
+            blocks["P"] = self.specimens[pedestals[0]]
+        return blocks
+
+    @property
+    def stacks(self) -> dict[str, Stack]:
+        """Stacks tested, by the name of their configuration."""
+        return {one.name: one.body for one in self.configurations if isinstance(one.body, Stack)}
 
     def record_files(self, records: str) -> list[str]:
         """Files that must exist before the records can be read, fetched ones under ``records``."""
