@@ -1,6 +1,7 @@
 # What all rules share: the study, its folder, and the fingerprint of the source that computes a stage.
 import json
 import os
+import shlex
 import sys
 
 from rockfrag.errors import InputError
@@ -10,6 +11,9 @@ from rockfrag.studies.digest import source_digest
 from rockfrag.studies.pedestal import PEDESTAL_TABLES
 from rockfrag.studies.study import PRINTED_TABLES
 from rockfrag.studies.study import RECORDS_FOLDER as RECORDS
+
+# Snakemake puts the interpreter's path into shell commands as it is, so spaces in it must be quoted
+sys.executable = shlex.quote(sys.executable)
 
 STUDY_FILE = os.path.relpath(workflow.configfiles[-1])
 

@@ -66,12 +66,12 @@ rule test_theory:
         tables("claims_theory"),
     log:
         f"{RESULTS}/logs/test_theory.log",
+    conda:
+        "../envs/rockfrag.yaml"
     params:
         study=STUDY_FILE,
         settings=settings("bodies", "seed"),
         code=source_digest("claims"),
-    conda:
-        "../envs/rockfrag.yaml"
     script:
         "../scripts/test_theory.py"
 
