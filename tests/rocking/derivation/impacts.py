@@ -1,0 +1,285 @@
+"""Thesis eq. 2.76 to 2.86: angular velocities after an impact, against conserved angular momentum."""
+
+import numpy as np
+from numpy import cos, sin
+
+from .equation import Equation
+from .systems import System, impact_map, random_systems
+
+Array = np.ndarray
+
+
+def ground_impact(s: System) -> System:
+    return s.with_(th1=0.0)
+
+
+def interface_impact(s: System) -> System:
+    return s.with_(th2=s.th1)
+
+
+def truth(where, old: tuple[int, int], new: tuple[int, int]):
+    """Return the conserved-momentum velocities after the impact."""
+    return lambda s: np.array(impact_map(where(s), old, new))
+
+
+def solved(rows: tuple[tuple[Array, ...], tuple[Array, ...]], s: System) -> Array:
+    """Solve P ω1⁺ + Q ω2⁺ = U ω1⁻ + V ω2⁻ for two rows (P, Q, U, V)."""
+    (p, q, u, v), (p2, q2, u2, v2) = rows
+    det = p * q2 - q * p2
+    one, two = u * s.w1 + v * s.w2, u2 * s.w1 + v2 * s.w2
+    return np.array([(one * q2 - q * two) / det, (p * two - p2 * one) / det])
+
+
+def case_276(s: System, printed: bool) -> Array:
+    c1 = s.io2
+    if printed:  # the bracket closes too late
+        inner = s.r2 * cos(s.tc2 - s.beta - s.th2 + 2 * s.h1 * cos(s.beta) - s.xi_ * sin(s.beta))
+    else:
+        inner = s.r2 * cos(s.tc2 - s.beta - s.th2) + 2 * s.h1 * cos(s.beta) - s.xi_ * sin(s.beta)
+    c2 = s.io1 - 2 * s.m1 * s.b1**2 + s.m2 * s.length * inner
+    c3 = s.io2 + s.m2 * s.r2 * (2 * s.h1 * cos(s.tc2 - s.th2) - s.xi_ * sin(s.tc2 - s.th2))
+    c4 = s.m2 * s.r2 * s.length * cos(s.tc2 - s.beta - s.th2)
+    c5 = s.io1 + s.m2 * s.length_ * (
+        s.r2 * cos(s.tc2 + s.beta_ - s.th2) + 2 * s.h1 * cos(s.beta_) + s.xi_ * sin(s.beta_)
+    )
+    c6 = s.m2 * s.r2 * s.length_ * cos(s.tc2 + s.beta_ - s.th2)
+    a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
+    b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
+    return np.array([a * s.w1, b * s.w1 + s.w2])
+
+
+def case_278(s: System, printed: bool) -> Array:
+    f, one, two = (cos, s.big - s.beta, s.tc2 + s.big) if printed else (
+        sin, s.big + s.beta, s.big - s.tc2
+    )  # fmt: skip
+    five, seven = (s.big - s.beta_, s.tc2 - s.big) if printed else (
+        s.big + s.beta_, s.big + s.tc2
+    )  # fmt: skip
+    e1 = s.io2
+    e2 = s.io1 + s.m2 * s.length * s.rr * f(one)
+    e3 = s.ic2 + s.m2 * s.r2 * s.rr * f(two)
+    e4 = s.m2 * s.r2 * s.length * cos(s.tc2 + s.beta)
+    e5 = s.io1 + s.m2 * s.length_ * s.rr * f(five)
+    e6 = s.m2 * s.r2 * s.length_ * cos(s.tc2 + s.beta_)
+    e7 = s.ic2 + s.m2 * s.r2 * s.rr * f(seven)
+    e8 = s.ic2 + s.m2 * s.r2**2 * cos(2 * s.tc2)
+    a = (e1 * e2 - e3 * e4) / (e5 * e1 - e3 * e6)
+    b = (e1 * e7 - e3 * e8) / (e5 * e1 - e3 * e6)
+    c = (e6 * e2 - e5 * e4) / (e3 * e6 - e1 * e5)
+    d = (e6 * e7 - e5 * e8) / (e3 * e6 - e1 * e5)
+    return np.array([a * s.w1 + b * s.w2, c * s.w1 + d * s.w2])
+
+
+def together(s: System, a1: Array, a2: Array) -> Array:
+    both = (a1 * s.w1 + a2 * s.w2) / s.io
+    return np.array([both, both])
+
+
+def case_279(s: System, printed: bool) -> Array:
+    one, two = (
+        (cos(s.big - s.beta), cos(s.tc2 - s.big))
+        if printed
+        else (sin(s.big + s.beta), sin(s.big + s.tc2))
+    )
+    return together(s, s.io1 + s.m2 * s.length * s.rr * one, s.ic2 + s.m2 * s.r2 * s.rr * two)
+
+
+def case_280(s: System, printed: bool) -> Array:
+    e1 = s.io2
+    inertia, beta = (s.ic2, s.beta_) if printed else (s.io2, s.beta)
+    arc = s.tc2 + s.th2
+    e2 = (
+        s.io1
+        - 2 * s.m1 * s.b1**2
+        + s.m2
+        * s.length_
+        * (s.r2 * cos(arc + s.beta_) + 2 * s.h1 * cos(s.beta_) - s.xi * sin(s.beta_))
+    )
+    e3 = inertia + s.m2 * s.r2 * (2 * s.h1 * cos(arc) + s.xi * sin(arc))
+    e4 = s.m2 * s.r2 * s.length_ * cos(arc + s.beta_)
+    e5 = s.io1 + s.m2 * s.length * (
+        s.r2 * cos(arc - beta) + 2 * s.h1 * cos(s.beta) + s.xi * sin(s.beta)
+    )
+    e6 = s.m2 * s.r2 * s.length * cos(arc - beta)
+    back = s.tc2 - s.th2
+    e7 = s.ic2 + s.m2 * s.r2 * (2 * s.h1 * cos(back) - s.xi * sin(back)) if printed else e3
+    a = (e1 * e2 - e3 * e4) / (e5 * e1 - e3 * e6)
+    b = (e1 * e7 - e3 * e1) / (e5 * e1 - e3 * e6)
+    c = (e6 * e2 - e5 * e4) / (e3 * e6 - e1 * e5)
+    d = (e6 * e7 - e5 * e1) / (e3 * e6 - e1 * e5)
+    return np.array([a * s.w1 + b * s.w2, c * s.w1 + d * s.w2])
+
+
+def printed_281(s: System) -> Array:
+    e1 = s.io2
+    e2 = s.io1 + s.m2 * s.length_ * s.rr * sin(s.big - s.beta_ + s.th1)
+    e3 = s.m2 * s.r2 * s.length_ * cos(s.tc2 - s.beta_ + s.th1 - s.th2)
+    e4 = s.io1 + s.m2 * s.length * s.rr * sin(s.big - s.beta + s.th1)
+    e5 = s.m2 * s.r2 * s.length * cos(s.tc2 - s.beta + s.th1 - s.th2)
+    e6 = s.ic2 + s.m2 * s.r2 * s.rr * sin(s.tc2 + s.big + s.th2)
+    e7 = s.ic2 + s.m2 * s.r2**2 * cos(s.tc2 + s.beta_ - s.th1 - s.th2)
+    a = (e1 * e2 - e1 * e3) / (e4 * e1 - e1 * e5)
+    b = (e1 * e6 - e7 * e1) / (e4 * e1 - e1 * e5)
+    c = (e5 * e2 - e4 * e3) / (e1 * e5 - e1 * e4)
+    d = (e5 * e6 - e4 * e7) / (e1 * e5 - e1 * e4)
+    return np.array([a * s.w1 + b * s.w2, c * s.w1 + d * s.w2])
+
+
+def mended_281(s: System) -> Array:
+    e2 = s.io1 + s.m2 * s.length_ * s.rr * sin(s.big + s.beta_)
+    e3 = s.m2 * s.r2 * s.length_ * cos(s.tc2 - s.beta_)
+    e4 = s.io1 + s.m2 * s.length * s.rr * sin(s.big + s.beta)
+    e5 = s.m2 * s.r2 * s.length * cos(s.tc2 - s.beta)
+    e6 = s.ic2 + s.m2 * s.r2 * s.rr * sin(s.big - s.tc2)
+    e7 = s.ic2 + s.m2 * s.r2**2 * cos(2 * s.tc2)
+    new = s.ic2 + s.m2 * s.r2 * s.rr * sin(s.big + s.tc2)
+    return solved(((e4, new, e2, e6), (e5, s.io2, e3, e7)), s)
+
+
+def case_282(s: System, printed: bool) -> Array:
+    one, two = (
+        (sin(s.big - s.beta_ + s.th1), sin(s.tc2 + s.big + s.th2))
+        if printed
+        else (sin(s.big + s.beta_), sin(s.big - s.tc2))
+    )
+    return together(s, s.io1 + s.m2 * s.length_ * s.rr * one, s.ic2 + s.m2 * s.r2 * s.rr * two)
+
+
+def case_283(s: System, printed: bool) -> Array:
+    top = 2 * s.h1 + s.h2
+    lever = s.m2 * s.r2 * (s.b1 * sin(s.tc2) + top * cos(s.tc2))
+    c1 = s.io2
+    c2 = (s.io1 if printed else s.io) - 2 * s.m * s.b1**2
+    c3 = (s.ic1 if printed else s.ic2) + lever
+    c4 = (s.io1 if printed else s.io2) + s.m2 * s.length_ * (
+        s.h2 * cos(s.beta_) - s.b2 * sin(s.beta_)
+    )
+    c5 = s.io1 + s.m2 * s.length * (top * cos(s.beta) + s.b1 * sin(s.beta))
+    c6 = s.m2 * s.length * (s.h2 * cos(s.beta) + s.b2 * sin(s.beta))
+    a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
+    b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
+    return np.array([a * s.w1, b * s.w1])
+
+
+def case_284(s: System, printed: bool) -> Array:
+    inertia = s.io1 if printed else s.io
+    both = (inertia - 2 * s.m * s.b1**2) / inertia * s.w1
+    return np.array([both, both])
+
+
+def case_285(s: System, printed: bool) -> Array:
+    top = 2 * s.h1 + s.h2
+    c1 = s.io2
+    c2 = s.ic2 + s.m2 * s.r2 * (top * cos(s.tc2) - s.b1 * sin(s.tc2))
+    c3 = s.ic2 + s.m2 * s.r2 * (top * cos(s.tc2) + s.b1 * sin(s.tc2))
+    c4 = s.io2 - 2 * s.m2 * s.b2**2
+    c5 = s.io1 + s.m2 * s.length * (top * cos(s.beta) + s.b1 * sin(s.beta))
+    c6 = s.m2 * s.length * (s.h2 * cos(s.beta) + s.b2 * sin(s.beta))
+    a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
+    b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
+    if printed:
+        return np.array([a * s.w1, b * s.w1 + s.w2])
+    return np.array([a * s.w2, b * s.w2])
+
+
+def glued_at_rest() -> System:
+    return random_systems().glued().with_(th1=0.0, th2=0.0)
+
+
+def four_a() -> System:
+    return random_systems().standing().with_(th2=0.0)
+
+
+def ground_systems() -> System:
+    return ground_impact(random_systems())
+
+
+def interface_systems() -> System:
+    return interface_impact(random_systems())
+
+
+def closing_sign(s: System) -> Array:
+    """Whether the gap between the blocks of pattern 1a shrinks: rate of the left corner's height."""
+    s = s.with_(vg=0.0)
+    left = s.get("velocity2", 1, 1)[1]  # of the centre; the corner is -2 b2 along the base from O2
+    arm = s.get("pole2", 1, 1) - s.get("centre2", 1, 1)
+    corner = np.array([-2 * s.b2 * cos(s.th2), 2 * s.b2 * sin(s.th2)]) + arm
+    corner_speed = left - s.w2 * corner[0]
+    # the same material point if it belonged to block 1 (its pole moves with block 1)
+    pole_speed = -s.w1 * (s.get("pole2", 1, 1) - s.get("pole1", 1, 1))[0]
+    under = pole_speed - s.w1 * (-2 * s.b2 * cos(s.th2))
+    return np.sign(corner_speed - under)
+
+
+EQUATIONS = [
+    Equation(
+        "2.76",
+        lambda s: case_276(s, True),
+        truth(ground_impact, (1, 1), (-1, 1)),
+        lambda s: case_276(s, False),
+        systems=ground_systems,
+    ),
+    Equation("2.77", lambda s: np.sign(s.w2 - s.w1), closing_sign, systems=interface_systems),
+    Equation(
+        "2.78",
+        lambda s: case_278(s, True),
+        truth(interface_impact, (1, 1), (1, -1)),
+        lambda s: case_278(s, False),
+        systems=interface_systems,
+    ),
+    Equation(
+        "2.79",
+        lambda s: case_279(s, True),
+        truth(interface_impact, (1, 1), (1, 0)),
+        lambda s: case_279(s, False),
+        systems=interface_systems,
+    ),
+    Equation(
+        "2.80",
+        lambda s: case_280(s, True),
+        truth(ground_impact, (1, -1), (-1, -1)),
+        lambda s: case_280(s, False),
+        systems=ground_systems,
+    ),
+    Equation(
+        "2.81",
+        printed_281,
+        truth(interface_impact, (1, -1), (1, 1)),
+        mended_281,
+        systems=interface_systems,
+    ),
+    Equation(
+        "2.82",
+        lambda s: case_282(s, True),
+        truth(interface_impact, (1, -1), (1, 0)),
+        lambda s: case_282(s, False),
+        systems=interface_systems,
+    ),
+    Equation(
+        "2.83",
+        lambda s: case_283(s, True),
+        truth(lambda s: s, (1, 0), (-1, -1)),
+        lambda s: case_283(s, False),
+        systems=glued_at_rest,
+    ),
+    Equation(
+        "2.84",
+        lambda s: case_284(s, True),
+        truth(lambda s: s, (1, 0), (-1, 0)),
+        lambda s: case_284(s, False),
+        systems=glued_at_rest,
+    ),
+    Equation(
+        "2.85",
+        lambda s: case_285(s, True),
+        truth(lambda s: s, (0, 1), (-1, -1)),
+        lambda s: case_285(s, False),
+        systems=four_a,
+    ),
+    Equation(
+        "2.86",
+        lambda s: np.array([0 * s.w2, (s.io2 - 2 * s.m2 * s.b2**2) / s.io2 * s.w2]),
+        truth(lambda s: s, (0, 1), (0, -1)),
+        systems=four_a,
+    ),
+]

@@ -1,0 +1,225 @@
+"""The code of the reference and of the fast kernel against what follows from the positions."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from rockfrag.rocking import Block, Stack
+from rockfrag.rocking import _mechanics as fast
+from rockfrag.rocking.parameters import body_parameters
+from rockfrag.rocking.reference_model import LinearModel, Model
+
+from .motion import lagrange_by_newton
+from .systems import System, error, impact_map, random_systems
+
+POLES = list(itertools.product((1, -1), (1, -1)))
+STATES = [s for s in itertools.product((1, 0, -1), (1, 0, -1)) if s != (0, 0)]
+S = random_systems()
+N = len(S.b1)
+
+
+def stack(s: System, k: int) -> Stack:
+    one = Block(2 * s.b1[k], 2 * s.h1[k], s.m1[k], inertia=s.ic1[k])
+    two = Block(2 * s.b2[k], 2 * s.h2[k], s.m2[k], inertia=s.ic2[k])
+    return Stack(one, two)
+
+
+STACKS = [stack(S, k) for k in range(N)]
+
+
+def moments_of(terms: tuple[float, ...], q: tuple[float, float]) -> tuple[float, float]:
+    m11, m12, m22, f1, f2 = terms
+    return m11 * q[0] + m12 * q[1] + f1, m12 * q[0] + m22 * q[1] + f2
+
+
+def each(function) -> np.ndarray:
+    """Collect a function of the system's number, shape (2, n)."""
+    return np.array([function(k) for k in range(N)]).T
+
+
+def state(s: System, k: int) -> tuple[tuple[float, float], tuple[float, float]]:
+    return (float(s.th1[k]), float(s.th2[k])), (float(s.w1[k]), float(s.w2[k]))
+
+
+@pytest.mark.parametrize("poles", POLES)
+def test_equations_of_motion(poles: tuple[int, int]) -> None:
+    true = S.moments(*poles)
+
+    def reference(k: int) -> tuple[float, float]:
+        theta, omega = state(S, k)
+        terms = Model(STACKS[k], S.g[k]).terms(poles, theta, omega, S.a[k])
+        return moments_of(terms, (S.q1[k], S.q2[k]))
+
+    def kernel(k: int) -> tuple[float, float]:
+        p = body_parameters(STACKS[k], g=S.g[k])
+        terms = fast.equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
+        return moments_of(terms, (S.q1[k], S.q2[k]))
+
+    assert error(each(reference), true).max() < 1e-12
+    assert error(each(kernel), true).max() < 1e-12
+
+
+@pytest.mark.parametrize("poles", POLES)
+def test_linearised_equations_of_motion(poles: tuple[int, int]) -> None:
+    true = S.get("linear_motion", *poles)
+
+    def reference(k: int) -> tuple[float, float]:
+        theta, omega = state(S, k)
+        terms = LinearModel(STACKS[k], S.g[k]).terms(poles, theta, omega, S.a[k])
+        return moments_of(terms, (S.q1[k], S.q2[k]))
+
+    def kernel(k: int) -> tuple[float, float]:
+        p = body_parameters(STACKS[k], linear=True, g=S.g[k])
+        terms = fast.equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
+        return moments_of(terms, (S.q1[k], S.q2[k]))
+
+    assert error(each(reference), true).max() < 1e-12
+    assert error(each(kernel), true).max() < 1e-12
+
+
+def corner_force(s: System, contact: int, pole: int, poles: tuple[int, int]) -> np.ndarray:
+    """Normal force at the corner opposite to ``pole``, from Newton's and Euler's laws.
+
+    The resultant of a full contact is split on its two corners; the accelerations are those of the
+    centres, the forces are taken in the frame of the lower surface.
+    """
+    up = np.array([0 * s.g, s.g])
+    force2 = s.m2 * (s.get("acceleration2", *poles) + up)
+    where, inertia = ("pole2", s.ic2 * s.q2) if contact == 2 else ("pole1", 0)
+    at = s.get(where, *poles)
+    arm2 = s.get("centre2", *poles) - at
+    moment = arm2[1] * force2[0] - arm2[0] * force2[1] + s.ic2 * s.q2
+    half_width = s.b2
+    if contact == 1:
+        force1 = s.m1 * (s.get("acceleration1", *poles) + up)
+        arm1 = s.get("centre1", *poles) - at
+        moment = moment + arm1[1] * force1[0] - arm1[0] * force1[1] + s.ic1 * s.q1 + inertia
+        half_width = s.b1
+    # a unit normal force at the other corner, 2 b away towards -pole, turns by pole · 2 b clockwise
+    return moment / (pole * 2 * half_width)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("pole", [1, -1])
+def test_a_full_contact_persists_while_both_its_corners_are_pressed(side: int, pole: int) -> None:
+    glued, standing = S.glued(), S.standing()
+    # pattern 3: the interface; the true angular acceleration is that of the stuck state
+    models = [Model(STACKS[k], S.g[k]) for k in range(N)]
+    q = np.array(
+        [models[k].accelerations((side, 0), *state(glued, k), S.a[k])[0] for k in range(N)]
+    )
+    glued = glued.with_(q1=q, q2=q)
+    force = corner_force(glued, 2, pole, (side, pole))
+    found = [models[k].margins((side, 0), *state(glued, k), S.a[k])[2, pole] for k in range(N)]
+    scale = S.m2 * S.g / 2
+    assert error(np.array(found) * scale, force).max() < 1e-11
+    # pattern 4: the ground, with all that stands on it
+    q = np.array(
+        [models[k].accelerations((0, side), *state(standing, k), S.a[k])[1] for k in range(N)]
+    )
+    standing = standing.with_(q2=q)
+    whole = corner_force(standing, 1, pole, (pole, side))
+    found = [models[k].margins((0, side), *state(standing, k), S.a[k])[1, pole] for k in range(N)]
+    scale = (S.m1 + S.m2) * S.g / 2
+    assert error(np.array(found) * scale, whole).max() < 1e-11
+
+
+def test_lagranges_equations_are_newtons() -> None:
+    assert error(S.moments(1, -1), lagrange_by_newton(S)).max() < 1e-12
+
+
+@pytest.mark.parametrize(("old", "new"), [(o, n) for o in STATES for n in STATES if o != n])
+def test_impact_maps(old: tuple[int, int], new: tuple[int, int]) -> None:
+    s = S
+    if 0 in (old[0], new[0]) or old[0] != new[0]:
+        s = s.with_(th1=0.0)
+    if 0 in (old[1], new[1]) or old[1] != new[1]:
+        s = s.with_(th2=s.th1)
+    if old[0] == 0:
+        s = s.standing()
+    if old[1] == 0:
+        s = s.with_(w2=s.w1)
+    true = np.array(impact_map(s, old, new))
+    poles = (float(new[0] or 1), float(new[1] or 1))
+
+    def reference(k: int) -> tuple[float, float]:
+        theta, omega = state(s, k)
+        return Model(STACKS[k], S.g[k]).projected(poles, new, old, theta, omega)
+
+    np.testing.assert_allclose(each(reference), true, rtol=1e-11, atol=1e-12)
+
+
+def impacts() -> list[tuple[tuple[int, int], tuple[int, int], System]]:
+    """Every kind of impact: the old state, the old poles of what closes, states that close so."""
+    cases = []
+    for old in STATES:
+        for which in ((1, 0), (0, 1), (1, 1)):
+            if any(w and not c for w, c in zip(which, old, strict=True)):
+                continue
+            s = S
+            if old[0] == 0:
+                s = s.standing()
+            if which[0]:
+                s = s.with_(th1=0.0, w1=-old[0] * np.abs(s.w1))
+            if old[1] == 0:
+                s = s.glued()
+            elif which[1]:
+                s = s.with_(th2=s.th1, w2=s.w1 - old[1] * np.abs(s.w2))
+            cases.append((old, (old[0] * which[0], old[1] * which[1]), s))
+    return cases
+
+
+IMPACTS = pytest.mark.parametrize(
+    ("old", "closing", "s"),
+    impacts(),
+    ids=lambda v: "" if isinstance(v, System) else f"{v[0]:+d}{v[1]:+d}",
+)
+
+
+@IMPACTS
+def test_an_impact_has_one_outcome_and_takes_energy(
+    old: tuple[int, int], closing: tuple[int, int], s: System
+) -> None:
+    without = 0
+    for k in range(N):
+        model = Model(STACKS[k], S.g[k])
+        theta, omega = state(s, k)
+        outcomes = list(model.admissible_impacts(old, closing, theta, omega))
+        assert len(outcomes) <= 1
+        without += not outcomes
+        new, after = model.impact(old, closing, theta, omega)
+        before = model.kinetic_energy(old, theta, omega)
+        assert model.kinetic_energy(new, theta, after) <= before * (1 + 1e-12)
+    # only where both contacts of pattern 2 close at the same instant may none be left; then what met
+    # stays together
+    both_of_pattern_2 = closing[0] * closing[1] == -1
+    assert without == 0 or both_of_pattern_2
+
+
+@IMPACTS
+def test_the_fast_kernel_finds_the_same_outcome(
+    old: tuple[int, int], closing: tuple[int, int], s: System
+) -> None:
+    for k in range(N):
+        theta, omega = state(s, k)
+        new, after = Model(STACKS[k], S.g[k]).impact(old, closing, theta, omega)
+        p = body_parameters(STACKS[k], g=S.g[k])
+        n1, n2, w1, w2 = fast.impact(
+            p, *old, closing[0] != 0, closing[1] != 0, theta[0], omega[0], theta[1], omega[1]
+        )
+        assert (n1, n2) == new
+        assert (w1, w2) == pytest.approx(after, rel=1e-10, abs=1e-12)
+
+
+@pytest.mark.parametrize("measured", [(0.2, 0.3), (0.6, 0.9), (1.0, 1.0)])
+@IMPACTS
+def test_energy_never_grows_whatever_restitution_is_asked_for(
+    old: tuple[int, int], closing: tuple[int, int], s: System, measured: tuple[float, float]
+) -> None:
+    for k in range(0, N, 5):
+        model = Model(STACKS[k], S.g[k], measured)
+        theta, omega = state(s, k)
+        new, after = model.impact(old, closing, theta, omega)
+        before = model.kinetic_energy(old, theta, omega)
+        assert model.kinetic_energy(new, theta, after) <= before * (1 + 1e-8)

@@ -1,0 +1,138 @@
+"""Thesis eq. 2.66 to 2.75: when full contact opens.
+
+A criterion "left > right" is given as right - left, in the units of a moment: it must equal the contact
+moment s τ(s) about the pole s it opens on, which vanishes there.
+"""
+
+import numpy as np
+from numpy import cos, sin
+
+from .equation import Equation
+from .systems import System
+
+Array = np.ndarray
+
+
+def upper(s1: int, s2: int):
+    """s2 τ2(s2) of block 2 stuck to a pedestal that rocks on s1 (pattern 3)."""
+    return lambda s: s2 * s.glued().moments(s1, s2)[1]
+
+
+def ground(s1: int, s2: int):
+    """s1 τ1(s1) of a pedestal at rest under block 2 that rocks on s2 (pattern 4)."""
+    return lambda s: s1 * s.standing().moments(s1, s2)[0]
+
+
+def from_3(s: System, side: int, gravity: Array, swirl: Array, inertia: Array) -> Array:
+    """m2 R2 × (right - left) of 2.66 to 2.71; ``side`` is the pole block 2 opens on."""
+    left = -side * cos(s.tc2 - side * s.th1) * s.a
+    return s.m2 * s.r2 * (s.g * gravity + swirl + inertia * s.q1 - left)
+
+
+def own(s: System) -> Array:
+    return s.ic2 / (s.m2 * s.r2)
+
+
+def case_266(s: System, printed: bool) -> Array:
+    swirl = s.rr * cos(s.tc2 - s.th1 * s.w1**2) if printed else s.rr * cos(s.tc2 + s.big) * s.w1**2
+    return from_3(s, 1, sin(s.tc2 - s.th1), swirl, s.rr * sin(s.tc2 + s.big) + own(s))
+
+
+def case_269(s: System, printed: bool) -> Array:
+    if printed:
+        angle = 2 * s.th1 + s.tc2 + s.big
+        swirl, inertia = s.rr * cos(angle) * s.w1**2, s.rr * sin(angle) + own(s)
+    else:
+        swirl = -s.rr * cos(s.big - s.tc2) * s.w1**2
+        inertia = -(s.rr * sin(s.big - s.tc2) + own(s))
+    return from_3(s, -1, sin(s.tc2 + s.th1), swirl, inertia)
+
+
+def case_270(s: System, printed: bool) -> Array:
+    if printed:
+        swirl = -s.rr * sin(s.tc2 - s.big) * s.w1**2
+        inertia = -(s.rr * cos(s.tc2 - s.big) - own(s))
+    else:
+        swirl = s.rr * cos(s.tc2 + s.big) * s.w1**2
+        inertia = -(s.rr * sin(s.tc2 + s.big) + own(s))
+    return from_3(s, -1, sin(s.tc2 + s.th1), swirl, inertia)
+
+
+def case_271(s: System, printed: bool) -> Array:
+    if printed:
+        swirl = -s.rr * sin(s.tc2 + s.big) * s.w1**2
+        inertia = s.rr * cos(s.tc2 + s.big) - own(s)
+    else:
+        swirl = -s.rr * cos(s.big - s.tc2) * s.w1**2
+        inertia = s.rr * sin(s.big - s.tc2) + own(s)
+    return from_3(s, 1, sin(s.tc2 - s.th1), swirl, inertia)
+
+
+def from_4(s: System, s1: int, s2: int, weight: Array, turn: float) -> Array:
+    """Right - left of 2.72 to 2.75; ``turn`` is the sign before 2 h1 cos in the bracket of θ2''."""
+    angle = s.tc2 - s2 * s.th2
+    arm, sense = (s.xi, 1) if s1 == s2 else (s.xi_, -1)
+    swirl = sense * 2 * s.h1 * sin(angle) - arm * cos(angle)
+    inertia = s2 * (arm * sin(angle) + turn * 2 * s.h1 * cos(angle))
+    left = -s1 * (s.m1 + 2 * s.m2) * s.h1 * s.a
+    return weight + s.m2 * s.r2 * (swirl * s.w2**2 + inertia * s.q2) - left
+
+
+def light(s: System) -> Array:
+    return s.m1 * s.g * s.b1
+
+
+def near(s: System) -> Array:
+    return s.m1 * s.g * s.b1 + s.m2 * s.g * s.xi
+
+
+def far(s: System) -> Array:
+    return s.m1 * s.g * s.b1 + s.m2 * s.g * s.xi_
+
+
+EQUATIONS = [
+    Equation("2.66", lambda s: case_266(s, True), upper(1, 1), lambda s: case_266(s, False)),
+    Equation(
+        "2.67",
+        lambda s: np.sqrt((2 * s.h1 + s.h2) ** 2 + s.b1**2),
+        lambda s: np.hypot(*_to_centre_2(s)),
+    ),
+    Equation(
+        "2.68",
+        lambda s: np.arctan((2 * s.h1 + s.h2) / s.b1),
+        lambda s: np.arctan2(_to_centre_2(s)[1], -_to_centre_2(s)[0]),
+    ),
+    Equation("2.69", lambda s: case_269(s, True), upper(1, -1), lambda s: case_269(s, False)),
+    Equation("2.70", lambda s: case_270(s, True), upper(-1, -1), lambda s: case_270(s, False)),
+    Equation("2.71", lambda s: case_271(s, True), upper(-1, 1), lambda s: case_271(s, False)),
+    Equation(
+        "2.72",
+        lambda s: from_4(s, 1, 1, light(s), 1),
+        ground(1, 1),
+        lambda s: from_4(s, 1, 1, near(s), 1),
+    ),
+    Equation(
+        "2.73",
+        lambda s: from_4(s, -1, 1, light(s), 1),
+        ground(-1, 1),
+        lambda s: from_4(s, -1, 1, far(s), -1),
+    ),
+    Equation(
+        "2.74",
+        lambda s: from_4(s, -1, -1, light(s), 1),
+        ground(-1, -1),
+        lambda s: from_4(s, -1, -1, near(s), 1),
+    ),
+    Equation(
+        "2.75",
+        lambda s: from_4(s, 1, -1, light(s), -1),
+        ground(1, -1),
+        lambda s: from_4(s, 1, -1, far(s), -1),
+    ),
+]
+
+
+def _to_centre_2(s: System) -> Array:
+    """Vector from block 1's right pole to the centre of block 2 on it, as they stand."""
+    still = s.with_(th1=0.0, th2=0.0)
+    return still.get("centre2", 1, 1) - still.get("pole1", 1, 1)
