@@ -73,10 +73,11 @@ def glide(p, c2, theta, omega, k, last, substeps, dt, acceleration, scale, extre
                 right = (pr * c + qr * s) * w1 + (qr * c - pr * s) * square + yr * push + xr
                 other = (pl * c + ql * s) * w1 + (ql * c - pl * s) * square + yl * push + xl
                 if right < 0.0 or other < 0.0:
-                    # the pedestal let go in the interval before
-                    if k > start and sub == 0:
-                        return k - 1, c2 * (angle - before_psi), -c2 * before_w / h
                     stop = True
+                    if k > start and sub == 0:
+                        # the pedestal let go in the interval before
+                        k -= 1
+                        p_sample, w_sample = before_psi, before_w
                     break
             end = psi + travel(w, w1, w2, w3, w4, w5, 1.0)
             v = rate(w, w1, w2, w3, w4, w5, 1.0)

@@ -1,0 +1,96 @@
+"""The kernels agree with the plain integrator, which shares nothing with them but the bodies."""
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.rocking.reference import simulate_reference
+
+DT = 0.01
+MARGIN = 0.02
+"""Closest approach to balance, in critical angles, below which a verdict may hang on rounding."""
+
+
+def random_motion(rng, peak):
+    """Six sines under an envelope, 5 s, peak [m/s²]."""
+    time = np.arange(500) * DT
+    motion = sum(
+        rng.normal() * np.sin(2 * np.pi * f * time + rng.uniform(0, 6))
+        for f in rng.uniform(0.4, 4, 6)
+    )
+    motion = motion * np.minimum(1, time) * np.exp(-0.8 * np.maximum(0, time - 3))
+    motion[-1] = 0.0
+    return motion * peak / np.abs(motion).max()
+
+
+def random_case(seed, lone):
+    """A body (every third off-centre and leaning), a motion and a restitution (every fifth measured)."""
+    rng = np.random.default_rng([20, seed])
+    base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(2, 6)
+    below, squatness = base * rng.uniform(1, 1.6), rng.uniform(0.5, 2.5)
+    odd = seed % 3 == 2
+    statue = Block(
+        base,
+        base * slenderness,
+        1000 * base**2 * slenderness,
+        cg_offset=0.05 * base * rng.normal() * odd,
+        cg_height=base * slenderness * (0.45 if odd else 0.5),
+    )
+    pedestal = Block(
+        below,
+        below * squatness,
+        1000 * below**2 * squatness * rng.uniform(0.3, 3),
+        cg_offset=0.03 * below * rng.normal() * odd,
+        lean=0.005 * rng.normal() * odd,
+    )
+    body = statue if lone else Stack(pedestal, statue)
+    weakest = statue.alpha if lone else min(statue.alpha, body.glued().alpha)
+    motion = random_motion(rng, 9.81 * weakest * rng.uniform(1.1, 4))
+    restitution = None if seed % 5 else (0.85 if lone else (0.6, 0.85))
+    return body, motion, restitution
+
+
+def agree(seed, lone):
+    body, motion, restitution = random_case(seed, lone)
+    fast = simulate(body, motion, DT, restitution=restitution)
+    plain = simulate_reference(body, motion, DT, restitution=restitution)
+    verdict = overturns(body, motion, DT, [1.0], restitution=[restitution])
+    if fast.closest_approach > MARGIN:
+        assert fast.overturned == plain.overturned == bool(verdict.overturned[0, 0, 0])
+    grazing = first_grazing(fast)
+    n = min(len(fast.time), len(plain.time), int(np.searchsorted(fast.time, grazing)))
+    # a block that is falling leaves its unstable balance exponentially: compare while it can return
+    upright = np.abs(fast.theta[:n]).max(axis=1) < 0.5
+    difference = np.abs(fast.theta[:n] - plain.theta[:n]).max(axis=1)
+    assert difference[upright].max(initial=0.0) < 1e-6
+
+
+def first_grazing(response):
+    """Time of the first impact with less than 1e-3 rad/s; infinite if there is none."""
+    for _, event in response.events.iterrows():
+        change = np.diff(event["omega_before"], prepend=0.0)
+        if event["kind"] != "opening" and np.abs(change[change != 0]).min(initial=1.0) < 1e-3:
+            return event["time"]
+    return np.inf
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_a_lone_block_rocks_as_the_plain_integrator_says(seed):
+    agree(seed, lone=True)
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_a_stack_rocks_as_the_plain_integrator_says(seed):
+    agree(seed, lone=False)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(25, 225))
+def test_two_hundred_more_stacks(seed):
+    agree(seed, lone=False)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(15, 75))
+def test_sixty_more_lone_blocks(seed):
+    agree(seed, lone=True)
