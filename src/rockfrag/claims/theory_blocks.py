@@ -202,12 +202,13 @@ def c6(setting: Setting) -> ClaimResult:
 def _least_half_sine(block: Block, linear: bool) -> float:
     """Least overturning peak of a half-sine pulse of ωp = 3 p [m/s²]."""
     duration = math.pi / (3 * block.frequency())
-    shape = np.sin(np.linspace(0, math.pi, 201))
+    shape = np.sin(np.linspace(0, math.pi, 101))
     unit = block.alpha * STANDARD_GRAVITY
     return bisect(
-        lambda x: simulate(block, x * unit * shape, duration / 200, linear=linear).overturned,
+        lambda x: simulate(block, x * unit * shape, duration / 100, linear=linear).overturned,
         1.0,
         8.0,
+        1e-4,
     )
 
 

@@ -111,8 +111,15 @@ def make_setting(
     return Setting(blocks, pedestal, stacks, list(motions), seed, free_rocking, threads)
 
 
-def bisect(happens: Callable[[float], bool], low: float, high: float) -> float:
+def bisect(
+    happens: Callable[[float], bool], low: float, high: float, tolerance: float = 1e-12
+) -> float:
     """Least argument at which something happens that does not at ``low`` and does at ``high``.
+
+    Parameters
+    ----------
+    tolerance
+        Relative width of the bracket at which the search ends [-].
 
     Raises
     ------
@@ -121,7 +128,7 @@ def bisect(happens: Callable[[float], bool], low: float, high: float) -> float:
     """
     if happens(low) or not happens(high):
         raise Undecidable(f"no threshold lies between {low:.3g} and {high:.3g}")
-    while high - low > 1e-12 * high:
+    while high - low > tolerance * high:
         middle = math.sqrt(low * high)
         if not low < middle < high:
             break

@@ -1,0 +1,134 @@
+"""Blocks and stacks of any shape: arms, critical angles, thresholds."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import Block, Stack, simulate
+
+G = 9.81
+T2 = Block(0.124, 0.496, 2.790)
+P = Block(0.184, 0.208, 2.300)
+STATUE = Block(0.50, 1.60, 400.0, inertia=70.0, cg_height=0.62, cg_offset=0.06, lean=0.01)
+
+lengths = st.floats(0.05, 3.0)
+
+
+@given(lengths, lengths)
+def test_uniform_block_has_the_textbook_properties(width: float, height: float) -> None:
+    block = Block(width, height, 10.0)
+    radius = math.hypot(width, height) / 2
+    assert block.alpha == pytest.approx(math.atan(width / height), rel=1e-12)
+    assert block.radius() == pytest.approx(radius, rel=1e-12)
+    assert block.pole_inertia() == pytest.approx(4 / 3 * 10.0 * radius**2, rel=1e-12)
+    assert block.frequency() == pytest.approx(math.sqrt(3 * G / (4 * radius)), rel=1e-12)
+    # 1 - 1.5 sin²α (thesis eq. 2.14)
+    expected = 1 - 1.5 * math.sin(block.alpha) ** 2
+    assert block.momentum_restitution() == pytest.approx(expected, abs=1e-12)
+
+
+def test_an_off_centre_statue_has_two_critical_angles() -> None:
+    # the centre of gravity lies to the right, and the lean brings it further: it falls right first
+    assert STATUE.critical_angle(+1) < STATUE.critical_angle(-1)
+    assert STATUE.alpha == STATUE.critical_angle(+1)
+    upright = math.atan2(STATUE.b - 0.06, 0.62)
+    centre = STATUE.centre
+    assert math.atan2(STATUE.b - centre.x, centre.y) == pytest.approx(STATUE.critical_angle(+1))
+    assert STATUE.critical_angle(+1) < upright
+
+
+@pytest.mark.parametrize("pole", [+1, -1])
+def test_it_balances_at_its_critical_angle_and_tips_beyond(pole: int) -> None:
+    critical = pole * STATUE.critical_angle(pole)
+    quiet = np.zeros(3)
+    inside = simulate(STATUE, quiet, 0.01, theta0=0.999 * critical)
+    beyond = simulate(STATUE, quiet, 0.01, theta0=1.001 * critical)
+    assert inside.alpha[0, 0] * pole < 0 < beyond.alpha[0, 0] * pole
+    assert beyond.overturned and beyond.impacts == 0
+    # released on its strong side it may still fall over the weak one, after an impact
+    assert not inside.overturned or inside.impacts == 1
+    balanced = simulate(STATUE, quiet, 0.01, theta0=critical)
+    assert abs(balanced.alpha[0, 0]) < 1e-12 * STATUE.frequency(pole) ** 2 * 1e3
+
+
+@pytest.mark.parametrize("body", [STATUE, T2, Stack(P, T2), Stack(P, T2, offset=0.02)])
+def test_what_stands_stays_at_rest_under_gravity(body: Block | Stack) -> None:
+    response = simulate(body, np.zeros(20), 0.01)
+    assert not response.theta.any() and not response.omega.any()
+    assert (response.pattern == "rest").all()
+    assert response.events.empty and not response.overturned
+
+
+@pytest.mark.parametrize("pole", [+1, -1])
+def test_each_side_starts_to_rock_at_its_own_acceleration(pole: int) -> None:
+    arm = STATUE.arm(pole)
+    threshold = abs(arm.x) / arm.y * G
+    # an acceleration to the left turns the block clockwise, about the right corner
+    below = simulate(STATUE, np.full(4, -pole * 0.9999 * threshold), 0.01)
+    above = simulate(STATUE, np.full(4, -pole * 1.0001 * threshold), 0.01)
+    assert not below.theta.any()
+    assert np.sign(above.theta[3, 0]) == pole
+
+
+def test_a_lower_centre_of_gravity_makes_it_harder_to_topple() -> None:
+    heavy_foot = Block(0.5, 1.6, 400.0, cg_height=0.5)
+    uniform = Block(0.5, 1.6, 400.0)
+    assert heavy_foot.alpha > uniform.alpha
+    assert heavy_foot.slenderness == uniform.slenderness
+
+
+def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
+    # I_o = I_O1 + I_C2 + m2 r², r² = (2h1 + h2)² + b1² (thesis eq. 2.67, 2.84)
+    stack = Stack(P, T2)
+    r2 = (2 * P.h + T2.h) ** 2 + P.b**2
+    inertia = P.pole_inertia() + T2.centroidal_inertia + T2.mass * r2
+    one = stack.glued()
+    assert one.pole_inertia() == pytest.approx(inertia, rel=1e-12)
+    total = P.mass + T2.mass
+    assert one.momentum_restitution() == pytest.approx(
+        (inertia - 2 * total * P.b**2) / inertia, rel=1e-12
+    )
+    # thesis eq. 2.22
+    height = (P.mass * P.h + T2.mass * (2 * P.h + T2.h)) / total
+    assert stack.common_arm(1).y == pytest.approx(height, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("tower", "restitution", "p"),
+    [
+        (Block(0.124, 0.372, 2.172), 0.8289, 5.092),
+        (T2, 0.8809, 4.631),
+        (Block(0.124, 0.620, 3.456), 0.9138, 4.2655),
+    ],
+    ids=["T1", "T2", "T3"],
+)
+def test_stack_as_one_body(tower: Block, restitution: float, p: float) -> None:
+    one = Stack(P, tower).glued()
+    assert one.momentum_restitution() == pytest.approx(restitution, abs=5e-4)
+    assert one.frequency() == pytest.approx(p, abs=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Block(0.0, 1.0, 1.0), "width must be a positive"),
+        (lambda: Block(1.0, -1.0, 1.0), "height must be a positive"),
+        (lambda: Block(1.0, 1.0, 0.0), "mass must be a positive"),
+        (lambda: Block(1.0, 1.0, math.nan), "mass must be a positive"),
+        (lambda: Block(math.inf, 1.0, 1.0), "width must be a positive"),
+        (lambda: Block(1.0, 1.0, 1.0, inertia=0.0), "inertia must be a positive"),
+        (lambda: Block(1.0, 1.0, 1.0, cg_offset=0.6), "cannot stand"),
+        (lambda: Block(1.0, 4.0, 1.0, lean=0.3), "cannot stand"),
+        (lambda: Block(1.0, 4.0, 1.0, lean=math.nan), "finite number of radians"),
+        (lambda: Stack(T2, P), "reaches beyond"),
+        (lambda: Stack(P, T2, offset=0.05), "reaches beyond"),
+        (lambda: Stack(P, T2, offset=math.nan), "finite number"),
+    ],
+)
+def test_bodies_that_cannot_be_are_refused(make, message: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError, match=message):
+        make()
