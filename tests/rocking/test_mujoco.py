@@ -1,0 +1,123 @@
+"""Another program's verdict: MuJoCo with stiff contacts, high friction and no bounce.
+
+Its contacts are springs and dampers solved for at each small step, so it knows nothing of poles, contact
+states or impact maps.  Two boxes that move in the plane stand on the ground; the ground's acceleration
+acts as a horizontal gravity.
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag.rocking import Block, Stack, simulate
+
+mujoco = pytest.importorskip("mujoco")
+
+pytestmark = pytest.mark.peers
+
+STEP = 2e-4  # [s]
+DT = 0.01  # sampling interval of the motions [s]
+QUIET = 3.0  # time after the motion for what is falling to fall [s]
+FALLEN = 1.0  # rotation beyond which no block here comes back [rad]
+
+WORLD = """
+<mujoco>
+  <option timestep="{step}" integrator="implicitfast" cone="elliptic" impratio="100"
+          solver="Newton" iterations="50" tolerance="1e-12" noslip_iterations="3"/>
+  <default>
+    <geom type="box" condim="3" friction="5 0 0" solref="{solref} 1" solimp="0.99 0.999 0.0001"/>
+  </default>
+  <worldbody>
+    <geom type="plane" size="50 50 1"/>
+    {bodies}
+  </worldbody>
+</mujoco>
+"""
+
+BODY = """
+<body pos="0 0 {z}">
+  <joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>
+  <joint type="hinge" axis="0 1 0"/>
+  <inertial pos="0 0 0" mass="{mass}" diaginertia="{inertia} {inertia} {inertia}"/>
+  <geom size="{b} {depth} {h}"/>
+</body>
+"""
+
+
+def mujoco_overturns(stack: Stack, motion: np.ndarray) -> bool:
+    """Whether a block falls in MuJoCo."""
+    base, bodies = 0.0, []
+    for block in (stack.pedestal, stack.statue):
+        bodies.append(
+            BODY.format(
+                z=base + block.h,
+                mass=block.mass,
+                inertia=block.centroidal_inertia,
+                b=block.b,
+                h=block.h,
+                depth=block.b,
+            )
+        )
+        base += block.height
+    model = mujoco.MjModel.from_xml_string(
+        WORLD.format(step=STEP, solref=2 * STEP, bodies="".join(bodies))
+    )
+    data = mujoco.MjData(model)
+    end = (len(motion) - 1) * DT
+    times = np.arange(round((end + QUIET) / STEP)) * STEP
+    ground = np.interp(times, np.arange(len(motion)) * DT, motion, right=0.0)
+    for acceleration in ground:
+        model.opt.gravity[:] = (-acceleration, 0.0, -9.81)
+        mujoco.mj_step(model, data)
+        if abs(data.qpos[2]) > FALLEN or abs(data.qpos[5]) > FALLEN:
+            return True
+    return False
+
+
+def random_case(rng: np.random.Generator) -> tuple[Stack, np.ndarray]:
+    """Draw a statue on a squat pedestal, and a burst of three sines that may overturn it."""
+    pedestal = Block(rng.uniform(0.5, 0.8), rng.uniform(0.5, 1.0), rng.uniform(100, 400))
+    width = rng.uniform(0.4, 0.9) * pedestal.width
+    statue = Block(width, width * rng.uniform(2.5, 4.5), rng.uniform(30, 150))
+    t = np.arange(301) * DT
+    waves = sum(
+        np.sin(2 * math.pi * f * t + phase)
+        for f, phase in zip(rng.uniform(0.5, 2.5, 3), rng.uniform(0, 2 * math.pi, 3), strict=True)
+    )
+    motion = waves * np.sin(math.pi * t / t[-1])
+    peak = rng.uniform(1.0, 3.0) * 9.81 * statue.b / statue.h
+    return Stack(pedestal, statue), peak * motion / np.abs(motion).max()
+
+
+def near_critical(stack: Stack, motion: np.ndarray) -> bool:
+    """Whether two per cent more or less of the motion changes the verdict."""
+    factors = 1 + np.array([-0.02, -0.015, -0.01, -0.005, 0.0, 0.005, 0.01, 0.015, 0.02])
+    return len({simulate(stack, f * motion, DT).overturned for f in factors}) == 2
+
+
+def disagreements(cases: int, seed: int) -> tuple[int, int]:
+    """Number of cases judged differently, and of cases that fell."""
+    rng = np.random.default_rng(seed)
+    differing = fallen = 0
+    for _ in range(cases):
+        stack, motion = random_case(rng)
+        ours = simulate(stack, motion, DT).overturned
+        fallen += ours
+        if mujoco_overturns(stack, motion) != ours:
+            differing += 1
+            assert near_critical(stack, motion)
+    return differing, fallen
+
+
+def test_mujoco_gives_the_same_verdict() -> None:
+    differing, fallen = disagreements(12, seed=100)
+    assert differing <= 1
+    assert 2 <= fallen <= 10
+
+
+@pytest.mark.slow
+def test_mujoco_gives_the_same_verdict_in_95_of_100_cases() -> None:
+    differing, fallen = disagreements(100, seed=101)
+    assert differing <= 5
+    assert 20 <= fallen <= 80
