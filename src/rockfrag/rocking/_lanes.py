@@ -164,7 +164,7 @@ def _graze(gap, w, w1, w2, w3, w4, w5):
 
 
 @kernel
-def _dies_out(w, side, k, tau, end, factor, samples, b):
+def _dies_out(w, side, k, tau, end, factor, samples, b, o):
     """Whether the impacts after a launch at speed ``w`` end before anything else can happen.
 
     With restoring accelerations of at least κ D and κ' D' on the two poles a flight lasts 2 w / (κ D) at
@@ -174,18 +174,18 @@ def _dies_out(w, side, k, tau, end, factor, samples, b):
     """
     here = _at(side)
     there = POLE - here
-    kappa = b[here + SWING]
+    kappa = b[o + here + SWING]
     a = factor * samples[k]
     a += tau * (factor * samples[k + 1] - a)
-    s, c = b[here + SIN], side * b[here + COS]
-    s_there, c_there = b[there + SIN], side * b[there + COS]
+    s, c = b[o + here + SIN], side * b[o + here + COS]
+    s_there, c_there = b[o + there + SIN], side * b[o + there + COS]
     d = s + a * c
     d_there = s_there - a * c_there
-    loss = 1.0 - b[here + E_FROM] * b[there + E_FROM]
+    loss = 1.0 - b[o + here + E_FROM] * b[o + there + E_FROM]
     if loss <= 0.0:
         return False
     flight = 2.06 * w / (kappa * loss)
-    back = b[here + E_FROM] * kappa / b[there + SWING]
+    back = b[o + here + E_FROM] * kappa / b[o + there + SWING]
     most = a
     least = a
     for ahead in range(1, 33):
@@ -206,7 +206,7 @@ def _dies_out(w, side, k, tau, end, factor, samples, b):
 
 
 @kernel
-def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
+def _sample(psi, w, side, tau, k, end, factor, samples, b, o, tally, r):
     """Take one block from τ within sample interval k to its end, through whatever happens.
 
     ``side`` is the pole, 0 at rest.  Returns ψ, ψ' and the side at the end.
@@ -218,31 +218,31 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
         now = first + ramp_all * tau
         if side == 0:
             # thesis eq. 2.1: the ground pushes the block over the other way
-            if now > b[POLE + TAN]:
+            if now > b[o + POLE + TAN]:
                 side = -1
-            elif now < -b[TAN]:
+            elif now < -b[o + TAN]:
                 side = 1
-            elif now + ramp_all * (1.0 - tau) > b[POLE + TAN]:
+            elif now + ramp_all * (1.0 - tau) > b[o + POLE + TAN]:
                 side = -1
-                tau = max(tau, (b[POLE + TAN] - first) / ramp_all)
-            elif now + ramp_all * (1.0 - tau) < -b[TAN]:
+                tau = max(tau, (b[o + POLE + TAN] - first) / ramp_all)
+            elif now + ramp_all * (1.0 - tau) < -b[o + TAN]:
                 side = 1
-                tau = max(tau, (-b[TAN] - first) / ramp_all)
+                tau = max(tau, (-b[o + TAN] - first) / ramp_all)
             else:
                 return 0.0, 0.0, 0
-            psi = b[_at(side) + ALPHA]
+            psi = b[o + _at(side) + ALPHA]
             w = 0.0
             now = first + ramp_all * tau
             if tau >= 1.0:
                 return psi, w, side
         j = _at(side)
-        angle = b[j + ALPHA]
-        full = b[j + SWING]
+        angle = b[o + j + ALPHA]
+        full = b[o + j + SWING]
         left = 1.0 - tau
         speed = w * left
         gap = psi - angle
         if gap >= 0.0:
-            s, c = b[j + SIN], b[j + COS]
+            s, c = b[o + j + SIN], b[o + j + COS]
         else:
             s, c = sine_cosine(psi)
         w1, w2, w3, w4, w5 = rates(
@@ -259,67 +259,67 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, tally):
         elif speed > 0.0 and v < 0.0:
             t = _graze(gap, speed, w1, w2, w3, w4, w5)
         if t > 1.0:
-            _note(tally, p, v / left, angle, full)
+            _note(tally, r, p, v / left, angle, full)
             if speed < 0.0 and v > 0.0:
                 turn = speed / (speed - v)
                 low = psi + travel(speed, w1, w2, w3, w4, w5, turn)
-                _note(tally, low, 0.0, angle, full)
+                _note(tally, r, low, 0.0, angle, full)
             return p, v / left, side
         v = max(0.0, rate(speed, w1, w2, w3, w4, w5, t)) / left
         if gap >= 0.0:
             # the highest point of a flight that begins and ends in this step
             low = psi + travel(speed, w1, w2, w3, w4, w5, 0.5 * t)
-            _note(tally, low, v, angle, full)
-        tally[SPEED] = max(tally[SPEED], v)
-        tally[IMPACTS] += 1.0
+            _note(tally, r, low, v, angle, full)
+        tally[r + SPEED] = max(tally[r + SPEED], v)
+        tally[r + IMPACTS] += 1.0
         events += 1
         tau += t * left
-        w = -v * b[j + E_FROM]
+        w = -v * b[o + j + E_FROM]
         side = -side
-        psi = b[_at(side) + ALPHA]
+        psi = b[o + _at(side) + ALPHA]
         still = w > -1e-12 or events > MAX_IMPACTS_PER_SAMPLE
-        if still or _dies_out(-w, side, k, min(tau, 1.0), end, factor, samples, b):
+        if still or _dies_out(-w, side, k, min(tau, 1.0), end, factor, samples, b, o):
             side = 0
         if tau >= 1.0:
             return psi, w, side
 
 
 @kernel
-def _note(tally, psi, w, angle, kappa):
+def _note(tally, r, psi, w, angle, kappa):
     """Keep the largest rotation and speed and the closest approach to balance."""
-    tally[RATIO] = max(tally[RATIO], 1.0 - psi / angle)
-    tally[SPEED] = max(tally[SPEED], abs(w))
-    if abs(psi) < tally[CLOSEST] * angle:
-        tally[CLOSEST] = min(tally[CLOSEST], math.sqrt(psi * psi + w * w / kappa) / angle)
+    tally[r + RATIO] = max(tally[r + RATIO], 1.0 - psi / angle)
+    tally[r + SPEED] = max(tally[r + SPEED], abs(w))
+    if abs(psi) < tally[r + CLOSEST] * angle:
+        tally[r + CLOSEST] = min(tally[r + CLOSEST], math.sqrt(psi * psi + w * w / kappa) / angle)
 
 
 @kernel
-def _left_alone(psi, w, side, b, tally):
+def _left_alone(psi, w, side, b, o, tally, r):
     """Whether the block falls once the ground is still; every speed follows from energy."""
     for _ in range(64):
         if side == 0:
             return False
-        angle = b[_at(side) + ALPHA]
-        kappa = b[_at(side) + SWING]
+        angle = b[o + _at(side) + ALPHA]
+        kappa = b[o + _at(side) + SWING]
         energy = 0.5 * w * w + kappa * math.cos(psi)
         if (psi > 0.0 and w <= 0.0) or psi <= 0.0:
             if psi > 0.0 and energy < kappa:
-                _note(tally, math.acos(energy / kappa), 0.0, angle, kappa)
+                _note(tally, r, math.acos(energy / kappa), 0.0, angle, kappa)
             elif psi > 0.0 or w <= 0.0 or energy < kappa:
-                _note(tally, 0.0, math.sqrt(2.0 * abs(energy - kappa)), angle, kappa)
+                _note(tally, r, 0.0, math.sqrt(2.0 * abs(energy - kappa)), angle, kappa)
                 return True
         v = math.sqrt(max(0.0, 2.0 * (energy - kappa * math.cos(angle))))
-        tally[SPEED] = max(tally[SPEED], v)
-        w = -v * (b[_at(side) + E_FROM])
+        tally[r + SPEED] = max(tally[r + SPEED], v)
+        w = -v * (b[o + _at(side) + E_FROM])
         side = -side
-        psi = b[_at(side) + ALPHA]
-        kappa = b[_at(side) + SWING]
-        other = b[POLE - _at(side) + SWING]
-        other_angle = b[POLE - _at(side) + ALPHA]
+        psi = b[o + _at(side) + ALPHA]
+        kappa = b[o + _at(side) + SWING]
+        other = b[o + POLE - _at(side) + SWING]
+        other_angle = b[o + POLE - _at(side) + ALPHA]
         if 0.5 * w * w < kappa * (1.0 - math.cos(psi)) and 0.5 * w * w < other * (
             1.0 - math.cos(other_angle)
         ):
-            _note(tally, math.acos(0.5 * w * w / kappa + math.cos(psi)), 0.0, psi, kappa)
+            _note(tally, r, math.acos(0.5 * w * w / kappa + math.cos(psi)), 0.0, psi, kappa)
             return False
     return False
 
@@ -344,7 +344,7 @@ def _next_uplift(samples, highest, lowest, k, end, low, high):
 
 @kernel
 def lone_blocks(
-    first, last, table, factors, rows, offsets, samples, highest, lowest, ahead_high, ahead_low, results
+    first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low, results
 ):  # fmt: skip
     """March cases ``first`` ≤ n < ``last`` of bodies × motions × scales, the scale running fastest.
 
@@ -373,6 +373,11 @@ def lone_blocks(
     moves = np.zeros(LANES, dtype=np.int64)
     factor = np.zeros(LANES)
     signed = np.zeros(LANES)
+    bases = np.zeros(LANES, dtype=np.int64)
+    b = table
+    tally = results
+    o = 0
+    r = 0
     upcoming = first
     busy = 0
     passes = 0
@@ -399,8 +404,8 @@ def lone_blocks(
             end = ends[i]
             done = False
             if case >= 0:
-                tally = results[case - first]
-                b = table[case // (n_scales * n_motions), (case // n_scales) % n_motions]
+                r = RESULTS * (case - first)
+                o = bases[i]
                 psi = x[PSI + i]
                 w = x[RATE + i]
                 kappa = x[KAPPA + i]
@@ -410,16 +415,18 @@ def lone_blocks(
                     if psi > 0.0:
                         near -= 2.0 * (1.0 - math.cos(psi))
                     near = math.sqrt(max(0.0, near)) / x[ANGLE + i]
-                    tally[CLOSEST] = min(tally[CLOSEST], near)
+                    tally[r + CLOSEST] = min(tally[r + CLOSEST], near)
                     done = True
                 else:
-                    psi, w, side = _sample(psi, w, side, 0.0, k, end, factor[i], samples, b, tally)
+                    psi, w, side = _sample(
+                        psi, w, side, 0.0, k, end, factor[i], samples, b, o, tally, r
+                    )
                     k += 1
                     if side != 0:
-                        done = psi <= b[_at(side) + ALPHA] - HALF_TURN
+                        done = psi <= b[o + _at(side) + ALPHA] - HALF_TURN
                 if done:
-                    tally[OVERTURNED] = 1.0
-                    tally[CERTAIN] = k - starts[i]
+                    tally[r + OVERTURNED] = 1.0
+                    tally[r + CERTAIN] = k - starts[i]
             else:
                 psi = 0.0
                 w = 0.0
@@ -427,8 +434,8 @@ def lone_blocks(
             while True:
                 if case >= 0 and not done:
                     if side == 0 and k < end:
-                        low = -b[TAN] / factor[i]
-                        high = b[POLE + TAN] / factor[i]
+                        low = -b[o + TAN] / factor[i]
+                        high = b[o + POLE + TAN] / factor[i]
                         if factor[i] < 0.0:
                             low, high = high, low
                         if samples[k] > high or samples[k] < low:
@@ -440,21 +447,21 @@ def lone_blocks(
                         else:
                             k = m - 1
                             psi, w, side = _sample(
-                                0.0, 0.0, 0, 0.0, k, end, factor[i], samples, b, tally
+                                0.0, 0.0, 0, 0.0, k, end, factor[i], samples, b, o, tally, r
                             )
                             k += 1
                             continue
                     elif k >= end:
                         done = True
-                        if side != 0 and _left_alone(psi, w, side, b, tally):
-                            tally[OVERTURNED] = 1.0
-                            tally[CERTAIN] = k - starts[i]
+                        if side != 0 and _left_alone(psi, w, side, b, o, tally, r):
+                            tally[r + OVERTURNED] = 1.0
+                            tally[r + CERTAIN] = k - starts[i]
                     else:
                         break
                 if done or case < 0:
                     if case >= 0:
                         if cases[i] == case:
-                            _take_over(x, i, tally)
+                            _take_over(x, i, tally, r)
                         busy -= 1
                         case = -1
                         cases[i] = -1
@@ -464,15 +471,17 @@ def lone_blocks(
                     upcoming += 1
                     busy += 1
                     motion = (case // n_scales) % n_motions
-                    b = table[case // (n_scales * n_motions), motion]
-                    tally = results[case - first]
-                    tally[:] = 0.0
-                    tally[CLOSEST] = math.inf
+                    o = BODY * (case // n_scales)
+                    bases[i] = o
+                    r = RESULTS * (case - first)
+                    for n in range(RESULTS):
+                        tally[r + n] = 0.0
+                    tally[r + CLOSEST] = math.inf
                     factor[i] = factors[motion, case % n_scales]
                     row = rows[case // (n_scales * n_motions), motion]
                     k = offsets[row]
                     starts[i] = k
-                    end = offsets[row + 1] - 1
+                    end = lasts[row]
                     side = 0
                     done = factor[i] == 0.0
             if case < 0:
@@ -501,11 +510,11 @@ def lone_blocks(
             x[A1 + i] = signed[i] * samples[k]
             x[NEW_PSI + i] = psi
             x[NEW_RATE + i] = w
-            x[ANGLE + i] = b[j + ALPHA]
-            x[KAPPA + i] = b[j + SWING]
-            x[PER_ANGLE + i] = b[j + PER_ALPHA]
-            x[PER_SPEED + i] = b[j + PER_SWING]
-            bound = _bound(side, factor[i], ahead_high[k], ahead_low[k])
+            x[ANGLE + i] = b[o + j + ALPHA]
+            x[KAPPA + i] = b[o + j + SWING]
+            x[PER_ANGLE + i] = b[o + j + PER_ALPHA]
+            x[PER_SPEED + i] = b[o + j + PER_SWING]
+            bound = _bound(side, factor[i], ahead_high[k // BLOCK], ahead_low[k // BLOCK])
             x[BOUND + i] = bound
             x[CREST + i] = math.sqrt(1.0 + bound * bound)
         for i in range(LANES):
@@ -526,8 +535,8 @@ def _bound(side, factor, most, least):
 
 
 @kernel
-def _take_over(x, i, tally):
+def _take_over(x, i, tally, r):
     """Take a lane's extremes over into the tally of its case."""
-    tally[RATIO] = max(tally[RATIO], 1.0 - x[LOW + i])
-    tally[SPEED] = max(tally[SPEED], x[FAST + i])
-    tally[CLOSEST] = min(tally[CLOSEST], math.sqrt(x[NEAR + i]))
+    tally[r + RATIO] = max(tally[r + RATIO], 1.0 - x[LOW + i])
+    tally[r + SPEED] = max(tally[r + SPEED], x[FAST + i])
+    tally[r + CLOSEST] = min(tally[r + CLOSEST], math.sqrt(x[NEAR + i]))

@@ -237,12 +237,19 @@ def _lone_blocks(
     number = {kind: i for i, kind in enumerate(kinds)}
     sampled = [_refined(values[m], n) for n, m in kinds]
     which = np.array([[number[int(n), m] for m, n in enumerate(row)] for row in times])
-    offsets = np.concatenate([[0], np.cumsum([v.size for v in sampled])])
-    samples = np.concatenate(sampled)
-    padding = -samples.size % lanes.BLOCK
-    blocks = np.append(samples, np.zeros(padding)).reshape(-1, lanes.BLOCK)
-    ahead_high = np.concatenate([np.maximum.accumulate(v[::-1])[::-1] for v in sampled])
-    ahead_low = np.concatenate([np.minimum.accumulate(v[::-1])[::-1] for v in sampled])
+    # whole blocks each, so that no block straddles two motions
+    padded = [np.append(v, np.zeros(-v.size % lanes.BLOCK)) for v in sampled]
+    offsets = np.concatenate([[0], np.cumsum([v.size for v in padded])])
+    lasts = offsets[:-1] + np.array([v.size for v in sampled]) - 1
+    samples = np.concatenate(padded)
+    blocks = samples.reshape(-1, lanes.BLOCK)
+    # largest and smallest sample from the beginning of a block to the end of its motion
+    ahead_high = np.concatenate(
+        [np.maximum.accumulate(v.reshape(-1, lanes.BLOCK).max(axis=1)[::-1])[::-1] for v in padded]
+    )
+    ahead_low = np.concatenate(
+        [np.minimum.accumulate(v.reshape(-1, lanes.BLOCK).min(axis=1)[::-1])[::-1] for v in padded]
+    )
     intervals = dts[np.newaxis, :] / times
     table = np.empty((len(bodies), len(values), lanes.BODY))
     for i, (body, e) in enumerate(zip(bodies, restitution, strict=True)):
@@ -256,8 +263,8 @@ def _lone_blocks(
 
     def work(first: int, last: int) -> None:
         lanes.lone_blocks(
-            first, last, table, per_g, which, offsets, samples, blocks.max(axis=1),
-            blocks.min(axis=1), ahead_high, ahead_low, outcome[first:last],
+            first, last, table.ravel(), per_g, which, offsets, lasts, samples, blocks.max(axis=1),
+            blocks.min(axis=1), ahead_high, ahead_low, outcome[first:last].reshape(-1),
         )  # fmt: skip
 
     _in_parallel(len(outcome), workers, work)
