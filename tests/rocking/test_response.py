@@ -1,0 +1,231 @@
+"""A response obeys mechanics: momentum at impacts, energy between, forces from accelerations."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag.rocking import Block, Response, Stack, simulate
+
+G = 9.81
+T1 = Block(0.124, 0.372, 2.172)
+T2 = Block(0.124, 0.496, 2.790)
+T3 = Block(0.124, 0.620, 3.456)
+P = Block(0.184, 0.208, 2.300)
+OFF_CENTRE = Stack(
+    Block(0.30, 0.25, 20.0, cg_offset=0.01, lean=0.004),
+    Block(0.20, 0.80, 15.0, inertia=1.1, cg_height=0.34, cg_offset=-0.012),
+    offset=0.02,
+)
+DT = 0.005
+
+
+def shaking(seed: int, peak_g: float, seconds: float = 6.0) -> np.ndarray:
+    """Sum of sines under an envelope, scaled to a peak [m/s²]."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(int(seconds / DT)) * DT
+    waves = sum(
+        rng.normal() * np.sin(2 * np.pi * f * t + rng.uniform(0, 2 * np.pi))
+        for f in rng.uniform(0.5, 5, 8)
+    )
+    shape = waves * np.sin(np.pi * t / t[-1])
+    return peak_g * G * shape / np.abs(shape).max()
+
+
+BODIES = [T2, Stack(P, T1), Stack(P, T3), OFF_CENTRE]
+CASES = [
+    pytest.param((body, seed, peak), id=f"{name}-{seed}")
+    for name, body in zip(("T2", "P&T1", "P&T3", "off-centre"), BODIES, strict=True)
+    for seed, peak in ((1, 0.35), (2, 0.6))
+]
+
+
+@pytest.fixture(params=CASES)
+def response(request: pytest.FixtureRequest) -> Response:
+    body, seed, peak = request.param
+    found = simulate(body, shaking(seed, peak), DT)
+    assert found.impacts > 3
+    return found
+
+
+def test_energy_is_never_gained_at_an_impact_and_not_changed_by_an_opening(
+    response: Response,
+) -> None:
+    events = response.events
+    impacts, openings = (events[events["kind"] == kind] for kind in ("impact", "opening"))
+    assert (impacts["energy_after"] <= impacts["energy_before"] * (1 + 1e-12)).all()
+    assert (openings["energy_after"] == openings["energy_before"]).all()
+
+
+def test_velocity_is_continuous_where_there_is_no_impact(response: Response) -> None:
+    for _, event in response.events.query("kind == 'opening'").iterrows():
+        assert event["omega_before"] == event["omega_after"]
+    # between events the samples follow their accelerations; compare where no event falls inside
+    edges = np.searchsorted(response.time, response.events["time"])
+    quiet = np.setdiff1d(np.arange(1, len(response.time)), edges)
+    standing = np.abs(response.theta[:, -1]) < 1.0
+    quiet = quiet[standing[quiet]]
+    step = np.diff(response.omega, axis=0)[quiet - 1]
+    mean = 0.5 * (response.alpha[1:] + response.alpha[:-1])[quiet - 1] * DT
+    jump = np.abs(np.diff(response.alpha, axis=0))[quiet - 1].max() * DT
+    assert np.abs(step - mean).max() < 0.5 * jump + 1e-3
+
+
+def test_the_energy_ledger_closes(response: Response) -> None:
+    energy = response.energy
+    scale = energy["kinetic"].max() + energy["input"].abs().max()
+    assert energy["residual"].abs().max() < 1e-6 * scale
+    for column in ("lost_ground", "lost_interface"):
+        assert (np.diff(energy[column]) >= -1e-15 * scale).all()
+    lost = (response.events["energy_before"] - response.events["energy_after"]).sum()
+    total = energy[["lost_ground", "lost_interface"]].iloc[-1].sum()
+    assert total == pytest.approx(lost, rel=1e-9)
+
+
+@pytest.mark.parametrize("body", [*BODIES, T1, T3])
+def test_free_rocking_conserves_energy_between_impacts(body: Block | Stack) -> None:
+    start = 0.6 * (body.alpha if isinstance(body, Block) else body.statue.alpha)
+    theta0 = start if isinstance(body, Block) else (0.0, start)
+    response = simulate(body, np.zeros(400), DT, theta0=theta0)
+    energy = response.energy
+    # measured from the lowest position, so that the scale is that of the motion
+    scale = energy["potential"].iloc[0] - energy["potential"].min()
+    assert energy["residual"].abs().max() < 1e-8 * scale
+    assert not energy["input"].any()
+
+
+def test_positions_agree_with_the_contact_states(response: Response) -> None:
+    theta, state = response.theta, response.state
+    relative = (
+        theta if theta.shape[1] == 1 else np.column_stack([theta[:, 0], theta[:, 1] - theta[:, 0]])
+    )
+    standing = np.abs(theta).max(axis=1) < 1.0
+    assert (relative * state >= -1e-9)[standing].all()
+    assert (np.abs(relative[state == 0]) < 1e-9).all()
+
+
+@pytest.mark.parametrize("block", [T1, T2, T3, P], ids=["T1", "T2", "T3", "P"])
+def test_each_impact_takes_what_momentum_says(block: Block) -> None:
+    response = simulate(block, np.zeros(200), DT, theta0=0.7 * block.alpha)
+    impacts = response.events.query("kind == 'impact'")
+    ratio = [
+        b[0] / a[0] for a, b in zip(impacts["omega_before"], impacts["omega_after"], strict=True)
+    ]
+    expected = 1 - 1.5 * math.sin(block.alpha) ** 2
+    assert ratio[:5] == pytest.approx([expected] * len(ratio[:5]), abs=1e-12)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.6, 0.95, 1.0])
+def test_a_measured_restitution_is_what_comes_out(e: float) -> None:
+    response = simulate(T2, np.zeros(50), DT, theta0=0.3 * T2.alpha, restitution=e)
+    first = response.events[response.events["kind"] != "opening"].iloc[0]
+    assert first["omega_after"][0] == pytest.approx(e * first["omega_before"][0], abs=1e-12)
+
+
+def test_measured_restitution_of_a_stack_never_gains_energy() -> None:
+    for pair in ((0.9, 0.9), (1.0, 1.0), (None, 0.95), (0.5, None)):
+        response = simulate(Stack(P, T2), shaking(4, 0.5), DT, restitution=pair)
+        impacts = response.events.query("kind == 'impact'")
+        assert len(impacts) > 3
+        assert (impacts["energy_after"] <= impacts["energy_before"] * (1 + 1e-9)).all()
+
+
+@pytest.mark.parametrize(
+    ("block", "fractions"),
+    [
+        (T1, (0.45260, 0.85993, 1.95447)),
+        (T2, (0.51681, 0.98192, 2.23173)),
+        (T3, (0.57472, 1.09196, 2.48184)),
+    ],
+    ids=["T1", "T2", "T3"],
+)
+def test_linear_period_is_housner_s(block: Block, fractions: tuple[float, ...]) -> None:
+    for start, period in zip((0.2, 0.5, 0.9), fractions, strict=True):
+        response = simulate(block, np.zeros(400), DT, theta0=start * block.alpha, linear=True)
+        first = response.events.query("kind == 'impact'")["time"].iloc[0]
+        assert 4 * first == pytest.approx(period, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("block", "quarter"), [(T1, 0.215637), (T2, 0.245912), (T3, 0.273302)], ids=["T1", "T2", "T3"]
+)
+def test_nonlinear_quarter_period(block: Block, quarter: float) -> None:
+    response = simulate(block, np.zeros(400), DT, theta0=0.5 * block.alpha)
+    first = response.events.query("kind == 'impact'")["time"].iloc[0]
+    assert first == pytest.approx(quarter, abs=1e-5)
+
+
+def test_forces_of_a_resting_stack_are_its_weights() -> None:
+    stack = Stack(P, T2)
+    a = np.full(50, 1.5)
+    response = simulate(stack, a, DT)
+    at = slice(0, 50)
+    assert response.normal_force[at] == pytest.approx(
+        np.tile([stack.mass * G, T2.mass * G], (50, 1)), rel=1e-12
+    )
+    assert response.friction_force[at] == pytest.approx(
+        np.tile([stack.mass * 1.5, T2.mass * 1.5], (50, 1)), rel=1e-12
+    )
+    assert response.friction_demand == pytest.approx([1.5 / G] * 2, rel=1e-12)
+
+
+def test_friction_at_the_threshold_is_b_over_h() -> None:
+    # just below rocking the friction that a rigid block needs is a/g = b/h
+    a = 0.9999 * T2.b / T2.h * G
+    response = simulate(T2, np.full(20, a), DT)
+    assert response.friction_demand[0] == pytest.approx(0.9999 * T2.b / T2.h, rel=1e-9)
+    assert response.least_normal_force[0] == pytest.approx(T2.mass * G, rel=1e-12)
+
+
+def test_forces_of_a_rocking_block_follow_from_newton() -> None:
+    response = simulate(T2, shaking(3, 0.3), DT)
+    rows = np.flatnonzero((response.state[:, 0] != 0) & (np.abs(response.theta[:, 0]) < 0.2))
+    pole = response.state[rows, 0]
+    theta, omega, alpha = (x[rows, 0] for x in (response.theta, response.omega, response.alpha))
+    radius, angle = T2.radius(), T2.alpha - np.abs(theta)
+    # rising of the centre of gravity, y = R cos(θc - |θ|) (thesis eq. 2.2 and below)
+    rise = radius * (np.sin(angle) * pole * alpha - np.cos(angle) * omega**2)
+    assert response.normal_force[rows, 0] == pytest.approx(T2.mass * (G + rise), rel=1e-9)
+
+
+def test_a_heavy_blow_is_reported_as_a_jump() -> None:
+    # thrown off the ground: a rotation this fast needs a pull at the pole
+    response = simulate(T2, np.zeros(10), 0.001, theta0=0.0, omega0=12.0)
+    assert response.least_normal_force[0] < 0
+    assert math.isinf(response.friction_demand[0])
+
+
+def test_overturning_has_a_time_and_a_body() -> None:
+    stack = Stack(P, T3)
+    response = simulate(stack, shaking(2, 0.6), DT)
+    assert response.overturned and response.overturned_body == "statue"
+    assert 0 < response.overturning_time <= response.time[-1]
+    calm = simulate(stack, shaking(2, 0.15), DT)
+    assert not calm.overturned and calm.overturned_body == "" and math.isnan(calm.overturning_time)
+    assert calm.events.empty
+
+
+def test_a_pedestal_that_is_tall_and_thin_falls_with_its_statue() -> None:
+    column = Stack(Block(0.3, 1.5, 50.0), Block(0.3, 0.3, 10.0))
+    response = simulate(column, np.r_[np.full(80, 4.0), np.zeros(50)], 0.01)
+    assert response.overturned and response.overturned_body == "pedestal"
+
+
+def test_closest_approach_tells_how_near_the_verdict_was() -> None:
+    pulse = np.sin(np.linspace(0, np.pi, 101))
+    dt = math.pi / (3 * T2.frequency()) / 100
+    low, high = 1.5, 4.0
+    for _ in range(30):
+        middle = (low + high) / 2
+        fell = simulate(T2, middle * T2.alpha * G * pulse, dt).overturned
+        low, high = (low, middle) if fell else (middle, high)
+    near = simulate(T2, low * T2.alpha * G * pulse, dt)
+    far = simulate(T2, 0.7 * low * T2.alpha * G * pulse, dt)
+    assert not near.overturned and near.closest_approach < 1e-3
+    assert far.closest_approach > 0.1
+
+
+def test_patterns_have_the_thesis_s_names() -> None:
+    response = simulate(Stack(P, T2), np.zeros(5), DT, theta0=(0.0, 0.05))
+    assert response.pattern[0] == "4a"
+    assert simulate(T2, np.zeros(5), DT, theta0=-0.05).pattern[0] == "4b"
