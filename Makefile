@@ -13,9 +13,8 @@ RUN := .venv/bin/python -m
 .DEFAULT_GOAL := run
 
 run: .venv/installed
-	@$(RUN) rockfrag.cli check-config --quiet "$(STUDY)"
-	@$(RUN) snakemake --configfile "$(STUDY)" --quiet host rules reason
-	@$(RUN) rockfrag.cli check-config --report "$(STUDY)"
+	@report=$$($(RUN) rockfrag.cli check-config --report "$(STUDY)") && \
+	$(RUN) snakemake --configfile "$(STUDY)" --quiet host rules reason && echo "$$report"
 
 smoke:
 	@$(MAKE) --no-print-directory run STUDY=config/smoke.yaml

@@ -55,7 +55,6 @@ def _parser() -> argparse.ArgumentParser:
 
     check = commands.add_parser("check-config", help="check the configuration of a study")
     check.add_argument("file", metavar="FILE", help="configuration, such as config/thesis.yaml")
-    check.add_argument("--quiet", action="store_true", help="say nothing if it is right")
     check.add_argument("--report", action="store_true", help="only say where its report will be")
     check.set_defaults(run=_check_config)
     return parser
@@ -147,7 +146,7 @@ def _check_config(options: argparse.Namespace) -> int:
     study = load_study(options.file)
     if options.report:
         print(f"The report is results/{study.name}/report.html")
-    elif not options.quiet:
+    else:
         print(
             f"{options.file} is right: study {study.name}, {len(study.catalogue)} records, "
             f"{len(study.configurations)} configurations, "

@@ -103,7 +103,9 @@ def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
     caption
         What the table shows.
     """
-    quantities = comparison[["quantity", "unit"]].drop_duplicates().to_numpy().tolist()
+    # a lone block has no pattern 3: the order of the columns is that of the fullest row
+    fullest = max((part for _, part in comparison.groupby("name")), key=len)
+    quantities = fullest[["quantity", "unit"]].to_numpy().tolist()
     rows: dict[tuple[str, str], Any] = {
         (r["name"], r["quantity"]): r for r in comparison.to_dict("records")
     }
