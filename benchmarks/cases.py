@@ -1,0 +1,115 @@
+"""The random cases that speed and accuracy are measured on: bodies × motions × amplitudes.
+
+Base 0.1-1.0 m, H/B 3-6, peak ground acceleration 0.1-1.05 g, 40 s at 0.01 s.  Everything follows from
+one seed; the ranges are filled evenly (one draw from each of as many equal shares as there are values).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.motions.synthetic import evolutionary
+from rockfrag.rocking.bodies import Block, Body, Stack
+
+DT = 0.01
+SAMPLES = 4000
+G = 9.81
+DENSITY = 2700.0
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Bodies × motions × scales; ``accelerations`` have a peak of 1 g and ``scales`` are PGAs [g]."""
+
+    bodies: list[Body]
+    accelerations: list[NDArray[np.float64]]
+    scales: NDArray[np.float64]
+    dt: float = DT
+
+    @property
+    def count(self) -> int:
+        """Number of histories."""
+        return len(self.bodies) * self.scales.size
+
+    def each(
+        self, count: int, seed: int = 0
+    ) -> Iterator[tuple[tuple[int, int, int], Body, NDArray[np.float64]]]:
+        """Yield index, body and scaled acceleration of ``count`` cases drawn without repetition."""
+        shape = (len(self.bodies), *self.scales.shape)
+        chosen = np.random.default_rng(seed).choice(self.count, count, replace=False)
+        for flat in np.sort(chosen):
+            i, j, k = (int(n) for n in np.unravel_index(flat, shape))
+            yield (i, j, k), self.bodies[i], self.scales[j, k] * self.accelerations[j]
+
+
+def filled(rng: np.random.Generator, low: float, high: float, count: int) -> NDArray[np.float64]:
+    """Draw one value from each of ``count`` equal shares of a range, in random order."""
+    return low + (high - low) * rng.permutation((np.arange(count) + rng.random(count)) / count)
+
+
+def motions(count: int, seed: int) -> list[NDArray[np.float64]]:
+    """Return stochastic motions of 40 s whose peak is 1 g [m/s²].
+
+    Durations, frequencies and bandwidths span those that Rezaeian & Der Kiureghian (2010) fitted to
+    records of strong earthquakes on firm ground.
+    """
+    rng = np.random.default_rng(seed)
+    duration = filled(rng, 6.0, 20.0, count)
+    middle = duration * filled(rng, 0.4, 0.9, count)
+    frequency = filled(rng, 1.5, 8.0, count)
+    slope = filled(rng, -0.25, 0.0, count)
+    damping = filled(rng, 0.1, 0.5, count)
+    made = []
+    for i in range(count):
+        motion = evolutionary(
+            seed * 1_000_003 + i,
+            arias_m_s=1.0,
+            d5_95_s=float(duration[i]),
+            mid_s=float(middle[i]),
+            mid_hz=float(frequency[i]),
+            slope_hz_s=float(slope[i]),
+            filter_damping=float(damping[i]),
+            dt=DT,
+        ).acceleration[:SAMPLES]
+        values = np.zeros(SAMPLES)
+        values[: motion.size] = motion
+        made.append(values * (G / np.abs(values).max()))
+    return made
+
+
+def blocks(count: int, seed: int) -> list[Body]:
+    """Return lone blocks of granite."""
+    rng = np.random.default_rng(seed + 1)
+    base, ratio = filled(rng, 0.1, 1.0, count), filled(rng, 3.0, 6.0, count)
+    return [
+        Block(width=b, height=b * r, mass=DENSITY * b * b * b * r)
+        for b, r in zip(base.tolist(), ratio.tolist(), strict=True)
+    ]
+
+
+def stacks(count: int, seed: int) -> list[Body]:
+    """Return such blocks on pedestals a little wider than they, once to twice as high as wide."""
+    rng = np.random.default_rng(seed + 2)
+    wider, ratio = filled(rng, 1.05, 1.5, count), filled(rng, 0.5, 2.0, count)
+    made: list[Body] = []
+    for statue, w, r in zip(blocks(count, seed), wider.tolist(), ratio.tolist(), strict=True):
+        assert isinstance(statue, Block)
+        base = statue.width * w
+        made.append(Stack(Block(base, base * r, DENSITY * base * base * base * r), statue))
+    return made
+
+
+def cases(kind: str, count: int = 10_000, seed: int = 5) -> Cases:
+    """Return about ``count`` random cases of ``kind`` "lone" or "stack": a fifth of them per amplitude.
+
+    10⁴ are 40 bodies × 50 motions × 5 amplitudes; other counts keep these proportions.
+    """
+    side = (count / 10_000) ** (1 / 3)
+    n_bodies, n_motions = max(2, round(40 * side)), max(2, round(50 * side))
+    n_scales = max(1, round(count / (n_bodies * n_motions)))
+    rng = np.random.default_rng(seed + 3)
+    pga = np.sort(filled(rng, 0.1, 1.05, n_motions * n_scales).reshape(n_motions, n_scales), axis=1)
+    made = blocks(n_bodies, seed) if kind == "lone" else stacks(n_bodies, seed)
+    return Cases(made, motions(n_motions, seed), pga)

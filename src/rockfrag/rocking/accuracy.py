@@ -1,0 +1,105 @@
+"""How many verdicts hang on the step of the integration."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.inputs import STEP
+from rockfrag.rocking.parameters import Restitution
+from rockfrag.rocking.scattered import listed, scattered_overturns
+from rockfrag.units import STANDARD_GRAVITY
+
+
+@dataclass(frozen=True)
+class FragileVerdicts:
+    """Verdicts that change when every step is halved: numerically fragile ones.
+
+    Attributes
+    ----------
+    sampled
+        Number of cases looked at.
+    changed
+        Number of them whose verdict changed.
+    cases
+        Body, motion and scale (positions) of the changed ones, shape (changed, 3).
+    """
+
+    sampled: int
+    changed: int
+    cases: NDArray[np.int64]
+
+    @property
+    def share(self) -> float:
+        """Share of the sampled verdicts that changed [-]."""
+        return self.changed / self.sampled
+
+
+def fragile_verdicts(
+    bodies: Body | Sequence[Body],
+    accelerations: ArrayLike | Sequence[ArrayLike],
+    dt: float | Sequence[float],
+    scales: ArrayLike,
+    *,
+    sample: int = 1000,
+    seed: int = 0,
+    restitution: Sequence[Restitution] | None = None,
+    g: float = STANDARD_GRAVITY,
+    step: float = STEP,
+    threads: int | None = None,
+) -> FragileVerdicts:
+    """Count the verdicts of an ensemble that change when the step is halved, on a sample of its cases.
+
+    Near-critical cases always exist: their verdict hangs on the last digits of any integration.
+
+    Parameters
+    ----------
+    bodies, accelerations, dt, scales, restitution, g, step, threads
+        The ensemble, as in :func:`overturns`.
+    sample
+        Number of cases, drawn without repetition; all of them if there are fewer.
+    seed
+        Seed of the draw.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used; the message says which and why.
+    """
+    body_list, motions, dts = listed(bodies, accelerations, dt, restitution)
+    factors = np.asarray(scales, dtype=float)
+    if factors.ndim == 1:
+        factors = np.broadcast_to(factors, (len(motions), factors.size))
+    if factors.ndim != 2 or len(factors) != len(motions) or not np.isfinite(factors).all():
+        raise InputError(
+            f"scales: expected finite numbers of shape (scales,) or ({len(motions)}, scales), "
+            f"got shape {np.shape(scales)}."
+        )
+    shape = (len(body_list), *factors.shape)
+    total = int(np.prod(shape))
+    if sample < 1 or total < 1:
+        raise InputError(f"sample: expected at least one of {total} cases, got {sample}.")
+    chosen = np.random.default_rng(seed).choice(total, min(sample, total), replace=False)
+    cases = np.stack(np.unravel_index(np.sort(chosen), shape), axis=1).astype(np.int64)
+    body, motion, column = cases.T
+    drawn = (body, motion, factors[motion, column])
+    given = scattered_overturns(
+        body_list, motions, dts, *drawn, restitution=restitution, g=g, step=step, threads=threads
+    )
+    # twice the samples on the same straight lines and half the bound on p h: exactly half of each step
+    halved = scattered_overturns(
+        body_list, [_doubled(values) for values in motions], dts / 2, *drawn,
+        restitution=restitution, g=g, step=step / 2, threads=threads,
+    )  # fmt: skip
+    changed = cases[given != halved]
+    return FragileVerdicts(sampled=len(cases), changed=len(changed), cases=changed)
+
+
+def _doubled(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sample a motion, which is zero one sample after its last, twice as densely."""
+    closed = np.append(values, 0.0)
+    at = np.arange(2 * closed.size - 1) / 2
+    return np.asarray(np.interp(at, np.arange(closed.size), closed))

@@ -1,0 +1,159 @@
+"""Overturning thresholds to a tolerance, without a fine grid of amplitudes.
+
+More shaking does not always mean overturning: above the first overturning amplitude there can be windows
+in which the body survives again (``docs/derivation.md``).  A coarse grid finds every window that is at
+least as wide as its spacing, and bisection puts both ends of what it finds to a tolerance.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.inputs import STEP
+from rockfrag.rocking.parameters import Restitution
+from rockfrag.rocking.scattered import listed, scattered_overturns
+from rockfrag.units import STANDARD_GRAVITY
+
+Array = NDArray[np.float64]
+MOST_GRID_CASES = 5_000_000
+
+
+@dataclass(frozen=True)
+class Thresholds:
+    """Overturning thresholds of bodies under motions.
+
+    Attributes
+    ----------
+    table
+        One row per body and motion: ``body``, ``motion`` (positions in the lists given),
+        ``first_overturning`` (least scale found that overturns), ``always_overturning`` (from here to
+        the highest scale every verdict found is overturning), both also as peak accelerations
+        ``first_overturning_pga_g`` and ``always_overturning_pga_g``, and ``windows``, the number of
+        survival windows above the first overturning.  NaN if the body survives all scales, or for
+        ``always_overturning`` if it survives the highest.
+    windows
+        One row per survival window: ``body``, ``motion``, ``lower``, ``upper``: the outermost scales
+        found to survive; ``upper`` is the highest scale for a window that is still open there.
+    smallest_window
+        Spacing of the grid.  A window of survival or of overturning at least this wide contains a point
+        of the grid and has been found; a narrower one can be missed.
+    tolerance
+        The verdict changes within this much below ``first_overturning`` and ``always_overturning``, and
+        within this much outside each window.
+    """
+
+    table: pd.DataFrame
+    windows: pd.DataFrame
+    smallest_window: float
+    tolerance: float
+
+
+def find_thresholds(
+    bodies: Body | Sequence[Body],
+    accelerations: ArrayLike | Sequence[ArrayLike],
+    dt: float | Sequence[float],
+    highest: float,
+    *,
+    tolerance: float,
+    smallest_window: float,
+    restitution: Sequence[Restitution] | None = None,
+    g: float = STANDARD_GRAVITY,
+    step: float = STEP,
+    threads: int | None = None,
+) -> Thresholds:
+    """Find first overturning, survival windows and always-overturning amplitude of body × motion.
+
+    Parameters
+    ----------
+    bodies, accelerations, dt, restitution, g, step, threads
+        As in :func:`overturns`.
+    highest
+        Largest scale on the accelerations to look at; motions with a peak of 1 g make scales PGAs in g.
+    tolerance
+        Width to which every change of verdict is bracketed, in scale.
+    smallest_window
+        Width of the narrowest window that must not be missed, in scale: the spacing of the grid that is
+        looked at first.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used; the message says which and why.
+    """
+    for name, value in (
+        ("highest", highest),
+        ("tolerance", tolerance),
+        ("smallest_window", smallest_window),
+    ):
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(f"{name}: expected a positive number, got {value}.")
+    if smallest_window > highest:
+        raise InputError(
+            f"smallest_window: {smallest_window} is more than the highest scale, {highest}."
+        )
+    body_list, motions, dts = listed(bodies, accelerations, dt, restitution)
+    intervals = math.ceil(highest / smallest_window - 1e-9)
+    if len(body_list) * len(motions) * intervals > MOST_GRID_CASES:
+        raise InputError(
+            f"smallest_window: {smallest_window} needs a grid of more than {MOST_GRID_CASES} cases; "
+            "give a wider one, a lower highest scale, or fewer bodies at a time."
+        )
+    grid = np.linspace(0.0, highest, intervals + 1)
+    settings = {"restitution": restitution, "g": g, "step": step, "threads": threads}
+    fallen = overturns(body_list, motions, dts.tolist(), grid, **settings).overturned  # type: ignore[arg-type]
+    body, motion, left = np.nonzero(fallen[..., 1:] != fallen[..., :-1])
+    low, high = grid[left], grid[left + 1]
+    falls = fallen[body, motion, left + 1]
+    for _ in range(max(0, math.ceil(math.log2(highest / intervals / tolerance) - 1e-9))):
+        middle = 0.5 * (low + high)
+        above = (
+            scattered_overturns(body_list, motions, dts, body, motion, middle, **settings)  # type: ignore[arg-type]
+            == falls
+        )
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    table, windows = [], []
+    for i in range(len(body_list)):
+        for j, values in enumerate(motions):
+            mine = (body == i) & (motion == j)
+            row, survived = _read(low[mine], high[mine], falls[mine], highest)
+            peak = float(np.abs(values).max()) / g
+            table.append((i, j, *row, *(peak * scale for scale in row), len(survived)))
+            windows += [(i, j, lower, upper) for lower, upper in survived]
+    return Thresholds(
+        table=pd.DataFrame(
+            table,
+            columns=[
+                "body", "motion", "first_overturning", "always_overturning",
+                "first_overturning_pga_g", "always_overturning_pga_g", "windows",
+            ],
+        ),
+        windows=pd.DataFrame(windows, columns=["body", "motion", "lower", "upper"]).astype(
+            {"body": np.int64, "motion": np.int64, "lower": np.float64, "upper": np.float64}
+        ),
+        smallest_window=highest / intervals,
+        tolerance=tolerance,
+    )  # fmt: skip
+
+
+def _read(
+    low: Array, high: Array, falls: NDArray[np.bool_], highest: float
+) -> tuple[tuple[float, float], list[tuple[float, float]]]:
+    """Read first and always-overturning scale and the survival windows off bracketed changes.
+
+    The changes alternate and the first, from rest at zero scale, is a fall.
+    """
+    if not falls.size:
+        return (math.nan, math.nan), []
+    starts, ends = high[~falls], low[falls][1:]
+    always = float(high[-1]) if falls[-1] else math.nan
+    if not falls[-1]:
+        ends = np.append(ends, highest)
+    windows = list(zip(starts.tolist(), ends.tolist(), strict=True))
+    return (float(high[0]), always), windows

@@ -1,0 +1,152 @@
+"""Ensembles: the same numbers however cases are grouped, and the same as one by one."""
+
+import importlib.util
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import ensemble
+from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.rocking.ensemble import EnsembleResult, overturns
+from rockfrag.rocking.simulation import simulate
+
+
+def benchmark_cases():
+    """The module that makes the random cases of the benchmarks."""
+    path = Path(__file__).parents[2] / "benchmarks" / "cases.py"
+    spec = importlib.util.spec_from_file_location("benchmark_cases", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+CASES = benchmark_cases()
+MOTIONS = [motion[:2500] for motion in CASES.motions(4, seed=11)]
+SCALES = np.array([[0.15, 0.4, 0.9], [0.2, 0.5, 1.0], [0.25, 0.6, 0.8], [0.0, 0.35, 0.7]])
+LONE = CASES.blocks(5, seed=11)
+STACKS = CASES.stacks(3, seed=11)
+# a leaning block with its centre of gravity to one side has two different poles
+SKEW = Block(width=0.3, height=1.2, mass=100.0, cg_offset=0.02, lean=0.01)
+# a slender pedestal falls with its squat statue
+SLENDER = Stack(Block(width=0.3, height=1.5, mass=360.0), Block(width=0.25, height=0.4, mass=70.0))
+BODIES = [SLENDER, LONE[0], STACKS[0], LONE[1], SKEW, STACKS[1], *LONE[2:], STACKS[2]]
+
+
+def same(one: EnsembleResult, other: EnsembleResult) -> None:
+    """Every array of two results agrees bit for bit."""
+    for name, values in vars(one).items():
+        np.testing.assert_array_equal(values, getattr(other, name), err_msg=name)
+
+
+def picked(result: EnsembleResult, *index) -> EnsembleResult:
+    """A result with its axes reordered or cut."""
+    return replace(result, **{name: values[index] for name, values in vars(result).items()})
+
+
+@pytest.fixture(scope="module")
+def whole() -> EnsembleResult:
+    return overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=1)
+
+
+def test_the_cases_hold_falls_and_survivals_of_blocks_and_stacks(whole):
+    for number in (1, 2):
+        assert (whole.overturned_body == number).any()
+    share = whole.overturned.mean()
+    assert 0.1 < share < 0.9
+    assert (whole.impacts > 20).any()
+
+
+def test_two_threads_give_the_bits_of_one(whole, monkeypatch):
+    monkeypatch.setattr(ensemble, "CHUNK", 3)
+    same(whole, overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=2))
+
+
+@pytest.mark.parametrize("chunk", [1, 7, 40])
+def test_chunks_do_not_change_a_bit(whole, monkeypatch, chunk):
+    monkeypatch.setattr(ensemble, "CHUNK", chunk)
+    same(whole, overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=1))
+
+
+def test_order_does_not_change_a_bit(whole):
+    rng = np.random.default_rng(3)
+    i, j, k = (rng.permutation(n) for n in whole.overturned.shape)
+    shuffled = overturns(
+        [BODIES[n] for n in i], [MOTIONS[n] for n in j], CASES.DT, SCALES[j][:, k], threads=1
+    )
+    same(picked(whole, *np.ix_(i, j, k)), shuffled)
+
+
+def test_each_case_alone_gives_the_bits_it_gives_in_company(whole):
+    for i, j, k in ((0, 1, 2), (1, 0, 1), (4, 2, 0), (9, 3, 2)):
+        alone = overturns(BODIES[i], MOTIONS[j], CASES.DT, SCALES[j, k : k + 1])
+        same(picked(whole, np.s_[i : i + 1], np.s_[j : j + 1], np.s_[k : k + 1]), alone)
+
+
+def test_a_body_that_needs_shorter_steps_changes_no_other(whole):
+    small = Block(width=0.01, height=0.04, mass=0.01)
+    more = overturns([small, *BODIES], MOTIONS, CASES.DT, SCALES, threads=1)
+    same(whole, picked(more, np.s_[1:]))
+
+
+def test_a_block_on_an_immovable_pedestal_is_a_lone_block():
+    pedestal = Block(width=50.0, height=1.0, mass=1e9)
+    kinds = [LONE, [Stack(pedestal, block) for block in LONE]]
+    lone, on_top = (overturns(kind, MOTIONS, CASES.DT, SCALES) for kind in kinds)
+    assert (lone.overturned == on_top.overturned).all()
+    assert set(np.unique(on_top.overturned_body)) == {0, 2}
+
+
+def test_single_simulations_agree_in_verdicts_and_peaks(whole):
+    """simulate() follows every impact with Taylor series of higher order."""
+    checked = np.array([0, 0])
+    for i, body in enumerate(BODIES):
+        for j in range(2):
+            for k in range(SCALES.shape[1]):
+                response = simulate(body, SCALES[j, k] * MOTIONS[j], CASES.DT)
+                at = (i, j, k)
+                near = whole.closest_approach[at] < 1e-3
+                assert near or response.overturned == whole.overturned[at]
+                if response.overturned or near:
+                    continue
+                top = response.theta[:, -1]
+                if isinstance(body, Block):
+                    pole = [body.critical_angle(s) for s in (1, -1)]
+                    peak = max(top.max() / pole[0], -top.min() / pole[1])
+                    # between samples a flight rises by at most (p dt)² α / 4 above them
+                    between = (body.frequency() * CASES.DT) ** 2 / 4 + 1e-6
+                    assert peak - 1e-6 <= whole.peak_rotation[at] <= peak + between
+                    fastest = np.abs(response.omega).max()
+                    assert whole.peak_velocity[at] >= fastest - 1e-6
+                    checked[0] += 1
+                else:
+                    assert whole.peak_velocity[at] >= np.abs(response.omega[:, -1]).max() - 1e-3
+                    checked[1] += 1
+    assert (checked > 5).all()
+
+
+def test_nothing_happens_below_the_static_threshold():
+    block = LONE[0]
+    scale = 0.999 * np.tan(block.alpha)
+    result = overturns(block, MOTIONS, CASES.DT, [scale])
+    assert not result.overturned.any()
+    assert (result.impacts == 0).all()
+    assert (result.peak_rotation == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"scales": np.ones((3, 2))}, "scales: expected finite numbers"),
+        ({"scales": [np.nan]}, "scales: expected finite numbers"),
+        ({"step": 0.0}, "step: expected a positive number"),
+        ({"restitution": [0.5]}, "restitution: expected 2 entries"),
+        ({"dt": -0.01}, "dt: expected a positive number"),
+    ],
+)
+def test_wrong_input_is_named(change, says):
+    given = {"bodies": LONE[:2], "accelerations": MOTIONS[:2], "dt": 0.01, "scales": [1.0]}
+    with pytest.raises(InputError, match=says):
+        overturns(**(given | change))

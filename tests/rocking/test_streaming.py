@@ -1,0 +1,114 @@
+"""Ensembles written to a file: the numbers of overturns(), whatever the row groups and threads."""
+
+import numpy as np
+import pandas as pd
+import pyarrow.parquet as pq
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import streaming
+from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.streaming import stream_overturns
+
+DT = 0.01
+TIME = np.arange(600) * DT
+MOTIONS = [
+    9.81 * np.exp(-(((TIME - 3) / 1.5) ** 2)) * np.sin(2 * np.pi * f * TIME)
+    for f in (0.8, 1.5, 3.0)
+]
+BLOCK = Block(width=0.3, height=1.2, mass=200.0)
+BODIES = [BLOCK, Stack(Block(width=0.4, height=0.3, mass=100.0), BLOCK)]
+SCALES = np.linspace(0.2, 1.4, 7)
+
+
+def test_the_file_holds_every_case_in_order(tmp_path):
+    path = tmp_path / "ensemble.parquet"
+    seen = []
+    count = stream_overturns(
+        BODIES, MOTIONS, DT, SCALES, path, columns="peaks", progress=lambda *n: seen.append(n)
+    )
+    result = overturns(BODIES, MOTIONS, DT, SCALES)
+    table = pd.read_parquet(path)
+    assert count == len(table) == result.overturned.size
+    assert seen[-1] == (count, count)
+    index = np.unravel_index(np.arange(count), result.overturned.shape)
+    np.testing.assert_array_equal(table["body"], index[0])
+    np.testing.assert_array_equal(table["motion"], index[1])
+    np.testing.assert_array_equal(table["scale"], SCALES[index[2]])
+    for column, values in {
+        "overturned": result.overturned,
+        "overturned_body": result.overturned_body,
+        "overturning_time_s": result.overturning_time,
+        "peak_rotation": result.peak_rotation,
+        "peak_rotation_pedestal": result.peak_rotation_pedestal,
+        "peak_velocity_rad_s": result.peak_velocity,
+        "impacts": result.impacts,
+        "closest_approach": result.closest_approach,
+    }.items():
+        np.testing.assert_array_equal(table[column], values.ravel(), err_msg=column)
+    assert table["overturned"].any()
+    assert not table["overturned"].all()
+
+
+def test_verdicts_alone_take_no_other_columns(tmp_path):
+    stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "v.parquet")
+    columns = pq.read_schema(tmp_path / "v.parquet").names
+    assert columns == ["body", "motion", "scale", "overturned", "overturned_body"]
+
+
+@pytest.mark.parametrize("rows", [1, 5, 7, 20, 30])
+def test_row_groups_change_no_number(tmp_path, monkeypatch, rows):
+    stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "whole.parquet", columns="peaks")
+    monkeypatch.setattr(streaming, "ROWS", rows)
+    stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "cut.parquet", columns="peaks")
+    file = pq.ParquetFile(tmp_path / "cut.parquet")
+    groups = [file.metadata.row_group(i).num_rows for i in range(file.num_row_groups)]
+    assert max(groups) <= rows
+    pd.testing.assert_frame_equal(
+        pd.read_parquet(tmp_path / "whole.parquet"),
+        pd.read_parquet(tmp_path / "cut.parquet"),
+        check_exact=True,
+    )
+
+
+def test_threads_change_no_byte(tmp_path, monkeypatch):
+    monkeypatch.setattr(streaming, "ROWS", 9)
+    for threads in (1, 2):
+        stream_overturns(
+            BODIES, MOTIONS, DT, SCALES, tmp_path / f"{threads}.parquet", threads=threads
+        )
+    assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
+
+
+def test_scales_and_restitutions_go_with_their_motion_and_body(tmp_path, monkeypatch):
+    monkeypatch.setattr(streaming, "ROWS", 2)
+    scales = np.array([[0.5, 1.0], [0.8, 1.6], [1.1, 2.2]])
+    restitution = [0.8, (0.4, 0.9)]
+    path = tmp_path / "s.parquet"
+    stream_overturns(
+        BODIES, MOTIONS, [DT, DT, 2 * DT], scales, path, columns="peaks", restitution=restitution
+    )
+    result = overturns(BODIES, MOTIONS, [DT, DT, 2 * DT], scales, restitution=restitution)
+    table = pd.read_parquet(path)
+    np.testing.assert_array_equal(table["scale"], np.tile(scales.ravel(), 2))
+    np.testing.assert_array_equal(table["peak_rotation"], result.peak_rotation.ravel())
+
+
+def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
+    path = tmp_path / "e.parquet"
+    path.write_bytes(b"earlier")
+    monkeypatch.setattr(streaming, "ROWS", 5)
+
+    def stop(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stream_overturns(BODIES, MOTIONS, DT, SCALES, path, progress=stop)
+    assert path.read_bytes() == b"earlier"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_wrong_columns_are_named(tmp_path):
+    with pytest.raises(InputError, match='columns: expected "verdict" or "peaks"'):
+        stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "x", columns="all")

@@ -1,0 +1,198 @@
+"""Thresholds to a tolerance, survival windows, and verdicts that hang on the step."""
+
+import importlib.util
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.rocking.accuracy import fragile_verdicts
+from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.scattered import scattered_overturns
+from rockfrag.rocking.thresholds import find_thresholds
+
+G = 9.81
+
+
+def benchmark_cases():
+    """The module that makes the random cases of the benchmarks."""
+    path = Path(__file__).parents[2] / "benchmarks" / "cases.py"
+    spec = importlib.util.spec_from_file_location("benchmark_cases", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+CASES = benchmark_cases()
+
+
+def one_sine() -> tuple[Block, np.ndarray, float]:
+    """Block of p = 2.14, α = .25 and a sine pulse of ωp = 5 p whose peak is αg."""
+    p, alpha = 2.14, 0.25
+    radius = 0.75 * G / p**2
+    width, height = 2 * radius * math.sin(alpha), 2 * radius * math.cos(alpha)
+    dt = 0.001
+    period = 2 * math.pi / (5 * p)
+    time = np.arange(math.ceil(period / dt)) * dt
+    quiet = np.zeros(8000)
+    pulse = alpha * G * np.sin(5 * p * time)
+    return Block(width, height, 1000.0), np.concatenate([pulse, quiet]), dt
+
+
+def test_the_survival_window_of_a_sine_pulse_between_its_two_modes_of_overturning():
+    """Overturning with one impact from 3.032, survival from 6.743, overturning above 7.493 αg."""
+    block, pulse, dt = one_sine()
+    found = find_thresholds(
+        block, pulse, dt, 9.0, tolerance=1e-3, smallest_window=0.25, restitution=[0.9]
+    )
+    row = found.table.iloc[0]
+    assert row.windows == 1
+    assert row.first_overturning == pytest.approx(3.032, rel=2e-3)
+    assert row.always_overturning == pytest.approx(7.493, rel=2e-3)
+    assert row.first_overturning_pga_g == pytest.approx(3.032 * 0.25, rel=2e-3)
+    window = found.windows.iloc[0]
+    assert window.lower == pytest.approx(6.743, rel=2e-3)
+    assert window.upper == pytest.approx(7.493, rel=2e-3)
+
+
+def test_a_window_narrower_than_promised_can_be_missed_and_a_finer_grid_finds_it():
+    block, pulse, dt = one_sine()
+    settings = {"tolerance": 0.01, "restitution": [0.9]}
+    coarse = find_thresholds(block, pulse, dt, 12.0, smallest_window=4.0, **settings)
+    fine = find_thresholds(block, pulse, dt, 12.0, smallest_window=0.7, **settings)
+    assert len(coarse.windows) == 0
+    assert len(fine.windows) == 1
+
+
+@pytest.fixture(scope="module")
+def ensemble():
+    return CASES.blocks(4, seed=2), [m[:2500] for m in CASES.motions(3, seed=2)]
+
+
+def test_thresholds_are_those_of_a_fine_grid(ensemble):
+    bodies, motions = ensemble
+    spacing, tolerance = 0.02, 0.002
+    width = spacing / 16  # the first power of two that makes it no wider than the tolerance
+    found = find_thresholds(
+        bodies, motions, 0.01, 1.2, tolerance=tolerance, smallest_window=spacing
+    )
+    fine = np.arange(1, 601) * tolerance
+    fallen = overturns(bodies, motions, 0.01, fine).overturned
+    checked = 0
+    for row in found.table.itertuples():
+        verdicts = fallen[row.body, row.motion]
+        if math.isnan(row.first_overturning):
+            assert not verdicts[fine >= 1.2 - 1e-9].any()
+            continue
+        on_grid = verdicts[9::10]
+        assert on_grid.any()
+        # the changes next to the first and last of those on the coarse grid
+        first = 10 * (int(np.argmax(on_grid)) + 1) * tolerance
+        assert first - spacing < row.first_overturning <= first + 1e-12
+        for scale, below in (
+            (row.first_overturning, row.first_overturning - width),
+            (row.always_overturning, row.always_overturning - width),
+        ):
+            if not math.isnan(scale):
+                pair = overturns(bodies[row.body], motions[row.motion], 0.01, [below, scale])
+                assert pair.overturned[0, 0].tolist() == [False, True]
+                checked += 1
+        always = on_grid[::-1].argmin() if not on_grid.all() else on_grid.size
+        if always:
+            last = 1.2 - spacing * always
+            assert last < row.always_overturning <= last + spacing + 1e-12
+        else:
+            assert math.isnan(row.always_overturning)
+    assert checked > 4
+
+
+def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensemble):
+    bodies, motions = ensemble
+    found = find_thresholds(bodies, motions, 0.01, 1.5, tolerance=0.004, smallest_window=0.01)
+    assert len(found.windows) > 3
+    width = 0.01 / 4
+    for row in found.windows.itertuples():
+        scales = [row.lower - width, row.lower, row.upper, row.upper + width]
+        fallen = overturns(bodies[row.body], motions[row.motion], 0.01, scales).overturned[0, 0]
+        assert not fallen[1:3].any()
+        assert fallen[0]
+        assert fallen[3] or row.upper == 1.5
+    counts = found.windows.groupby(["body", "motion"]).size().sum()
+    assert counts == found.table["windows"].sum()
+
+
+def test_thresholds_do_not_depend_on_threads(ensemble):
+    bodies, motions = ensemble
+    one, two = (
+        find_thresholds(
+            bodies, motions, 0.01, 1.0, tolerance=1e-3, smallest_window=0.05, threads=threads
+        )
+        for threads in (1, 2)
+    )
+    assert one.table.equals(two.table)
+    assert one.windows.equals(two.windows)
+
+
+def test_a_block_that_nothing_topples_has_no_threshold():
+    found = find_thresholds(
+        Block(10.0, 10.0, 1.0),
+        CASES.motions(1, 3)[0],
+        0.01,
+        0.9,
+        tolerance=0.1,
+        smallest_window=0.3,
+    )
+    assert found.table[["first_overturning", "always_overturning"]].isna().all(axis=None)
+    assert found.windows.empty
+
+
+@pytest.mark.parametrize("name", ["highest", "tolerance", "smallest_window"])
+def test_thresholds_name_wrong_input(name):
+    given = {"highest": 1.0, "tolerance": 0.1, "smallest_window": 0.5}
+    with pytest.raises(InputError, match=f"{name}: expected a positive number"):
+        find_thresholds(Block(1.0, 4.0, 1.0), np.ones(9), 0.01, **(given | {name: -1.0}))
+
+
+def test_scattered_cases_have_the_verdicts_of_the_grid(ensemble):
+    bodies, motions = ensemble
+    scales = np.linspace(0.2, 1.0, 7)
+    grid = overturns(bodies, motions, 0.01, scales).overturned
+    rng = np.random.default_rng(1)
+    i, j, k = (rng.integers(0, n, 50) for n in grid.shape)
+    some = scattered_overturns(bodies, motions, np.full(3, 0.01), i, j, scales[k])
+    np.testing.assert_array_equal(some, grid[i, j, k])
+
+
+@pytest.mark.parametrize(("kind", "gate"), [("lone", 0.001), ("stack", 0.005)])
+@pytest.mark.parametrize("count", [1000, pytest.param(10_000, marks=pytest.mark.slow, id="10000")])
+def test_few_verdicts_change_when_the_step_is_halved(kind, gate, count):
+    cases = CASES.cases(kind, count)
+    fragile = fragile_verdicts(
+        cases.bodies, cases.accelerations, cases.dt, cases.scales, sample=cases.count
+    )
+    assert fragile.sampled == cases.count
+    assert fragile.share < gate
+
+
+def test_verdicts_taken_with_long_steps_are_fragile():
+    """The count is not zero by construction: steps of p h up to 1 leave more verdicts open."""
+    cases = CASES.cases("lone", 1000)
+    rough = [motion[::10] for motion in cases.accelerations]
+    fragile = fragile_verdicts(cases.bodies, rough, 0.1, cases.scales, sample=1000, step=3.0)
+    assert fragile.share > 0.005
+    assert fragile.cases.shape == (fragile.changed, 3)
+
+
+def test_the_sample_follows_from_its_seed(ensemble):
+    bodies, motions = ensemble
+    one, again = (
+        fragile_verdicts(
+            bodies, motions, 0.2, [0.5, 1.0, 2.0], sample=20, seed=4, step=3.0, threads=threads
+        )
+        for threads in (1, 2)
+    )
+    assert one.sampled == 20
+    np.testing.assert_array_equal(one.cases, again.cases)
