@@ -25,14 +25,11 @@ def _digest() -> str:
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile ``function`` without the interpreter's lock and cache the machine code.
 
-    Multiplications and additions may be contracted to one rounding; nothing else is reordered, so
-    results do not depend on how cases are grouped or threaded.
+    Arithmetic is strictly IEEE: nothing is contracted or reordered, because the compiler would do so
+    differently in each place that a kernel is inlined in, and a process that has just compiled would
+    then differ in the last digit from one that reads the cache.
     """
-    options: dict[str, Any] = {
-        "nogil": True,
-        "error_model": "numpy",
-        "fastmath": {"contract"},
-    }
+    options: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
     try:
         compiled: Any = numba.njit(cache=True, **options)(function)
     except RuntimeError:

@@ -31,7 +31,7 @@ from rockfrag.rocking._mechanics import (
     stick,
 )
 from rockfrag.rocking._series import ORDER, closing_time, slope, value
-from rockfrag.rocking._step import CRITICAL, FREQUENCY2, GAP, ROWS, TH1, TH2, series
+from rockfrag.rocking._step import CRITICAL, FREQUENCY2, GAP, SCRATCH, TH1, TH2, series
 
 # Entries of the summary of a march.
 (
@@ -133,10 +133,10 @@ def _rest_moment(p, which, s, a):
 @kernel
 def _hold(p, which, c1, c2, q, tau, h, a):
     """Least contact moment at τ: of the ground (which = 1) or the interface (2)."""
-    t1 = value(q[TH1], tau)
-    t2 = value(q[TH2], tau)
-    w1 = slope(q[TH1], tau) / h
-    w2 = slope(q[TH2], tau) / h
+    t1 = value(q, TH1, tau)
+    t2 = value(q, TH2, tau)
+    w1 = slope(q, TH1, tau) / h
+    w2 = slope(q, TH2, tau) / h
     alpha1, alpha2 = accelerations(p, c1, c2, t1, w1, t2, w2, a)
     if which == 1:
         least, _ = ground_hold(p, c2, t1, t2, w2, a, alpha2)
@@ -249,7 +249,7 @@ def march(
     closing_speed : separation speed after an impact [rad/s] below which a contact stays closed
     history : (samples, HISTORY) or (0, HISTORY) to keep none; filled until the march ends
     events : (capacity, EVENT)
-    q : (ROWS, ORDER + 1) scratch
+    q : (SCRATCH,) see ``scratch``
     summary : (SUMMARY,)
 
     Returns
@@ -343,18 +343,18 @@ def march(
                 closes2 = False
                 if c1 != 0:
                     for i in range(ORDER + 1):
-                        q[GAP, i] = c1 * q[TH1, i]
-                    when = closing_time(q[GAP], 1.0)
+                        q[GAP + i] = c1 * q[TH1 + i]
+                    when = closing_time(q, GAP, 1.0)
                     closes1 = when <= 1.0
                 if c2 != 0:
                     for i in range(ORDER + 1):
-                        q[GAP, i] = c2 * (q[TH2, i] - q[TH1, i])
-                    time = closing_time(q[GAP], min(1.0, when))
+                        q[GAP + i] = c2 * (q[TH2 + i] - q[TH1 + i])
+                    time = closing_time(q, GAP, min(1.0, when))
                     if time < when:
                         closes1 = False
                         closes2 = True
                         when = time
-                    elif closes1 and value(q[GAP], when) < 1e-13:
+                    elif closes1 and value(q, GAP, when) < 1e-13:
                         closes2 = True
                 end = min(1.0, when)
                 if c1 == 0 and p[FIXED] == 0.0:
@@ -376,10 +376,10 @@ def march(
                 moving = c1 != 0 or c2 != 0
                 if keep and moving:
                     summary[WORK] += _work(p, c1, c2, q, at, hr, now, ramp * remaining)
-                t1 = value(q[TH1], at)
-                t2 = value(q[TH2], at)
-                w1 = slope(q[TH1], at) / hr
-                w2 = slope(q[TH2], at) / hr
+                t1 = value(q, TH1, at)
+                t2 = value(q, TH2, at)
+                w1 = slope(q, TH1, at) / hr
+                w2 = slope(q, TH2, at) / hr
                 if moving:
                     _track(p, c1, c2, q, at, t1, w1, t2, w2, hr, summary)
                 theta1, omega1, theta2, omega2 = t1, w1, t2, w2
@@ -510,27 +510,27 @@ def _track(p, c1, c2, q, at, t1, w1, t2, w2, h, summary):
     summary[SPEED1] = max(summary[SPEED1], abs(w1))
     summary[SPEED2] = max(summary[SPEED2], abs(w2))
     # a peak between samples: the rate changes sign
-    if q[TH2, 1] * w2 < 0.0:
-        tau = q[TH2, 1] / (q[TH2, 1] - w2 * h) * at
-        summary[PEAK2] = max(summary[PEAK2], abs(value(q[TH2], tau)))
-    if q[TH1, 1] * w1 < 0.0:
-        tau = q[TH1, 1] / (q[TH1, 1] - w1 * h) * at
-        summary[PEAK1] = max(summary[PEAK1], abs(value(q[TH1], tau)))
+    if q[TH2 + 1] * w2 < 0.0:
+        tau = q[TH2 + 1] / (q[TH2 + 1] - w2 * h) * at
+        summary[PEAK2] = max(summary[PEAK2], abs(value(q, TH2, tau)))
+    if q[TH1 + 1] * w1 < 0.0:
+        tau = q[TH1 + 1] / (q[TH1 + 1] - w1 * h) * at
+        summary[PEAK1] = max(summary[PEAK1], abs(value(q, TH1, tau)))
     if c2 != 0:
         column = 6 if c2 > 0 else 7
-        critical = q[CRITICAL, column]
+        critical = q[CRITICAL + column]
         away = 1.0 - c2 * t2 / critical
         speed = w2 / critical
-        square = away * away + speed * speed / q[FREQUENCY2, column]
+        square = away * away + speed * speed / q[FREQUENCY2 + column]
         if square < summary[CLOSEST] * summary[CLOSEST]:
             summary[CLOSEST] = math.sqrt(square)
         summary[RATIO2] = max(summary[RATIO2], c2 * t2 / critical)
     if c1 != 0:
         column = 1 + c2 + (0 if c1 > 0 else 3)
-        critical = q[CRITICAL, column]
+        critical = q[CRITICAL + column]
         away = 1.0 - c1 * t1 / critical
         speed = w1 / critical
-        square = away * away + speed * speed / q[FREQUENCY2, column]
+        square = away * away + speed * speed / q[FREQUENCY2 + column]
         if square < summary[CLOSEST] * summary[CLOSEST]:
             summary[CLOSEST] = math.sqrt(square)
         summary[RATIO1] = max(summary[RATIO1], c1 * t1 / critical)
@@ -538,18 +538,18 @@ def _track(p, c1, c2, q, at, t1, w1, t2, w2, h, summary):
 
 @kernel
 def _ways_to_balance(p, q):
-    """Fill rows CRITICAL and FREQUENCY2: the pedestal's in columns 0 to 5, the statue's in 6 and 7."""
+    """Fill CRITICAL and FREQUENCY2: the pedestal's in columns 0 to 5, the statue's in 6 and 7."""
     for c1 in (1, -1):
         for c2 in (-1, 0, 1):
             critical, vx, vy, inertia = _balance(p, c1, c2)
             column = 1 + c2 + (0 if c1 > 0 else 3)
-            q[CRITICAL, column] = critical
-            q[FREQUENCY2, column] = p[GRAVITY] * math.hypot(vx, vy) / inertia
+            q[CRITICAL + column] = critical
+            q[FREQUENCY2 + column] = p[GRAVITY] * math.hypot(vx, vy) / inertia
     for c2 in (1, -1):
         vx, vy = first_moment2(p, c2)
         column = 6 if c2 > 0 else 7
-        q[CRITICAL, column] = math.atan2(-c2 * vx, vy)
-        q[FREQUENCY2, column] = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, c2)
+        q[CRITICAL + column] = math.atan2(-c2 * vx, vy)
+        q[FREQUENCY2 + column] = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, c2)
 
 
 @kernel
@@ -566,10 +566,10 @@ def _work(p, c1, c2, q, end, h, a0, ramp):
     for i in range(3):
         for sign in (-1.0, 1.0):
             tau = 0.5 * end * (1.0 + sign * nodes[i])
-            t1 = value(q[TH1], tau)
-            t2 = value(q[TH2], tau)
-            w1 = slope(q[TH1], tau)
-            w2 = slope(q[TH2], tau)
+            t1 = value(q, TH1, tau)
+            t2 = value(q, TH2, tau)
+            w1 = slope(q, TH1, tau)
+            w2 = slope(q, TH2, tau)
             if p[LINEAR] > 0.0:
                 rate = v1y * w1 + v2y * w2
             else:
@@ -582,4 +582,4 @@ def _work(p, c1, c2, q, end, h, a0, ramp):
 @kernel
 def scratch():
     """Scratch array of a march."""
-    return np.zeros((ROWS, ORDER + 1))
+    return np.zeros(SCRATCH)

@@ -8,7 +8,7 @@ branches or calls, so that the compiler can work on several cases at once.
 import numba
 
 
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+@numba.njit(inline="always", error_model="numpy")
 def sine_cosine(x):
     """Sine and cosine for |x| ≤ π/2 to 1e-10, and to rounding for |x| ≤ 0.6."""
     y = x * x
@@ -30,7 +30,7 @@ def sine_cosine(x):
     return x + x * y * s, 1.0 + y * c
 
 
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+@numba.njit(inline="always", error_model="numpy")
 def rates(s0, c0, w, kappa, a, ramp):
     """Taylor coefficients 1 to 5 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0."""
     w1 = kappa * (s0 + a * c0)
@@ -49,7 +49,7 @@ def rates(s0, c0, w, kappa, a, ramp):
     return w1, w2, w3, w4, w5
 
 
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+@numba.njit(inline="always", error_model="numpy")
 def travel(w, w1, w2, w3, w4, w5, t):
     """ψ(t) - ψ(0)."""
     return t * (
@@ -57,7 +57,7 @@ def travel(w, w1, w2, w3, w4, w5, t):
     )
 
 
-@numba.njit(inline="always", fastmath={"contract"}, error_model="numpy")
+@numba.njit(inline="always", error_model="numpy")
 def rate(w, w1, w2, w3, w4, w5, t):
     """ψ'(t)."""
     return w + t * (w1 + t * (w2 + t * (w3 + t * (w4 + t * w5))))

@@ -12,16 +12,16 @@ from rockfrag.rocking._mechanics import (
 )
 from rockfrag.rocking._series import ORDER, extend_circular, extend_rotation
 
-# Rows of the scratch array that a march allocates once.
-TH1, TH2, SIN1, COS1, SIN2, COS2, SIND, COSD, DELTA, GAP = range(10)
+# Places of the series in the scratch array that a march allocates once.
+TH1, TH2, SIN1, COS1, SIN2, COS2, SIND, COSD, DELTA, GAP = (row * (ORDER + 1) for row in range(10))
 # Critical angles and squared frequencies of the ways to balance: see _march.
-CRITICAL, FREQUENCY2 = 10, 11
-ROWS = 12
+CRITICAL, FREQUENCY2 = 10 * (ORDER + 1), 11 * (ORDER + 1)
+SCRATCH = 12 * (ORDER + 1)
 
 
 @kernel
-def _one(p, vx, vy, inertia, h, a0, slope, theta, sine, cosine):
-    """Series of one rotation: J θ'' = g V_x - a V_y; ``theta`` holds its first two coefficients."""
+def _one(p, vx, vy, inertia, h, a0, slope, q, theta, sine, cosine):
+    """Series of one rotation: J θ'' = g V_x - a V_y; the first two coefficients are there."""
     scale = h * h / inertia
     g = p[GRAVITY]
     # coefficients of cos θ and sin θ, constant and linear in τ
@@ -34,16 +34,16 @@ def _one(p, vx, vy, inertia, h, a0, slope, theta, sine, cosine):
         ps1 = scale * slope * vx
     linear = p[LINEAR] > 0.0
     for k in range(ORDER - 1):
-        extend_rotation(k, linear, theta, sine, cosine)
-        total = pc0 * cosine[k] + ps0 * sine[k]
+        extend_rotation(q, k, linear, theta, sine, cosine)
+        total = pc0 * q[cosine + k] + ps0 * q[sine + k]
         if k > 0:
-            total += pc1 * cosine[k - 1] + ps1 * sine[k - 1]
-        theta[k + 2] = total / ((k + 1) * (k + 2))
+            total += pc1 * q[cosine + k - 1] + ps1 * q[sine + k - 1]
+        q[theta + k + 2] = total / ((k + 1) * (k + 2))
 
 
 @kernel
 def _two(p, c1, c2, h, a0, slope, q):
-    """Series of both rotations of patterns 1 and 2; rows TH1, TH2 of ``q`` hold the initial state."""
+    """Series of both rotations of patterns 1 and 2; TH1 and TH2 hold the initial state."""
     g = p[GRAVITY]
     hh = h * h
     m11 = inertia1(p, c1, c2)
@@ -52,82 +52,80 @@ def _two(p, c1, c2, h, a0, slope, q):
     v1x, v1y = first_moment1(p, c1, c2)
     v2x, v2y = first_moment2(p, c2)
     linear = p[LINEAR] > 0.0
-    th1, th2 = q[TH1], q[TH2]
-    sin1, cos1, sin2, cos2 = q[SIN1], q[COS1], q[SIN2], q[COS2]
-    sind, cosd, delta = q[SIND], q[COSD], q[DELTA]
     for k in range(ORDER - 1):
-        delta[k] = th2[k] - th1[k]
-        extend_rotation(k, linear, th1, sin1, cos1)
-        extend_rotation(k, linear, th2, sin2, cos2)
+        q[DELTA + k] = q[TH2 + k] - q[TH1 + k]
+        extend_rotation(q, k, linear, TH1, SIN1, COS1)
+        extend_rotation(q, k, linear, TH2, SIN2, COS2)
         if linear:
-            sind[k] = 0.0
-            cosd[k] = 1.0 if k == 0 else 0.0
+            q[SIND + k] = 0.0
+            q[COSD + k] = 1.0 if k == 0 else 0.0
         else:
             if k == 0:
                 # sin and cos of the difference from those already there
-                sind[0] = sin2[0] * cos1[0] - cos2[0] * sin1[0]
-                cosd[0] = cos2[0] * cos1[0] + sin2[0] * sin1[0]
+                q[SIND] = q[SIN2] * q[COS1] - q[COS2] * q[SIN1]
+                q[COSD] = q[COS2] * q[COS1] + q[SIN2] * q[SIN1]
             else:
-                extend_circular(k, delta, sind, cosd)
+                extend_circular(q, k, DELTA, SIND, COSD)
         # weight and ground: f/h² without the centrifugal terms
-        f1 = (a0 * v1y - g * v1x) * cos1[k] - g * v1y * sin1[k]
-        f2 = (a0 * v2y - g * v2x) * cos2[k] - g * v2y * sin2[k]
+        f1 = (a0 * v1y - g * v1x) * q[COS1 + k] - g * v1y * q[SIN1 + k]
+        f2 = (a0 * v2y - g * v2x) * q[COS2 + k] - g * v2y * q[SIN2 + k]
         if k > 0:
-            f1 += slope * v1y * cos1[k - 1]
-            f2 += slope * v2y * cos2[k - 1]
+            f1 += slope * v1y * q[COS1 + k - 1]
+            f2 += slope * v2y * q[COS2 + k - 1]
         if not linear:
-            f1 -= a0 * v1x * sin1[k]
-            f2 -= a0 * v2x * sin2[k]
+            f1 -= a0 * v1x * q[SIN1 + k]
+            f2 -= a0 * v2x * q[SIN2 + k]
             if k > 0:
-                f1 -= slope * v1x * sin1[k - 1]
-                f2 -= slope * v2x * sin2[k - 1]
+                f1 -= slope * v1x * q[SIN1 + k - 1]
+                f2 -= slope * v2x * q[SIN2 + k - 1]
         right1 = -hh * f1
         right2 = -hh * f2
         if not linear:
             for j in range(k + 1):
                 # coefficient j of D times coefficient k - j of the squared rates
-                d = f * cosd[j] - e * sind[j]
+                d = f * q[COSD + j] - e * q[SIND + j]
                 square1 = 0.0
                 square2 = 0.0
                 for i in range(k - j + 1):
                     weight = (i + 1) * (k - j - i + 1)
-                    square1 += weight * th1[i + 1] * th1[k - j - i + 1]
-                    square2 += weight * th2[i + 1] * th2[k - j - i + 1]
+                    square1 += weight * q[TH1 + i + 1] * q[TH1 + k - j - i + 1]
+                    square2 += weight * q[TH2 + i + 1] * q[TH2 + k - j - i + 1]
                 right1 -= d * square2
                 right2 += d * square1
             for j in range(1, k + 1):
-                m12 = e * cosd[j] + f * sind[j]
+                m12 = e * q[COSD + j] + f * q[SIND + j]
                 i = k - j
                 factor = (i + 1) * (i + 2)
-                right1 -= m12 * factor * th2[i + 2]
-                right2 -= m12 * factor * th1[i + 2]
-        m12 = e * cosd[0] + f * sind[0]
+                right1 -= m12 * factor * q[TH2 + i + 2]
+                right2 -= m12 * factor * q[TH1 + i + 2]
+        m12 = e * q[COSD] + f * q[SIND]
         share = 1.0 / ((m11 * m22 - m12 * m12) * (k + 1) * (k + 2))
-        th1[k + 2] = (m22 * right1 - m12 * right2) * share
-        th2[k + 2] = (m11 * right2 - m12 * right1) * share
+        q[TH1 + k + 2] = (m22 * right1 - m12 * right2) * share
+        q[TH2 + k + 2] = (m11 * right2 - m12 * right1) * share
 
 
 @kernel
 def series(p, c1, c2, theta1, omega1, theta2, omega2, h, a0, slope, q):
-    """Fill rows TH1 and TH2 of ``q`` with θ1(τ), θ2(τ) for a ground acceleration a0 + slope τ."""
-    th1, th2 = q[TH1], q[TH2]
-    th1[:] = 0.0
-    th2[:] = 0.0
-    th1[0] = theta1
-    th2[0] = theta2
+    """Fill TH1 and TH2 of ``q`` with θ1(τ), θ2(τ) for a ground acceleration a0 + slope τ."""
+    for k in range(ORDER + 1):
+        q[TH1 + k] = 0.0
+        q[TH2 + k] = 0.0
+    q[TH1] = theta1
+    q[TH2] = theta2
     if c1 == 0 and c2 == 0:
         return
-    th1[1] = omega1 * h
-    th2[1] = omega2 * h
+    q[TH1 + 1] = omega1 * h
+    q[TH2 + 1] = omega2 * h
     if c1 == 0:
         vx, vy = first_moment2(p, c2)
-        _one(p, vx, vy, inertia2(p, c2), h, a0, slope, th2, q[SIN2], q[COS2])
+        _one(p, vx, vy, inertia2(p, c2), h, a0, slope, q, TH2, SIN2, COS2)
     elif c2 == 0:
         v1x, v1y = first_moment1(p, c1, 1)
         v2x, v2y = first_moment2(p, 1)
         e, _ = coupling(p, c1, 1)
         whole = inertia1(p, c1, 1) + 2.0 * e + inertia2(p, 1)
-        _one(p, v1x + v2x, v1y + v2y, whole, h, a0, slope, th1, q[SIN1], q[COS1])
-        th2[:] = th1
+        _one(p, v1x + v2x, v1y + v2y, whole, h, a0, slope, q, TH1, SIN1, COS1)
+        for k in range(ORDER + 1):
+            q[TH2 + k] = q[TH1 + k]
     else:
         _two(p, c1, c2, h, a0, slope, q)
