@@ -141,11 +141,14 @@ def _check_image(path: str | None) -> None:
 
 
 def _check_config(options: argparse.Namespace) -> int:
-    from rockfrag.studies.loading import load_study
+    from rockfrag.studies.loading import load_any
+    from rockfrag.studies.measured_table import MeasuredTable
 
-    study = load_study(options.file)
+    study = load_any(options.file)
     if options.report:
         print(f"The report is results/{study.name}/report.html")
+    elif isinstance(study, MeasuredTable):
+        print(f"{options.file} is right: study {study.name} of the table {study.table}.")
     else:
         print(
             f"{options.file} is right: study {study.name}, {len(study.catalogue)} records, "

@@ -171,8 +171,12 @@ def render(
     findings: Sequence[Finding],
     sections: Sequence[Section],
     provenance: Mapping[str, str],
+    basis: str = "simulated",
 ) -> str:
-    """Return the page as HTML; the same arguments give the same bytes."""
+    """Return the page as HTML; the same arguments give the same bytes.
+
+    ``basis`` says whether its figures are ``simulated`` or ``measured``; the page warns of the first.
+    """
     environment = Environment(
         loader=PackageLoader("rockfrag.report"),
         autoescape=select_autoescape(default=True),
@@ -188,5 +192,6 @@ def render(
         findings=findings,
         sections=sections,
         provenance=provenance,
+        basis=basis,
         style=Markup(style),
     )

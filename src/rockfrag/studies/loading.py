@@ -7,6 +7,11 @@ from typing import Any
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import check_steps
+from rockfrag.studies.measured_table import (
+    MeasuredTable,
+    is_measured_table,
+    measured_table_from,
+)
 from rockfrag.studies.study import Study, study_from
 from rockfrag.studies.yaml_file import read_yaml
 
@@ -20,6 +25,20 @@ def load_study(path: str | os.PathLike[str]) -> Study:
         One sentence with the file, the key or row, what was expected and what was found.
     """
     return checked_study(read_yaml(path), path)
+
+
+def load_any(path: str | os.PathLike[str]) -> Study | MeasuredTable:
+    """Read a configuration of either kind: a simulated study, or one of a measured table.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_study`.
+    """
+    content = read_yaml(path)
+    if is_measured_table(content):
+        return measured_table_from(content, path)
+    return checked_study(content, path)
 
 
 def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:

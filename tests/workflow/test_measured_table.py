@@ -1,0 +1,89 @@
+"""A table of measured tests goes from its CSV to a report, and an absent one is named."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+
+from rockfrag.errors import InputError
+from rockfrag.studies.loading import load_any
+
+from .test_run import ROOT, snakemake
+
+
+def write_example(folder: Path, table: str, **changes: object) -> Path:
+    """Write the example's configuration beside a table of that name."""
+    content = yaml.safe_load((ROOT / "config" / "measured-example.yaml").read_text())
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump({**content, "table": table, **changes}))
+    return path
+
+
+def write_synthetic(folder: Path) -> Path:
+    """150 synthetic tests that overturn above a PGV of about 40 cm/s, whatever their PGA."""
+    rng = np.random.default_rng(5)
+    pga = np.exp(rng.normal(np.log(0.4), 0.5, 150))
+    ratio = np.exp(rng.normal(np.log(0.1), 0.5, 150))
+    fell = pga * ratio * 980.665 > 40 * np.exp(rng.normal(0, 0.2, 150))
+    table = pd.DataFrame(
+        {
+            "record": [f"synthetic {k % 30}" for k in range(150)],
+            "pga_g": pga,
+            "pgv_over_pga_s": ratio,
+            "overturned": fell.astype(int),
+        }
+    )
+    path = folder / "synthetic.csv"
+    table.to_csv(path, index=False)
+    return path
+
+
+def test_the_example_names_the_table_that_the_user_must_give():
+    if (ROOT / "resources" / "measured" / "granite_rock_1.csv").exists():
+        pytest.skip("somebody has put the table there")
+    with pytest.raises(InputError) as caught:
+        load_any(ROOT / "config" / "measured-example.yaml")
+    assert "\n" not in str(caught.value)
+    for word in ("measured-example.yaml", "key table", "resources/measured/granite_rock_1.csv"):
+        assert word in str(caught.value)
+
+
+def test_a_wrong_key_of_a_measured_table_is_named(tmp_path: Path):
+    write_synthetic(tmp_path)
+    with pytest.raises(InputError, match="key confidence: expected a probability"):
+        load_any(write_example(tmp_path, "synthetic.csv", confidence=90))
+    with pytest.raises(InputError, match=r"key measures\.pga_g"):
+        load_any(write_example(tmp_path, "synthetic.csv", measures={"pga_g": "pga_g"}))
+
+
+def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
+    write_synthetic(tmp_path)
+    write_example(tmp_path, "synthetic.csv", replicates=20)
+    done = snakemake(tmp_path, "--cores", "1")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = tmp_path / "results" / "measured-example"
+    curves = pd.read_csv(results / "fragility.csv").set_index("im")
+    assert curves.loc["PGV", "theta"] == pytest.approx(40, rel=0.1)
+    assert pd.read_parquet(results / "recommendation.parquet")["im"].iloc[0] == "PGV"
+    page = (results / "report.html").read_text()
+    assert "PGV foretells overturning best" in page
+    assert "Simulated, not measured" not in page
+    assert 'src="http' not in page
+    assert (results / "figures" / "surface.png").stat().st_size > 1000
+
+
+@pytest.mark.slow
+def test_the_granite_rock_runs_through_the_workflow(tmp_path: Path, shared: Path):
+    table = (shared / "measured" / "granite_rock_1.csv").resolve()
+    write_example(tmp_path, str(table))
+    done = snakemake(tmp_path, "--cores", "1")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = tmp_path / "results" / "measured-example"
+    aic = pd.read_csv(results / "recommendation.csv").set_index("im")["aic"]
+    assert aic["PGA"] == pytest.approx(656.0, abs=0.1)
+    assert aic["PGV"] == pytest.approx(309.0, abs=0.1)
+    page = (results / "report.html").read_text()
+    assert "PGV is recommended" in page
+    assert "309.4 for both" in page
