@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 import pandas as pd
+from markupsafe import Markup
 
 from rockfrag.report.findings import READING, Finding, all_findings
 from rockfrag.report.ledger_html import ledger_html
@@ -170,22 +171,16 @@ def _fragility(
     study: Study, tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture]
 ) -> Section:
     level = f"{100 * study.fragility.confidence:g} %"
-    curves = tables["fragility"].copy()
-    curves["reading"] = curves["estimator"].str.replace("_", " ")
+    curves = tables["fragility"]
     order = {one.name: i for i, one in enumerate(study.configurations)}
     curves = curves.sort_values("configuration", key=lambda names: names.map(order), kind="stable")
-    columns = (
-        Column("configuration", "Configuration"),
-        Column("im", "Measure"),
-        Column("unit", "Unit"),
-        Column("reading", "Reading"),
-        Column("theta", "Median θ", 3),
-        Column("theta_lower", "from", 3),
-        Column("theta_upper", "to", 3),
-        Column("beta", "β", 3),
-        Column("beta_lower", "from", 3),
-        Column("beta_upper", "to", 3),
-    )
+    for name in ("theta", "beta"):
+        curves[f"{name}_text"] = [
+            f"{value:.3g} [{low:.3g}, {high:.3g}]"
+            for value, low, high in curves[[name, f"{name}_lower", f"{name}_upper"]].itertuples(
+                index=False
+            )
+        ]
     notes = sorted({note for note in curves["warnings"] if note})
     return Section(
         "fragility",
@@ -198,14 +193,29 @@ def _fragility(
         ],
         [
             *_chosen(pictures, "fragility"),
-            table_html(curves, columns, f"Medians and dispersions with {level} intervals."),
+            *_curve_tables(curves, level),
         ],
     )
+
+
+def _curve_tables(curves: pd.DataFrame, level: str) -> list[Markup]:
+    """One narrow table per intensity measure and reading, so that telephones show it whole."""
+    tables = []
+    for (measure, unit, reading), rows in curves.groupby(["im", "unit", "estimator"], sort=False):
+        columns = (
+            Column("configuration", "Configuration"),
+            Column("theta_text", f"Median θ [{unit}]"),
+            Column("beta_text", "Dispersion β"),
+        )
+        caption = f"{measure}, {str(reading).replace('_', ' ')}: with {level} intervals."
+        tables.append(table_html(rows, columns, caption))
+    return tables
 
 
 def _pedestal(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture]) -> Section:
     effects = tables["pedestal/effects"]
     whole = tables["pedestal/whole"]
+    whole = whole.assign(reading=whole["reading"].str.replace("_", " "))
     shown = (
         Column("scope", "Scope"),
         Column("level", "Level"),

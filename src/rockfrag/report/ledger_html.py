@@ -7,8 +7,9 @@ _STATEMENT = Markup(
     '<div class="statement {verdict}"><p><strong>C{number}</strong> {statement} '
     '<span class="meta">({source})</span></p>'
     '<p><span class="verdict">{verdict}</span>, {basis}: {figure}</p>'
-    '<p class="meta">{test}{remark}</p></div>'
+    '<p class="meta">Test: {test}</p>{remark}</div>'
 )
+_REMARK = Markup('<p class="meta">Remark: {}</p>')
 
 
 def ledger_html(claims: pd.DataFrame) -> Markup:
@@ -18,7 +19,7 @@ def ledger_html(claims: pd.DataFrame) -> Markup:
             **{key: row[key] for key in ("verdict", "number", "statement", "source", "basis")},
             figure=row["figure"],
             test=row["test"],
-            remark=f" {row['remark']}" if row["remark"] else "",
+            remark=_REMARK.format(row["remark"]) if row["remark"] else "",
         )
         for row in claims.fillna({"remark": ""}).to_dict("records")
     ]
