@@ -1,0 +1,223 @@
+"""Symmetries, similarities and limits that hold for every body and every motion."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from rockfrag.rocking import Block, Body, Response, Stack, overturns, simulate
+from rockfrag.rocking.inputs import CLOSING_SPEED
+
+G = 9.81
+DT = 0.01
+
+few = settings(
+    max_examples=25, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
+)
+
+
+@st.composite
+def motions(draw: st.DrawFn, peak_g: float = 0.8) -> np.ndarray:
+    """Sum of three sines under an envelope [m/s²], 3 s long, that begins and ends with zero."""
+    t = np.arange(300) * DT
+    waves = np.zeros_like(t)
+    for _ in range(3):
+        frequency, phase = draw(st.floats(0.4, 5)), draw(st.floats(0, 6))
+        waves += draw(st.floats(0.3, 1)) * np.sin(2 * np.pi * frequency * t + phase)
+    shape = waves * np.sin(np.pi * np.arange(300) / 299) ** 0.5
+    shape[[0, -1]] = 0.0
+    top = float(np.abs(shape).max())
+    assume(top > 0.05)
+    return np.asarray(draw(st.floats(0.2, peak_g)) * G * shape / top)
+
+
+@st.composite
+def blocks(draw: st.DrawFn, crooked: bool = False) -> Block:
+    """A block of H/B from 1.5 to 6, uniform or crooked."""
+    width = draw(st.floats(0.1, 1.0))
+    height = width * draw(st.floats(1.5, 6))
+    if not crooked:
+        return Block(width, height, width * height * 500)
+    return Block(
+        width,
+        height,
+        width * height * 500,
+        cg_height=height * draw(st.floats(0.3, 0.6)),
+        cg_offset=width * draw(st.floats(-0.15, 0.15)),
+        lean=draw(st.floats(-0.01, 0.01)),
+    )
+
+
+@st.composite
+def stacks(draw: st.DrawFn, crooked: bool = False) -> Stack:
+    """A statue on a pedestal that it leaves some room on."""
+    statue = draw(blocks(crooked))
+    width = statue.width * draw(st.floats(1.2, 2.5))
+    height = width * draw(st.floats(0.3, 2))
+    pedestal = Block(width, height, width * height * draw(st.floats(300, 2000)))
+    offset = draw(st.floats(-0.05, 0.05)) * width if crooked else 0.0
+    return Stack(pedestal, statue, offset)
+
+
+def bodies(crooked: bool) -> st.SearchStrategy[Body]:
+    return st.one_of(blocks(crooked), stacks(crooked))
+
+
+def mirrored(body: Body) -> Body:
+    """The body seen from behind."""
+    if isinstance(body, Block):
+        return replace(body, cg_offset=-body.cg_offset, lean=-body.lean)
+    pedestal, statue = mirrored(body.pedestal), mirrored(body.statue)
+    assert isinstance(pedestal, Block) and isinstance(statue, Block)
+    return Stack(pedestal, statue, -body.offset)
+
+
+def until_fallen(response: Response) -> slice:
+    """Samples before any block lies down."""
+    down = np.flatnonzero(np.abs(response.theta).max(axis=1) > 1.0)
+    return slice(0, int(down[0]) if down.size else len(response.time))
+
+
+@few
+@given(body=bodies(crooked=True), motion=motions())
+def test_a_mirrored_motion_mirrors_the_response(body: Body, motion: np.ndarray) -> None:
+    one = simulate(body, motion, DT)
+    other = simulate(mirrored(body), -motion, DT)
+    assert one.overturned == other.overturned
+    assert one.impacts == other.impacts
+    assert one.theta == pytest.approx(-other.theta, abs=1e-12)
+    assert (one.state == -other.state).all()
+    assert one.normal_force == pytest.approx(other.normal_force, rel=1e-9, abs=1e-6)
+
+
+@few
+@given(body=bodies(crooked=False), motion=motions())
+def test_a_mirrored_motion_gives_a_symmetric_body_the_same_verdict(
+    body: Body, motion: np.ndarray
+) -> None:
+    found = overturns([body], [motion, -motion], DT, [0.7, 1.0, 1.6])
+    for name in ("overturned", "overturned_body", "impacts"):
+        values = getattr(found, name)[0]
+        assert (values[0] == values[1]).all(), name
+    one, other = found.peak_rotation[0]
+    assert one == pytest.approx(other, rel=1e-9)
+
+
+@few
+@given(block=blocks(), motion=motions(), size=st.floats(0.2, 20))
+def test_similar_blocks_share_one_response(block: Block, motion: np.ndarray, size: float) -> None:
+    # α, ωp/p and a/(αg) alike: θ(p t)/α alike
+    larger = Block(block.width * size, block.height * size, block.mass)
+    one = simulate(block, motion, DT)
+    other = simulate(larger, motion, DT * math.sqrt(size))
+    assert one.overturned == other.overturned
+    n = min(until_fallen(one).stop, until_fallen(other).stop)
+    assert abs(until_fallen(one).stop - until_fallen(other).stop) <= 1
+    assert one.theta[:n] / block.alpha == pytest.approx(other.theta[:n] / block.alpha, abs=1e-8)
+
+
+@few
+@given(stack=stacks(), motion=motions(), size=st.floats(0.2, 20), weight=st.floats(0.01, 100))
+def test_similar_stacks_share_one_response_whatever_they_weigh(
+    stack: Stack, motion: np.ndarray, size: float, weight: float
+) -> None:
+    def grown(block: Block) -> Block:
+        return Block(block.width * size, block.height * size, block.mass * weight)
+
+    other_body = Stack(grown(stack.pedestal), grown(stack.statue))
+    one = simulate(stack, motion, DT)
+    other = simulate(other_body, motion, DT * math.sqrt(size))
+    # the threshold that closes chatter is a speed, which does not scale; before the first it matters not
+    closed = one.events.query("kind == 'chatter'")["time"]
+    stop = int(closed.iloc[0] / DT) if len(closed) else len(one.time)
+    n = min(stop, until_fallen(one).stop, until_fallen(other).stop)
+    assert one.theta[:n] == pytest.approx(other.theta[:n], abs=1e-8)
+
+
+@few
+@given(statue=blocks(), motion=motions())
+def test_on_a_pedestal_that_cannot_move_the_statue_rocks_alone(
+    statue: Block, motion: np.ndarray
+) -> None:
+    stack = Stack(Block(1e3, 1.0, 1e12), statue)
+    alone, carried = simulate(statue, motion, DT), simulate(stack, motion, DT)
+    assert alone.overturned == carried.overturned
+    n = min(until_fallen(alone).stop, until_fallen(carried).stop)
+    assert np.abs(carried.theta[:, 0]).max() < 1e-9
+    assert carried.theta[:n, 1] == pytest.approx(alone.theta[:n, 0], abs=1e-9)
+
+
+@few
+@given(motion=motions(), height=st.floats(1.0, 3.0), top=st.floats(0.05, 0.2))
+def test_two_blocks_that_never_part_rock_as_one(
+    motion: np.ndarray, height: float, top: float
+) -> None:
+    # a flat plate on a column has no cause to rock on its own
+    stack = Stack(Block(0.5, height, 300.0), Block(0.5, top * 0.5, 30.0))
+    together, one = simulate(stack, motion, DT), simulate(stack.glued(), motion, DT)
+    parted = np.flatnonzero(together.state[:, 1] != 0)
+    n = min(until_fallen(together).stop, until_fallen(one).stop)
+    n = min(n, int(parted[0]) if parted.size else n)
+    assume(n > 20)
+    assert together.theta[:n, 0] == pytest.approx(one.theta[:n, 0], abs=1e-9)
+    assert together.theta[:n, 1] == pytest.approx(one.theta[:n, 0], abs=1e-9)
+    assert set(together.pattern[:n]) <= {"rest", "3a", "3b"}
+
+
+@few
+@given(body=bodies(crooked=True), motion=motions(), zeros=st.integers(1, 200))
+def test_a_later_start_shifts_the_response_rigidly(
+    body: Body, motion: np.ndarray, zeros: int
+) -> None:
+    one = simulate(body, motion, DT)
+    other = simulate(body, np.r_[np.zeros(zeros), motion], DT)
+    n = len(one.time)
+    assert not other.theta[:zeros].any()
+    assert other.theta[zeros : zeros + n] == pytest.approx(one.theta, abs=1e-12)
+    assert other.impacts == one.impacts and other.overturned == one.overturned
+
+
+@few
+@given(body=bodies(crooked=True), motion=motions())
+def test_energy_is_never_gained_at_impacts_and_the_ledger_closes(
+    body: Body, motion: np.ndarray
+) -> None:
+    response = simulate(body, motion, DT)
+    impacts = response.events.query("kind != 'opening'")
+    before, after = impacts["energy_before"], impacts["energy_after"]
+    assert (after <= before * (1 + 1e-12) + 1e-300).all()
+    energy = response.energy
+    scale = energy["kinetic"].max() + energy["input"].abs().max()
+    residual = energy["residual"].abs().max()
+    # a contact that closes because it chatters gives up no more than this
+    whole = body if isinstance(body, Block) else body.glued()
+    closing = 0.5 * max(whole.pole_inertia(pole) for pole in (+1, -1)) * CLOSING_SPEED**2
+    assert residual <= 1e-6 * scale + closing, f"{residual} J of {scale} J"
+
+
+@few
+@given(body=bodies(crooked=True), motion=motions(), scale=st.floats(0.5, 2.0))
+def test_the_ensemble_gives_the_verdict_of_the_single_simulation(
+    body: Body, motion: np.ndarray, scale: float
+) -> None:
+    found = overturns([body], [motion], DT, [scale])
+    response = simulate(body, scale * motion, DT)
+    margin = min(float(found.closest_approach[0, 0, 0]), response.closest_approach)
+    assume(margin > 1e-4)
+    assert bool(found.overturned[0, 0, 0]) == response.overturned
+
+
+@few
+@given(body=bodies(crooked=True), start=st.floats(-0.9, 0.9))
+def test_free_rocking_ends_at_rest_or_on_the_side(body: Body, start: float) -> None:
+    assume(abs(start) > 0.01)
+    if isinstance(body, Block):
+        theta0: float | tuple[float, float] = start * body.alpha
+    else:
+        theta0 = (0.0, start * body.statue.alpha)
+    response = simulate(body, np.zeros(2), DT, theta0=theta0)
+    assert response.overturned or response.pattern[-1] == "rest"
+    assert np.isfinite(response.theta).all()
