@@ -3,16 +3,21 @@
 >>> from rockfrag import Block, Stack, simulate, overturns, read_motion
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from rockfrag._lazy import loader
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
     from rockfrag.records.reading import read_motion
-    from rockfrag.rocking.bodies import Block, Stack
-    from rockfrag.rocking.ensemble import EnsembleResult, overturns
-    from rockfrag.rocking.response import Response
-    from rockfrag.rocking.simulation import simulate
+    from rockfrag.rocking import (
+        Block,
+        EnsembleResult,
+        Response,
+        Stack,
+        overturns,
+        simulate,
+    )
 
 __all__ = [
     "Block",
@@ -25,20 +30,16 @@ __all__ = [
     "simulate",
 ]
 
-_HOMES = {
-    "Block": "rockfrag.rocking.bodies",
-    "EnsembleResult": "rockfrag.rocking.ensemble",
-    "Motion": "rockfrag.records.motion",
-    "Response": "rockfrag.rocking.response",
-    "Stack": "rockfrag.rocking.bodies",
-    "overturns": "rockfrag.rocking.ensemble",
-    "read_motion": "rockfrag.records.reading",
-    "simulate": "rockfrag.rocking.simulation",
-}
-
-
-def __getattr__(name: str) -> Any:
-    # loaded when first used: reading needs ObsPy and simulating needs numba, a second each
-    if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
-    raise AttributeError(f"module 'rockfrag' has no attribute {name!r}")
+__getattr__ = loader(
+    __name__,
+    {
+        "Motion": "rockfrag.records.motion",
+        "read_motion": "rockfrag.records.reading",
+        "Block": "rockfrag.rocking.bodies",
+        "EnsembleResult": "rockfrag.rocking.ensemble",
+        "Response": "rockfrag.rocking.response",
+        "Stack": "rockfrag.rocking.bodies",
+        "overturns": "rockfrag.rocking.ensemble",
+        "simulate": "rockfrag.rocking.simulation",
+    },
+)

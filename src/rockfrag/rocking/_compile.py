@@ -1,7 +1,9 @@
 """How kernels are compiled: once per machine, cached where the installation can be written."""
 
+import fcntl
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -39,3 +41,26 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         index = compiled._cache._cache_file
         index._source_stamp = (index._source_stamp, _digest())
     return compiled  # type: ignore[no-any-return]
+
+
+@contextmanager
+def compiling_alone(compiled: Any) -> Iterator[None]:
+    """Hold other processes off while this one calls a kernel for the first time.
+
+    The first of several processes that start together compiles; the others wait and read its cache.
+    """
+    cached = getattr(compiled, "_cache", None)
+    folder = getattr(cached, "cache_path", None)
+    if folder is None or compiled.signatures:
+        yield
+        return
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        lock = open(Path(folder) / f"{compiled.__name__}.lock", "a")  # noqa: SIM115 (closed below)
+    except OSError:
+        # a cache that can be read but not written needs no lock
+        yield
+        return
+    with lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield

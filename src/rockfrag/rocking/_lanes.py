@@ -103,25 +103,25 @@ def advance(x):
 
 
 @kernel
-def _flight(gap, w, w1, w2, w3, w4, w5):
-    """Time within (0, 1] at which ψ reaches the angle of impact, ``gap`` below it; 2 if it never left it.
+def _flight(gap, w, w1, w2, w3, w4, w5, high):
+    """Time at which ψ reaches the angle of impact, ``gap`` below it; 2 if it never left it.
 
-    The angle is passed at time 1.
+    The angle is passed by the time ``high``.
     """
     low = 0.0
-    high = 1.0
+    last = high
     if gap >= 0.0:
         # just left this pole: look behind the root at 0
         gap = 0.0
-        guess = -2.0 * w / w1 if w1 > 0.0 else 0.5
-        low = min(1e-3, 0.5 * guess)
+        guess = -2.0 * w / w1 if w1 > 0.0 else 0.5 * last
+        low = min(1e-3 * last, 0.5 * guess)
         while travel(w, w1, w2, w3, w4, w5, low) >= 0.0:
             low *= 0.1
             if low < 1e-13:
                 return 2.0
     else:
-        over = gap + travel(w, w1, w2, w3, w4, w5, 1.0)
-        guess = 1.0 - over / max(1e-300, rate(w, w1, w2, w3, w4, w5, 1.0))
+        over = gap + travel(w, w1, w2, w3, w4, w5, last)
+        guess = last - over / max(1e-300, rate(w, w1, w2, w3, w4, w5, last))
     for _ in range(100):
         if not low < guess < high:
             guess = 0.5 * (low + high)
@@ -136,7 +136,7 @@ def _flight(gap, w, w1, w2, w3, w4, w5):
         # the error after this step is of the order of its square
         if abs(step) <= 1e-7 or high - low <= 1e-15:
             break
-    return min(max(guess, 0.0), 1.0)
+    return min(max(guess, 0.0), last)
 
 
 @kernel
@@ -252,12 +252,18 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, o, tally, r):
         v = rate(speed, w1, w2, w3, w4, w5, 1.0)
         t = 2.0
         if p >= angle:
-            t = _flight(gap, speed, w1, w2, w3, w4, w5)
+            t = _flight(gap, speed, w1, w2, w3, w4, w5, 1.0)
             if t > 1.0:
                 # it never left the ground
                 return 0.0, 0.0, 0
         elif speed > 0.0 and v < 0.0:
             t = _graze(gap, speed, w1, w2, w3, w4, w5)
+        elif gap >= 0.0 and w1 > 0.0 and -2.0 * speed < w1:
+            # falls back within the step, and may be pulled open again before its end
+            for part in range(1, 8):
+                if travel(speed, w1, w2, w3, w4, w5, part / 8) >= 0.0:
+                    t = _flight(gap, speed, w1, w2, w3, w4, w5, part / 8)
+                    break
         if t > 1.0:
             _note(tally, r, p, v / left, angle, full)
             if speed < 0.0 and v > 0.0:

@@ -86,9 +86,9 @@ def first_root(q, row, start, end):
 
 
 @kernel
-def lowest_point(q, row, end):
-    """Find the minimum inside (0, end) of a q that falls at 0 and rises at ``end``."""
-    low = 0.0
+def lowest_point(q, row, start, end):
+    """Find the minimum inside (start, end) of a q that falls at ``start`` and rises at ``end``."""
+    low = start
     high = end
     for _ in range(60):
         tau = 0.5 * (low + high)
@@ -101,27 +101,42 @@ def lowest_point(q, row, end):
     return 0.5 * (low + high)
 
 
+PARTS = 8
+"""Parts of a step that are searched one by one: a contact may close and be pulled open within one."""
+
+
 @kernel
 def closing_time(q, row, end):
     """Find when an open contact closes within (0, end]; 2.0 if it stays open.
 
-    The series at ``row`` is the opening angle, positive while open; it may start from exactly zero (an opening).
+    The series at ``row`` is the opening angle, positive while open; it may start from exactly zero (an
+    opening).
     """
-    at_end = value(q, row, end)
+    least = q[row]
+    for k in range(1, ORDER + 1):
+        least += min(0.0, q[row + k])
+    if least > 0.0:
+        return 2.0
+    before = 0.0
     if q[row] <= 0.0:
-        # opened this instant: divide the root at τ = 0 out, and look at what is left
-        if at_end >= 0.0:
-            return 2.0
-        low = 1e-3 * end
-        while value(q, row, low) <= 0.0:
-            low *= 0.1
-            if low < 1e-13:
-                return 0.0
-        return first_root(q, row, low, end)
-    if at_end < 0.0:
-        return first_root(q, row, 0.0, end)
-    if q[row + 1] < 0.0 and slope(q, row, end) > 0.0:
-        low = lowest_point(q, row, end)
-        if value(q, row, low) < 0.0:
-            return first_root(q, row, 0.0, low)
+        # opened this instant: look behind the root at τ = 0
+        before = 1e-3 * end
+        while value(q, row, before) <= 0.0:
+            before *= 0.1
+            if before < 1e-13:
+                return 0.0 if value(q, row, end) < 0.0 else 2.0
+    falls = slope(q, row, before) < 0.0
+    for part in range(1, PARTS + 1):
+        after = end * part / PARTS
+        if after <= before:
+            continue
+        if value(q, row, after) < 0.0:
+            return first_root(q, row, before, after)
+        rises = slope(q, row, after) > 0.0
+        if falls and rises:
+            low = lowest_point(q, row, before, after)
+            if value(q, row, low) < 0.0:
+                return first_root(q, row, before, low)
+        falls = not rises
+        before = after
     return 2.0

@@ -5,6 +5,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import _march as kmarch
+from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking._ensemble import march_cases
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.inputs import (
@@ -158,8 +160,10 @@ def _factors(scales: ArrayLike, n_motions: int) -> Array:
     return np.ascontiguousarray(factors)
 
 
-def _in_parallel(count: int, workers: int, work: Callable[[int, int], None]) -> None:
-    """Call ``work(first, last)`` on chunks of ``count`` cases."""
+def _in_parallel(kernel: Any, count: int, workers: int, work: Callable[[int, int], None]) -> None:
+    """Call ``work(first, last)``, which calls ``kernel``, on chunks of ``count`` cases."""
+    with compiling_alone(kernel):
+        work(0, 0)
     starts = range(0, count, CHUNK)
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(lambda first: work(first, min(first + CHUNK, count)), starts))
@@ -195,7 +199,7 @@ def _stacks(
             COARSE_CLOSING_SPEED, table[first:last],
         )  # fmt: skip
 
-    _in_parallel(len(table), workers, work)
+    _in_parallel(march_cases, len(table), workers, work)
     table = table.reshape(*shape, kmarch.SUMMARY)
     fallen = table[..., kmarch.FALLEN]
     result.overturned[rows] = fallen > 0
@@ -267,7 +271,7 @@ def _lone_blocks(
             blocks.min(axis=1), ahead_high, ahead_low, outcome[first:last].reshape(-1),
         )  # fmt: skip
 
-    _in_parallel(len(outcome), workers, work)
+    _in_parallel(lanes.lone_blocks, len(outcome), workers, work)
     outcome = outcome.reshape(*shape, lanes.RESULTS)
     fallen = outcome[..., lanes.OVERTURNED] > 0
     interval = intervals[:, :, np.newaxis]

@@ -46,14 +46,23 @@ def impulse_position(block: Block, restitution: float, new_pole: int) -> float:
     )
 
 
-def _checked(restitution: float | None, interface: str) -> float | None:
+def largest_restitution(block: Block) -> float:
+    """Largest ratio of angular velocities that no impact of the lone block gains energy with [-].
+
+    1 for a symmetric block; √ of the ratio of the pole inertias where they differ.
+    """
+    right, left = block.pole_inertia(+1), block.pole_inertia(-1)
+    return math.sqrt(min(right, left) / max(right, left))
+
+
+def _checked(restitution: float | None, interface: str, block: Block) -> float | None:
     if restitution is None:
         return None
-    value = float(restitution)
-    if not (math.isfinite(value) and 0.0 <= value <= 1.0):
+    value, largest = float(restitution), largest_restitution(block)
+    if not (math.isfinite(value) and 0.0 <= value <= largest):
         raise InputError(
-            f"restitution of the {interface}: {restitution} would not lose energy or is no number; "
-            "give a ratio of angular velocities from 0 to at most 1, or None to conserve momentum."
+            f"restitution of the {interface}: {restitution} would gain energy or is no ratio; give a "
+            f"ratio of angular velocities from 0 to at most {largest:.6g}, or None to conserve momentum."
         )
     return value
 
@@ -65,10 +74,13 @@ def _pair(body: Body, restitution: Restitution) -> tuple[float | None, float | N
     if isinstance(body, Block):
         if not isinstance(restitution, (int, float, np.floating)):
             raise InputError("restitution: a lone block takes one number, not a pair.")
-        return None, _checked(float(restitution), "block")
+        return None, _checked(float(restitution), "block", body)
     if isinstance(restitution, (int, float, np.floating)) or len(restitution) != 2:
         raise InputError("restitution: a stack takes a pair (ground, interface), each may be None.")
-    return _checked(restitution[0], "ground"), _checked(restitution[1], "interface")
+    return (
+        _checked(restitution[0], "ground", body.pedestal),
+        _checked(restitution[1], "interface", body.statue),
+    )
 
 
 def lone_restitution(block: Block, restitution: Restitution) -> float | None:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.rocking import _march as kmarch
 from rockfrag.rocking import _mechanics as km
+from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.forces import contact_forces
 from rockfrag.rocking.inputs import (
@@ -86,10 +87,11 @@ def simulate(
     capacity = 4096
     while True:
         events = np.zeros((capacity, kmarch.EVENT))
-        done = kmarch.march(
-            p, values, float(dt), 1.0, step_count(body, dt, g, STEP), free, initial,
-            CLOSING_SPEED, history, events, kmarch.scratch(), summary,
-        )  # fmt: skip
+        with compiling_alone(kmarch.march):
+            done = kmarch.march(
+                p, values, float(dt), 1.0, step_count(body, dt, g, STEP), free, initial,
+                CLOSING_SPEED, history, events, kmarch.scratch(), summary,
+            )  # fmt: skip
         count = int(summary[kmarch.N_EVENTS])
         if count <= capacity:
             break
