@@ -9,6 +9,7 @@ from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.studies.amplitudes import Amplitudes
 from rockfrag.studies.configurations import Configuration
 from rockfrag.studies.digest import STAGES, source_digest
+from rockfrag.studies.pedestal import pedestal_tables
 from rockfrag.studies.sweep import sweep
 
 TOWER = Block(0.124, 0.372, 2.172)
@@ -51,3 +52,25 @@ def test_the_digest_of_a_stage_covers_those_before_it():
     digests = [source_digest(stage) for stage in STAGES]
     assert digests == [source_digest(stage) for stage in STAGES]
     assert len(set(digests[:-2])) == len(STAGES) - 2
+
+
+def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
+    # variances of events and of motions cannot be told apart there
+    rows = []
+    for number, event in enumerate("AABBCD"):
+        for side, amplitude in (("NP", 0.5), ("P", 0.5 + 0.01 * number)):
+            rows.append(
+                {
+                    "tower": "T1",
+                    "pedestal": side,
+                    "event": event,
+                    "floor": "GF",
+                    "motion": f"motion {number}",
+                    "amplitude_g": amplitude,
+                    "reading": "step_protocol",
+                }
+            )
+    found = pedestal_tables(pd.DataFrame(rows), seed=1, slenderness={"T1": 3.0})
+    whole = found["effects"].set_index("scope").loc["whole"]
+    assert whole["ratio"] == pytest.approx(1.05, abs=0.01)
+    assert len(found["pairs"]) == 6

@@ -210,7 +210,13 @@ def _by_statsmodels(
     notes = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        fitted = model.fit(reml=True, method=optimiser)
+        try:
+            fitted = model.fit(reml=True, method=optimiser)
+        except np.linalg.LinAlgError:
+            # one floor only: the variances of events and of motions cannot be told apart
+            return direct.beta, [
+                "statsmodels met a singular matrix; estimates are those of the direct maximum"
+            ]
     if caught:
         notes.append(f"statsmodels warned {len(caught)} time(s) while optimising")
     theirs = reml.at(np.asarray(fitted.vcomp, dtype=float) / float(fitted.scale))

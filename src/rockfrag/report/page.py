@@ -15,6 +15,7 @@ from markupsafe import Markup
 from rockfrag.report.findings import Finding
 
 _PIXELS_PER_POINT = 96 / 72 * 1.22
+_LONGEST_LINE = 24
 _COLUMN = round(252 * _PIXELS_PER_POINT)
 
 
@@ -73,18 +74,24 @@ def cell(value: Any, digits: int | None) -> str:
     return str(value) if str(value) else "–"
 
 
+def _kind(values: pd.Series, column: Column) -> str:
+    """Class of a column's cells: numbers, texts that stay on one line, texts that wrap."""
+    if column.digits is not None:
+        return "number"
+    return "long" if values.astype(str).str.len().max() > _LONGEST_LINE else "short"
+
+
 def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> Markup:
     """Render a table that scrolls inside its own frame where the screen is narrow."""
     head = Markup("").join(
         Markup('<th class="{}">{}</th>').format("" if c.digits is None else "number", c.title)
         for c in columns
     )
+    kinds = {c.name: _kind(table[c.name], c) for c in columns}
     rows = Markup("").join(
         Markup("<tr>{}</tr>").format(
             Markup("").join(
-                Markup('<td class="{}">{}</td>').format(
-                    "" if c.digits is None else "number", cell(row[c.name], c.digits)
-                )
+                Markup('<td class="{}">{}</td>').format(kinds[c.name], cell(row[c.name], c.digits))
                 for c in columns
             )
         )
