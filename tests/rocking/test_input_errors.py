@@ -74,9 +74,9 @@ def test_a_step_that_makes_no_sense(step: float) -> None:
 @pytest.mark.parametrize(
     ("body", "restitution", "message"),
     [
-        (T2, 1.01, "would not lose energy"),
-        (T2, -0.1, "would not lose energy"),
-        (T2, math.nan, "would not lose energy"),
+        (T2, 1.01, "would gain energy"),
+        (T2, -0.1, "would gain energy"),
+        (T2, math.nan, "would gain energy"),
         (T2, (0.9, 0.9), "lone block takes one number"),
         (STACK, 0.9, "a pair"),
         (STACK, (0.9, 1.2), "restitution of the interface"),
