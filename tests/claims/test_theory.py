@@ -13,9 +13,10 @@ from rockfrag.claims.theory import CHECKS, theory_claims
 from rockfrag.claims.theory_blocks import _perturbed
 from rockfrag.claims.theory_setting import bisect, make_setting, uplift_threshold, wilson
 from rockfrag.claims.theory_spectra import _auc, _crossings, _discordance
+from rockfrag.claims.theory_stacks import _free_fall
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import Block, simulate
+from rockfrag.rocking import Block, Stack, simulate
 
 
 def made_motion(seed: int) -> Motion:
@@ -76,6 +77,36 @@ def test_the_statue_s_impact_lifts_the_pedestal_of_the_specimens(
     # eq. 2.85 with the specimens' numbers has θ1⁺ < 0 after an impact in 4a: it is 1b, never 4b
     assert "P&T1 1b, P&T2 1b, P&T3 1b" in ledger[12].figure
     assert ledger[12].verdict == "contradicted"
+
+
+@pytest.mark.parametrize("name", ["T1", "T2", "T3"])
+def test_the_thesis_s_own_formula_has_the_pedestal_lifted(name: str) -> None:
+    # eq. 2.85 with θ2'⁻ on its right-hand sides; 1b is possible if θ1'⁺ has the sign of θ2'⁻
+    one, two = THESIS_BODIES["P"], THESIS_BODIES[name]
+    theta, beta = two.alpha, math.atan2(one.b - two.b, 2 * one.h)
+    reach, up = math.hypot(one.b - two.b, 2 * one.h), 2 * one.h + two.h
+    moment = two.mass * two.radius()
+    c1 = two.pole_inertia()
+    c2 = two.centroidal_inertia + moment * (up * math.cos(theta) - one.b * math.sin(theta))
+    c3 = two.centroidal_inertia + moment * (up * math.cos(theta) + one.b * math.sin(theta))
+    c4 = two.pole_inertia() - 2 * two.mass * two.b**2
+    c5 = one.pole_inertia() + two.mass * reach * (up * math.cos(beta) + one.b * math.sin(beta))
+    c6 = two.mass * reach * (two.h * math.cos(beta) + two.b * math.sin(beta))
+    a = (c1 * c2 - c3 * c4) / (c5 * c1 - c3 * c6)
+    b = (c6 * c2 - c5 * c4) / (c3 * c6 - c1 * c5)
+    assert a > 0
+    impact = _free_fall(Stack(one, two)).iloc[0]
+    before, (after1, after2) = impact["omega_before"][1], impact["omega_after"]
+    assert (impact["from"], impact["to"]) == ("4a", "1b")
+    assert after1 == pytest.approx(a * before, rel=1e-9)
+    assert after2 == pytest.approx(b * before, rel=1e-9)
+
+
+def test_pedestals_of_random_stacks_come_to_rest_under_a_rocking_statue(
+    ledger: dict[int, ClaimResult],
+) -> None:
+    assert "1a→4a" in ledger[11].figure
+    assert ledger[11].verdict == "contradicted"
 
 
 def test_without_a_measured_history_restitution_stays_undecided(

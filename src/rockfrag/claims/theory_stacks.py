@@ -179,46 +179,59 @@ def c10(setting: Setting) -> ClaimResult:
 
 
 def c11(setting: Setting) -> ClaimResult:
-    """Outcomes of impacts: both interfaces rocking, the thesis's fallback, or another."""
+    """Outcomes of impacts: both interfaces rocking, staying together, or another."""
     impacts = _impacts(setting)
-    outcome: Counter[str] = Counter()
-    missing: Counter[str] = Counter()
-    for before, after in zip(impacts["from"], impacts["to"], strict=True):
-        if after in SEPARATE.get(before, ()):
-            outcome["separate"] += 1
-        elif after in TOGETHER.get(before, ()) or after == "rest":
-            outcome["together"] += 1
-        else:
-            outcome["other"] += 1
-            missing[f"{before}→{after}"] += 1
-    chatter = Counter(
-        f"{row['from']}→{row['to']}"
-        for response in setting.histories
-        for _, row in response.events[response.events["kind"] == "chatter"].iterrows()
-    )
-    stopped = sum(v for k, v in chatter.items() if k[0] in "12" and k[3] == "4")
-    geometry = _first_outcomes(setting.seed)
-    unlike = sum(v for k, v in geometry.items() if k in ("3a", "3b", "2a", "2b"))
-    total = sum(outcome.values())
-    if total == 0:
+    own = Counter(zip(impacts["from"], impacts["to"], strict=True))
+    random = _random_stacks(setting.seed)[1]
+    if not own and not random:
         raise Undecidable("no impact occurs")
-    contradicted = outcome["other"] + unlike + stopped > 0
+    counted = {"the specimens": _kinds(own), "random stacks": _kinds(random)}
+    neither = {
+        f"{before}→{after}": n
+        for (before, after), n in sorted((own + random).items())
+        if _kind(before, after) == "neither"
+    }
+    ended = sum(
+        int(((events["kind"] == "chatter") & events["to"].str.startswith("4")).sum())
+        for events in (response.events for response in setting.histories)
+    )
+    total, others = sum((own + random).values()), sum(neither.values())
     return ClaimResult(
         11,
-        f"outcomes of the impacts of {_where(setting)}; and of the first impact in pattern 4a of "
-        f"{GEOMETRIES} random stacks",
-        f"{total} impacts: {outcome['separate']} leave both interfaces rocking, "
-        f"{outcome['together']} the fallback of Table 2.1 or rest, {outcome['other']} another"
-        + "".join(f" ({k} {v})" for k, v in sorted(missing.items()))
-        + f"; {stopped} series of impacts end with the pedestal at rest under a rocking statue; "
-        f"random stacks: {unlike} of {sum(geometry.values())} neither separate nor fall back",
-        "contradicted" if contradicted else "supported",
+        f"outcomes of all impacts of {_where(setting)}, and of {GEOMETRIES} random stacks whose statue "
+        "is tilted and released: both interfaces rock on, what met stays together, or neither",
+        "; ".join(
+            f"{name}: " + ", ".join(f"{kinds[kind]} {kind}" for kind in KINDS)
+            for name, kinds in counted.items()
+        )
+        + "".join(f"; {name} {n}" for name, n in neither.items()),
+        "contradicted" if others else "supported",
         "simulated",
-        (outcome["separate"] + outcome["together"]) / total,
-        remark="where the solution with both rocking is impossible the pedestal may come to rest under "
-        "the rocking statue (1→4, 2→4) or statue and pedestal move on as one from 4 (4→3), which "
-        "Table 2.1 lacks",
+        (total - others) / total,
+        *wilson(total - others, total),
+        remark="neither: the pedestal comes to rest under a statue that rocks on (1→4, 2→4) or the "
+        "statue parts where the pedestal lands (3→2), which Table 2.1 lacks; "
+        f"{ended} series of ever smaller impacts end so as well",
     )
+
+
+KINDS = ("separate", "together", "neither")
+
+
+def _kind(before: str, after: str) -> str:
+    if after in SEPARATE.get(before, ()):
+        return "separate"
+    # a statue that sticks to the pedestal it has hit and turns with it stays together too
+    if after in TOGETHER.get(before, ()) or after == "rest" or after[0] == "3":
+        return "together"
+    return "neither"
+
+
+def _kinds(transitions: Counter[tuple[str, str]]) -> Counter[str]:
+    found: Counter[str] = Counter()
+    for (before, after), n in transitions.items():
+        found[_kind(before, after)] += n
+    return found
 
 
 def _random_stack(rng: np.random.Generator) -> Stack:
@@ -232,34 +245,45 @@ def _random_stack(rng: np.random.Generator) -> Stack:
     )
 
 
-def _first_impact_from_4a(stack: Stack) -> str | None:
-    """Pattern after the statue, tilted a little and released, first comes down on a still pedestal."""
+def _free_fall(stack: Stack) -> pd.DataFrame:
+    """Impacts after the statue is tilted a little on a still pedestal and released."""
     dt = 0.2 / stack.statue.frequency()
     response = simulate(
         stack, np.zeros(10), dt, theta0=(0.0, 0.05 * stack.statue.critical_angle(1))
     )
-    impacts = response.events[response.events["kind"] == "impact"]
+    return response.events[response.events["kind"] == "impact"]
+
+
+def _first_from_4a(impacts: pd.DataFrame) -> str | None:
+    """Pattern after the first impact, if the pedestal stood still until then."""
     if impacts.empty or impacts["from"].iloc[0] != "4a":
         return None
     return str(impacts["to"].iloc[0])
 
 
 @lru_cache(maxsize=4)
-def _first_outcomes(seed: int) -> Counter[str]:
-    """Outcomes of :func:`_first_impact_from_4a` over random stacks."""
+def _random_stacks(seed: int) -> tuple[Counter[str], Counter[tuple[str, str]]]:
+    """Outcomes of the first impact from 4a, and all impacts, of random stacks in free fall."""
     rng = np.random.default_rng(seed)
-    found = (_first_impact_from_4a(_random_stack(rng)) for _ in range(GEOMETRIES))
-    return Counter(one for one in found if one is not None)
+    first: Counter[str] = Counter()
+    every: Counter[tuple[str, str]] = Counter()
+    for _ in range(GEOMETRIES):
+        impacts = _free_fall(_random_stack(rng))
+        every.update(zip(impacts["from"], impacts["to"], strict=True))
+        outcome = _first_from_4a(impacts)
+        if outcome is not None:
+            first[outcome] += 1
+    return first, every
 
 
 def c12(setting: Setting) -> ClaimResult:
     """Outcome of a statue's impact on a still pedestal, over the specimens and random geometries."""
-    specimens = {name: _first_impact_from_4a(s) for name, s in setting.assemblies.items()}
+    specimens = {name: _first_from_4a(_free_fall(s)) for name, s in setting.assemblies.items()}
     impacts = _impacts(setting)
     seen = impacts[impacts["from"].isin(["4a", "4b"])]
     usual = int(seen["to"].isin(["4a", "4b"]).sum())
     other = int(seen["to"].isin(["1a", "1b"]).sum())
-    geometry = _first_outcomes(setting.seed)
+    geometry = _random_stacks(setting.seed)[0]
     total = sum(geometry.values())
     stays = geometry["4b"]
     if total == 0:

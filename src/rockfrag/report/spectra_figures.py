@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -114,7 +115,7 @@ def _rotations(pair: Sequence[Axes], motion: Motion, alpha: Sequence[float]) -> 
         values = spectrum.rotation[k]
         finite = np.where(np.isfinite(values) & (values > 0), values, np.nan)
         speed = np.where(np.isfinite(finite), spectrum.velocity[k] / angle, np.nan)
-        style = {"color": COLOURS[k], "ls": DASHES[k], "label": _ratio(angle)}
+        style: dict[str, Any] = {"color": COLOURS[k], "ls": DASHES[k], "label": _ratio(angle)}
         rotation.plot(SIZES, finite, **style)
         velocity.plot(SIZES, speed, **style)
         fallen = SIZES[np.isinf(values)]
@@ -153,11 +154,11 @@ def comparison_figure(motions: Sequence[Motion], alpha: float, damping: float = 
     dashes = (*DASHES, (0, (5, 1.2, 1.2, 1.2)))
     with figure_style():
         figure = new_figure(PAGE_WIDTH, 4.4)
-        top, bottom = figure.subfigures(2, 1)
+        top, bottom = np.ravel(figure.subfigures(2, 1, squeeze=False))
         upper, lower = top.subplots(1, 3), bottom.subplots(1, 2, sharey=True)
         for k, motion in enumerate(motions):
             spectrum = response_spectrum(motion, PERIODS, damping)
-            style = {"color": OKABE_ITO[k], "ls": dashes[k % len(dashes)]}
+            style: dict[str, Any] = {"color": OKABE_ITO[k], "ls": dashes[k % len(dashes)]}
             ordinates = (
                 100 * spectrum.displacement,
                 100 * spectrum.velocity,
