@@ -1,0 +1,199 @@
+"""Other ways to the same verdicts: scipy's solve_ivp, the reference integrator, MuJoCo, plain numpy.
+
+Every one stops as soon as a block has turned by a right angle or the motion is over.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.reference import simulate_reference
+
+G = 9.81
+Array = NDArray[np.float64]
+
+SLOWEST_IMPACT = 1e-4
+"""Speed after an impact [rad/s] below which solve_ivp's block rests: following its chatter to 1e-6 rad/s
+takes several times as long and changes no verdict."""
+
+
+def scipy_lone(body: Body, acceleration: Array, dt: float) -> bool:
+    """Housner's block by ``solve_ivp``, DOP853, rtol 1e-10, impacts and falls as events."""
+    assert isinstance(body, Block)
+    alpha, p2, e = body.alpha, body.frequency() ** 2, body.momentum_restitution()
+    values = [*acceleration.tolist(), 0.0]
+    limit = G * math.tan(alpha)
+    end = (len(values) - 1) * dt
+    moves = np.abs(np.array(values)) > limit
+
+    def ground(t: float) -> float:
+        k = min(int(t / dt), len(values) - 2)
+        return values[k] + (t / dt - k) * (values[k + 1] - values[k])
+
+    def flight(side: int, start: float) -> tuple[Callable, Callable, Callable]:
+        def rates(t: float, y: Array) -> tuple[float, float]:
+            psi = alpha - y[0]
+            return y[1], -p2 * (math.sin(psi) + side * ground(t) / G * math.cos(psi))
+
+        def lands(t: float, y: Array) -> float:
+            return float(y[0]) if t > start else 1e-300
+
+        def falls(t: float, y: Array) -> float:
+            return float(y[0]) - math.pi / 2
+
+        lands.terminal, lands.direction, falls.terminal = True, -1, True  # type: ignore[attr-defined]
+        return rates, lands, falls
+
+    t, omega, side = 0.0, 0.0, 0
+    while t < end:
+        if side == 0:
+            now = ground(t)
+            if abs(now) <= limit:
+                k = int(t / dt) + 1
+                later = np.flatnonzero(moves[k:])
+                if not later.size:
+                    return False
+                k += int(later[0])
+                before, after = max(t, (k - 1) * dt), k * dt
+                a0, a1 = ground(before), values[k]
+                t = before + (after - before) * (math.copysign(limit, a1) - a0) / (a1 - a0) + 1e-9
+                now = ground(t)
+            side, omega = (-1 if now > 0 else 1), 0.0
+        rates, lands, falls = flight(side, t)
+        back = p2 * (math.sin(alpha) + side * ground(t) / G * math.cos(alpha))
+        first = min(dt, omega / back if back > 0 and omega > 0 else dt, 0.5 * (end - t))
+        run = solve_ivp(
+            rates, (t, end), (0.0, omega), method="DOP853", rtol=1e-10, atol=1e-13,
+            first_step=max(first, 1e-12), max_step=dt, events=(lands, falls),
+        )  # fmt: skip
+        if run.t_events[1].size:
+            return True
+        if not run.t_events[0].size:
+            return bool(run.y[0, -1] > alpha)
+        t, omega = float(run.t_events[0][0]), e * abs(float(run.y_events[0][0][1]))
+        side = 0 if omega < SLOWEST_IMPACT and abs(ground(t)) <= limit else -side
+    return False
+
+
+def reference_stack(body: Body, acceleration: Array, dt: float) -> bool:
+    """Statue on pedestal by scipy's DOP853, rtol 1e-10, every event located on its dense output."""
+    return bool(simulate_reference(body, acceleration, dt).overturned)
+
+
+def _box(name: str, block: Block, z: float) -> str:
+    return f"""
+    <body name="{name}" pos="0 0 {z + block.height / 2}">
+      <joint name="{name}x" type="slide" axis="1 0 0"/>
+      <joint type="slide" axis="0 0 1"/>
+      <joint name="{name}r" type="hinge" axis="0 1 0"/>
+      <geom type="box" size="{block.width / 2} {block.width / 2} {block.height / 2}" mass="{block.mass}"/>
+    </body>"""
+
+
+def mujoco_model(body: Body, timestep: float, stiff: bool) -> object:
+    """Bodies in a vertical plane on a rough floor; friction is high, so nothing slides."""
+    import mujoco
+
+    blocks = [body] if isinstance(body, Block) else [body.pedestal, body.statue]
+    under = [0.0, blocks[0].height]
+    boxes = "".join(_box(f"b{i}", block, under[i]) for i, block in enumerate(blocks))
+    contact = f'solref="{2 * timestep} 1"' if stiff else ""
+    return mujoco.MjModel.from_xml_string(f"""
+<mujoco>
+  <option timestep="{timestep}" cone="elliptic" impratio="100" gravity="0 0 -{G}"/>
+  <default><geom condim="3" friction="3 0.005 0.0001" {contact}/></default>
+  <worldbody><geom type="plane" size="50 50 1"/>{boxes}</worldbody>
+</mujoco>""")
+
+
+def mujoco_verdict(
+    body: Body, acceleration: Array, dt: float, timestep: float = 1e-3, stiff: bool = True
+) -> bool:
+    """MuJoCo, the ground's acceleration as a force on each body, rolled out in compiled code by the second.
+
+    ``stiff`` takes contacts as stiff as the step allows; MuJoCo's default is softer.
+    """
+    import mujoco
+    from mujoco import rollout
+
+    model = mujoco_model(body, timestep, stiff)
+    data = mujoco.MjData(model)
+    spec = mujoco.mjtState.mjSTATE_QFRC_APPLIED
+    full = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    blocks = [body] if isinstance(body, Block) else [body.pedestal, body.statue]
+    time = np.arange(round(len(acceleration) * dt / timestep)) * timestep
+    a = np.interp(time, np.arange(len(acceleration) + 1) * dt, np.append(acceleration, 0.0))
+    force = np.zeros((1, time.size, model.nv))
+    for i, block in enumerate(blocks):
+        force[0, :, 3 * i] = -block.mass * a
+    state = np.empty(mujoco.mj_stateSize(model, full))
+    mujoco.mj_getState(model, data, state, full)
+    second = round(1 / timestep)
+    moving = np.flatnonzero(np.abs(a) > 0.05 * G)
+    # what comes before any block could move is skipped
+    first = max(0, int(moving[0]) - second) if moving.size else time.size
+    for k in range(first, time.size, second):
+        states, _ = rollout.rollout(
+            model, data, state, force[:, k : k + second], control_spec=int(spec)
+        )
+        state = states[0, -1]
+        angles = state[1 + np.arange(len(blocks)) * 3 + 2]
+        if (np.abs(angles) > math.pi / 2).any():
+            return True
+    return False
+
+
+def numpy_lone(
+    bodies: list[Body], accelerations: list[Array], scales: Array, dt: float
+) -> NDArray[np.bool_]:
+    """Advance all cases together by Runge-Kutta steps of one sample; impacts and uplift at its end."""
+    shape = (len(bodies), *scales.shape)
+    i, j, k = (index.ravel() for index in np.indices(shape))
+    alpha = np.array([body.alpha for body in bodies])[i]
+    p2 = np.array([body.frequency() ** 2 for body in bodies])[i]
+    e = np.array([body.momentum_restitution() for body in bodies])[i]
+    motion = np.array(accelerations)
+    factor = scales[j, k] / G
+    fallen = np.zeros(i.size, dtype=bool)
+    case = np.arange(i.size)
+    side, phi, w = np.zeros(i.size), np.zeros(i.size), np.zeros(i.size)
+    tangent = np.tan(alpha)
+    for n in range(motion.shape[1] - 1):
+        a0, a1 = factor * motion[j, n], factor * motion[j, n + 1]
+        rest = side == 0
+        side = np.where(rest & (np.abs(a0) > tangent), -np.sign(a0), side)
+        middle = 0.5 * (a0 + a1)
+        s0, sm, s1 = side * a0, side * middle, side * a1
+
+        def rate(x: Array, a: Array, p2: Array = p2, alpha: Array = alpha) -> Array:
+            return -p2 * (np.sin(alpha - x) + a * np.cos(alpha - x))
+
+        k1 = rate(phi, s0)
+        k2 = rate(phi + dt / 2 * w, sm)
+        k3 = rate(phi + dt / 2 * w + dt * dt / 4 * k1, sm)
+        k4 = rate(phi + dt * w + dt * dt / 2 * k2, s1)
+        rocks = side != 0
+        phi = np.where(rocks, phi + dt * w + dt * dt / 6 * (k1 + k2 + k3), 0.0)
+        w = np.where(rocks, w + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4), 0.0)
+        lands = rocks & (phi < 0)
+        w = np.where(lands, e * np.abs(w), w)
+        phi = np.where(lands, 0.0, phi)
+        side = np.where(lands, np.where((w < 1e-3) & (np.abs(a1) < tangent), 0.0, -side), side)
+        w = np.where(side == 0, 0.0, w)
+        if n % 50 == 49:
+            down = phi > math.pi / 2
+            fallen[case[down]] = True
+            keep = ~down
+            case, j, factor = case[keep], j[keep], factor[keep]
+            alpha, p2, e, tangent = alpha[keep], p2[keep], e[keep], tangent[keep]
+            side, phi, w = side[keep], phi[keep], w[keep]
+    fallen[case[phi > alpha]] = True
+    return fallen.reshape(shape)
+
+
+def is_stack(body: Body) -> bool:
+    return isinstance(body, Stack)

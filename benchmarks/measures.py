@@ -1,0 +1,199 @@
+"""What ``run.py`` measures about the package itself."""
+
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numba
+import numpy as np
+from cases import Cases
+from numpy.typing import NDArray
+
+from rockfrag.rocking import _lanes as lanes
+from rockfrag.rocking import ensemble
+from rockfrag.rocking._march import scratch
+from rockfrag.rocking._step import TH1, series
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.ensemble import EnsembleResult, overturns
+from rockfrag.rocking.parameters import body_parameters
+from rockfrag.rocking.simulation import simulate
+
+SEPARATE = Path(__file__).with_name("separate.py")
+Array = NDArray[np.float64]
+
+
+def cpu_seconds(work: Callable[[], object], repeats: int = 3) -> float:
+    """Least process CPU time of a few runs [s]."""
+    best = math.inf
+    for _ in range(repeats):
+        start = time.process_time()
+        work()
+        best = min(best, time.process_time() - start)
+    return best
+
+
+def wall_seconds(work: Callable[[], object], repeats: int = 3) -> float:
+    """Least wall-clock time of a few runs [s]."""
+    best = math.inf
+    for _ in range(repeats):
+        start = time.perf_counter()
+        work()
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def all_cases(cases: Cases, threads: int = 1, **settings: float) -> EnsembleResult:
+    return overturns(
+        cases.bodies, cases.accelerations, cases.dt, cases.scales, threads=threads, **settings
+    )
+
+
+def converged(cases: Cases) -> NDArray[np.bool_]:
+    """Verdicts with an eighth of the step."""
+    dense = []
+    for values in cases.accelerations:
+        closed = np.append(values, 0.0)
+        at = np.arange(8 * closed.size - 7) / 8
+        dense.append(np.interp(at, np.arange(closed.size), closed))
+    return overturns(cases.bodies, dense, cases.dt / 8, cases.scales, step=0.1 / 8).overturned
+
+
+def two_thread_ratio(cases: Cases, repeats: int = 5) -> float:
+    """Speed of two threads over that of one, wall clock, runs taken in turn."""
+    one, two = math.inf, math.inf
+    for _ in range(repeats):
+        one = min(one, wall_seconds(lambda: all_cases(cases, 1), 1))
+        two = min(two, wall_seconds(lambda: all_cases(cases, 2), 1))
+    return one / two
+
+
+@numba.njit(nogil=True)  # type: ignore[misc]
+def _only_lanes(rows: Array, count: int) -> None:
+    for _ in range(count):
+        lanes.advance(rows)
+
+
+def lone_limit(cases: Cases) -> tuple[float, float]:
+    """CPU time of all cases over that of as many lane steps of smooth arithmetic; steps per case."""
+    steps = 0
+    kernel = lanes.lone_blocks
+
+    def counted(*arguments: object) -> int:
+        nonlocal steps
+        done = int(kernel(*arguments))
+        steps += done
+        return done
+
+    ensemble.lanes.lone_blocks = counted
+    try:
+        all_cases(cases)
+    finally:
+        ensemble.lanes.lone_blocks = kernel
+    count = steps // lanes.LANES
+
+    def smooth() -> None:
+        rows = np.zeros(lanes.ROWS * lanes.LANES)
+        for row, value in (
+            (lanes.PSI, 0.2), (lanes.ANGLE, 0.25), (lanes.KAPPA, 1e-3), (lanes.CREST, 10.0),
+        ):  # fmt: skip
+            rows[row : row + lanes.LANES] = value
+        _only_lanes(rows, count)
+
+    smooth()
+    ratio = min(cpu_seconds(lambda: all_cases(cases), 1) / cpu_seconds(smooth, 1) for _ in range(5))
+    return ratio, steps / cases.count
+
+
+@numba.njit(nogil=True)  # type: ignore[misc]
+def _only_series(parameters: Array, states: Array, ground: Array, h: float, q: Array) -> float:
+    """Fill the series at every sample; the last column of ``states`` is the sample's number."""
+    total = 0.0
+    for k in range(len(states)):
+        s = states[k]
+        n = int(s[6])
+        series(
+            parameters, int(s[0]), int(s[1]), s[2], s[3], s[4], s[5], h, ground[n],
+            ground[n + 1] - ground[n], q,
+        )  # fmt: skip
+        total += q[TH1 + 2]
+    return total
+
+
+def _moving(body: Body, values: Array, dt: float) -> Array:
+    """Contacts, rotations, velocities and number of every sample at which the body is not at rest."""
+    response = simulate(body, values, dt)
+    last = min(len(response.time), values.size)
+    theta, omega = response.theta[:last], response.omega[:last]
+    states = np.column_stack(
+        [
+            response.state[:last],
+            theta[:, 0],
+            omega[:, 0],
+            theta[:, 1],
+            omega[:, 1],
+            np.arange(last),
+        ]
+    )
+    return np.ascontiguousarray(states[response.state[:last].any(axis=1)], dtype=float)
+
+
+def stack_limit(cases: Cases, count: int = 100) -> float:
+    """CPU time of cases over that of the series of their two rotations alone, at the same samples."""
+    chosen = list(cases.each(count, seed=3))
+    q = scratch()
+    given = [
+        (body_parameters(body, None), _moving(body, values, cases.dt), np.append(values, 0.0))
+        for _, body, values in chosen
+    ]
+
+    def smooth() -> None:
+        for p, states, ground in given:
+            _only_series(p, states, ground, cases.dt, q)
+
+    def whole(scale: float) -> None:
+        for _, body, values in chosen:
+            overturns(body, values, cases.dt, [scale], threads=1)
+
+    smooth()
+    # what calls cost that have nothing to march is taken off
+    return min(
+        (cpu_seconds(lambda: whole(1.0), 1) - cpu_seconds(lambda: whole(0.0), 1))
+        / cpu_seconds(smooth, 1)
+        for _ in range(5)
+    )
+
+
+def separately(*arguments: object, cache: Path | None = None) -> float:
+    """Number that ``separate.py`` prints in a process of its own."""
+    environment = dict(os.environ)
+    if cache is not None:
+        environment["NUMBA_CACHE_DIR"] = str(cache)
+    command = [sys.executable, str(SEPARATE), *map(str, arguments)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return float(done.stdout)
+
+
+def start_up(kind: str) -> tuple[float, float]:
+    """Seconds to the first verdict of a new process, with an empty and with a filled cache."""
+    with tempfile.TemporaryDirectory() as folder:
+        cold = separately("first", kind, cache=Path(folder))
+        warm = min(separately("first", kind, cache=Path(folder)) for _ in range(3))
+    return cold, warm
+
+
+def thesis_bodies() -> list[Body]:
+    """Return towers T1-T3 alone and on the pedestal, from the p and α that the thesis gives them."""
+    made: list[Body] = []
+    for slenderness, p in ((3, 6.12589), (4, 5.36484), (5, 4.82421)):
+        radius = 0.75 * 9.81 / p**2
+        width = 2 * radius / math.hypot(1, slenderness)
+        tower = Block(width, slenderness * width, 2700 * slenderness * width**3)
+        radius, sine = 0.75 * 9.81 / 7.27928**2, math.sqrt((1 - 0.341494) / 1.5)
+        base, height = 2 * radius * sine, 2 * radius * math.sqrt(1 - sine**2)
+        made += [tower, Stack(Block(base, height, 2700 * base * base * height), tower)]
+    return made

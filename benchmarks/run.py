@@ -1,0 +1,305 @@
+"""Speed and accuracy of the rocking kernels against other programs, in one process on this machine.
+
+``python benchmarks/run.py`` takes up to ten minutes; ``--quick`` a minute, with too few cases to
+quote; ``--wide`` adds a study of 2.4 million histories.  Everything goes to ``results/bench``.
+"""
+
+import argparse
+import json
+import os
+import platform
+import sys
+from pathlib import Path
+from typing import Any
+
+import numba
+import numpy as np
+import pandas as pd
+import scipy
+from cases import Cases, cases, motions
+from competitors import mujoco_verdict, numpy_lone, reference_stack, scipy_lone
+from measures import (
+    all_cases,
+    converged,
+    cpu_seconds,
+    lone_limit,
+    separately,
+    stack_limit,
+    start_up,
+    thesis_bodies,
+    two_thread_ratio,
+    wall_seconds,
+)  # fmt: skip
+
+from rockfrag.files import write_table, write_text
+from rockfrag.report.benchmark_figures import draw_benchmark
+from rockfrag.report.style import save_figure
+from rockfrag.rocking.accuracy import fragile_verdicts
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.streaming import stream_overturns
+
+BEGIN, END = "<!-- results of make bench -->", "<!-- end of results -->"
+NAMES = {"lone": "single block", "stack": "two blocks"}
+
+
+def machine() -> dict[str, object]:
+    """Describe the machine without naming it."""
+    model = platform.processor() or platform.machine()
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        lines = [line for line in info.read_text().splitlines() if line.startswith("model name")]
+        model = lines[0].split(":", 1)[1].strip() if lines else model
+    return {
+        "processor": model,
+        "cores": os.cpu_count(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "numba": numba.__version__,
+    }
+
+
+def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
+    """Histories per second and core, and wrong verdicts, of the package and its competitors."""
+    reference = converged(set_)
+    fast = all_cases(set_)
+    seconds = cpu_seconds(lambda: all_cases(set_))
+    rows = [row(kind, "rockfrag", set_.count, seconds, int((fast.overturned != reference).sum()))]
+    if kind == "lone":
+        few = cases("lone", 300 if quick else 2000)
+        verdicts: list[np.ndarray] = []
+        seconds = cpu_seconds(
+            lambda: verdicts.append(numpy_lone(few.bodies, few.accelerations, few.scales, few.dt)),
+            1,
+        )
+        wrong = int((verdicts[0] != converged(few)).sum())
+        rows.append(row(kind, "numpy, no event location", few.count, seconds, wrong))
+    slow = scipy_lone if kind == "lone" else reference_stack
+    name = "solve_ivp with events" if kind == "lone" else "scipy DOP853 with events"
+    competitors = [(name, slow, 3 if quick else 20)]
+    try:
+        import mujoco  # noqa: F401
+    except ImportError:
+        print("MuJoCo is absent: its rows are left out")
+    else:
+        count = 5 if quick else 60
+        competitors += [
+            ("MuJoCo 1 ms, stiffest contacts", mujoco_verdict, count),
+            ("MuJoCo 1 ms, default contacts", lambda *a: mujoco_verdict(*a, stiff=False), count),
+        ]
+    for name, verdict, count in competitors:
+        wrong, seconds = 0, 0.0
+        for at, body, values in set_.each(count):
+            found: list[bool] = []
+            seconds += cpu_seconds(
+                lambda v=verdict, b=body, a=values, f=found: f.append(v(b, a, set_.dt)), 1
+            )
+            wrong += found[0] != reference[at]
+        rows.append(row(kind, name, count, seconds, wrong))
+    return rows
+
+
+def row(kind: str, name: str, count: int, seconds: float, wrong: int) -> dict[str, object]:
+    made = {
+        "bodies": NAMES[kind], "program": name, "histories": count,
+        "histories_per_s_core": count / seconds, "wrong_verdicts": wrong,
+        "wrong_share": wrong / count,
+    }  # fmt: skip
+    print(
+        f"{NAMES[kind]:13s} {name:32s} {count / seconds:12.4g} /s {100 * wrong / count:6.2f} % wrong"
+    )
+    return made
+
+
+def more(base: Cases, times: int) -> Cases:
+    """Return as many times the cases: more amplitudes of the same bodies and motions."""
+    scales = np.repeat(base.scales, times, axis=1)
+    return Cases(base.bodies, base.accelerations, scales * np.linspace(0.95, 1.05, scales.shape[1]))
+
+
+def scaling(kind: str, largest: int) -> list[dict[str, object]]:
+    """Cost against the number of cases."""
+    rows = []
+    for count in (10**n for n in range(2, 7)):
+        if count > largest:
+            break
+        base = cases(kind, min(count, 10_000))
+        set_ = more(base, max(1, count // base.count))
+        seconds = cpu_seconds(lambda s=set_: all_cases(s), 3 if count < 10**5 else 1)
+        rows.append({"bodies": NAMES[kind], "histories": set_.count, "seconds": seconds})
+    return rows
+
+
+def thesis_study() -> float:
+    """Wall time of the thesis's rocking stage: 72 tests × 200 amplitudes, 1 % of 2 g apart."""
+    made = motions(12, 8)
+    scales = np.arange(1, 201) * 0.01
+    return wall_seconds(lambda: overturns(thesis_bodies(), made, 0.01, scales), 2)
+
+
+def wide_study(folder: Path) -> float:
+    """Wall time of 100 components × 3 towers × P/NP × 200 amplitudes × 20 samples of the bodies."""
+    rng = np.random.default_rng(9)
+    bodies: list[Body] = []
+    restitution: list[object] = []
+    for body in thesis_bodies():
+        for _ in range(20):
+            grow, e = rng.normal(1.0, 0.01), float(rng.uniform(0.8, 0.95))
+            if isinstance(body, Block):
+                bodies.append(Block(body.width * grow, body.height, body.mass))
+                restitution.append(e)
+            else:
+                tower = body.statue
+                statue = Block(tower.width * grow, tower.height, tower.mass)
+                bodies.append(Stack(body.pedestal, statue))
+                restitution.append(None)
+    made = motions(100, 9)
+    return wall_seconds(
+        lambda: stream_overturns(
+            bodies, made, 0.01, np.arange(1, 201) * 0.01, folder / "wide.parquet",
+            restitution=restitution,
+        ),
+        1,
+    )  # fmt: skip
+
+
+def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[str, object]]:
+    """Rows of the targets: what is asked, what was measured, whether it is met."""
+    speed = table[table.bodies == NAMES[kind]].set_index("program")["histories_per_s_core"]
+    own = speed["rockfrag"]
+    slow = next(name for name in speed.index if "events" in name)
+    rows: list[tuple[str, str, float, bool]] = []
+
+    def add(what: str, target: str, value: float, met: bool) -> None:
+        rows.append((what, target, value, met))
+
+    add("times as fast as solve_ivp", "≥ 20000", own / speed[slow], own / speed[slow] >= 20_000)
+    peers = speed[speed.index.str.startswith("MuJoCo")]
+    if len(peers):
+        add(
+            "times as fast as MuJoCo at 1 ms",
+            "≥ 2000",
+            own / peers.max(),
+            own / peers.max() >= 2000,
+        )
+    most = 2 if kind == "lone" else 4
+    add(
+        "time over smooth arithmetic",
+        f"≤ {most}",
+        other[f"{kind}_limit"],
+        other[f"{kind}_limit"] <= most,
+    )
+    add("two threads over one", "≥ 1.9", other[f"{kind}_threads"], other[f"{kind}_threads"] >= 1.9)
+    memory = other[f"{kind}_memory_MiB"]
+    add(
+        f"memory of {other['memory_histories']:.0e} histories [MiB]",
+        "< 2048",
+        memory,
+        memory < 2048,
+    )
+    add("memory over that of a tenth of them", "≤ 1.1", memory / other[f"{kind}_memory_tenth_MiB"],
+        memory <= 1.1 * other[f"{kind}_memory_tenth_MiB"])  # fmt: skip
+    add(
+        "first verdict, warm cache [s]", "< 1", other[f"{kind}_warm_s"], other[f"{kind}_warm_s"] < 1
+    )
+    add(
+        "first verdict, cold cache [s]",
+        "< 15",
+        other[f"{kind}_cold_s"],
+        other[f"{kind}_cold_s"] < 15,
+    )
+    gate, share = 0.001 if kind == "lone" else 0.005, other[f"{kind}_fragile_share"]
+    add("share of verdicts changed by halving the step", f"< {gate}", share, share < gate)
+    columns = ("what", "target", "measured", "met")
+    return [{"bodies": NAMES[kind], **dict(zip(columns, values, strict=True))} for values in rows]
+
+
+def summary(about: dict[str, Any], programs: pd.DataFrame, goals: pd.DataFrame) -> str:
+    """Return the results as the text of a document."""
+    m = about["machine"]
+    lines = [
+        f"Machine: {m['processor']}, {m['cores']} cores, {m['system']}; Python {m['python']}, "
+        f"numba {m['numba']}, numpy {m['numpy']}, scipy {m['scipy']}.",
+        "" if not about["quick"] else "\nA quick run, with too few cases to quote.\n",
+        "| bodies | program | histories | per second and core | wrong verdicts |",
+        "|---|---|---:|---:|---:|",
+    ]
+    lines += [
+        f"| {r.bodies} | {r.program} | {r.histories} | {r.histories_per_s_core:.4g} "
+        f"| {100 * r.wrong_share:.2f} % |"
+        for r in programs.itertuples()
+    ]
+    lines += ["", "| bodies | what | target | measured | |", "|---|---|---|---:|---|"]
+    lines += [
+        f"| {r.bodies} | {r.what} | {r.target} | {r.measured:.4g} | {'met' if r.met else '**not met**'} |"
+        for r in goals.itertuples()
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="a minute, too few cases to quote")
+    parser.add_argument("--wide", action="store_true", help="also run 2.4 million histories")
+    parser.add_argument("--docs", type=Path, help="document to put the results into")
+    parser.add_argument("--out", type=Path, default=Path("results/bench"))
+    given = parser.parse_args()
+    folder: Path = given.out
+    folder.mkdir(parents=True, exist_ok=True)
+    rows, costs, goals = [], [], []
+    other: dict[str, float] = {"memory_histories": 1e5 if given.quick else 1e7}
+    for kind in NAMES:
+        set_ = cases(kind, 500 if given.quick else 10_000)
+        rows += speeds(kind, set_, given.quick)
+        if kind == "lone":
+            other["lone_limit"], other["lone_steps_per_history"] = lone_limit(set_)
+        else:
+            other["stack_limit"] = stack_limit(set_, 10 if given.quick else 100)
+        fragile = fragile_verdicts(
+            set_.bodies, set_.accelerations, set_.dt, set_.scales, sample=set_.count
+        )
+        other[f"{kind}_fragile_share"] = fragile.share
+        # enough cases that the last chunks of each thread do not matter
+        other[f"{kind}_threads"] = two_thread_ratio(more(set_, 2 if given.quick else 5))
+        costs += scaling(kind, 10**3 if given.quick else 10**6 if kind == "lone" else 10**5)
+        other[f"{kind}_cold_s"], other[f"{kind}_warm_s"] = start_up(kind)
+        count = int(other["memory_histories"])
+        other[f"{kind}_memory_tenth_MiB"] = separately("memory", kind, count // 10)
+        other[f"{kind}_memory_MiB"] = separately("memory", kind, count)
+    other["thesis_study_s"] = thesis_study()
+    if given.wide:
+        other["wide_study_s"] = wide_study(folder)
+    table = pd.DataFrame(rows)
+    for kind in NAMES:
+        goals += reach(kind, table, other)
+    studies = [("thesis study, 72 tests × 200 amplitudes [s]", "< 5", "thesis_study_s", 5.0)]
+    if given.wide:
+        studies.append(("wide study, 2.4 million histories [s]", "< 300", "wide_study_s", 300.0))
+    goals += [
+        {"bodies": "both", "what": w, "target": t, "measured": other[k], "met": other[k] < limit}
+        for w, t, k, limit in studies
+    ]
+    goal_table, cost_table = pd.DataFrame(goals), pd.DataFrame(costs)
+    write_table(table, folder / "programs.csv")
+    write_table(cost_table, folder / "scaling.csv")
+    write_table(goal_table, folder / "reach.csv")
+    about = {"machine": machine(), "quick": given.quick, "measured": other}
+    write_text(json.dumps(about, indent=1, ensure_ascii=False) + "\n", folder / "machine.json")
+    save_figure(draw_benchmark(table, cost_table), folder / "speed.png", folder / "speed.svg")
+    words = summary(about, table, goal_table)
+    write_text(words, folder / "summary.md")
+    if given.docs is not None:
+        before, _, rest = given.docs.read_text(encoding="utf-8").partition(BEGIN)
+        write_text(before + BEGIN + "\n" + words + END + rest.partition(END)[2], given.docs)
+    print(f"\n{'':13s} {'':45s} {'target':>9s} {'measured':>10s}")
+    for goal in goals:
+        met = "met" if goal["met"] else "NOT MET"
+        print(
+            f"{goal['bodies']:13s} {goal['what']:45s} {goal['target']:>9s} {goal['measured']:10.4g} {met}"
+        )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
