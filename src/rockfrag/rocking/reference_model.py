@@ -81,7 +81,7 @@ class Model:
         self.g = g
         self.alone = isinstance(body, Block)
         if isinstance(body, Block):
-            blocks = (None, body)
+            blocks: tuple[Block | None, Block] = (None, body)
             self.m1, self.i1, self.b1 = 0.0, 0.0, 1.0
             self._r1 = self._d = _Affine(_NOWHERE, _NOWHERE, _NOWHERE)
             arms = {(s, t): body.arm(t) for s in (1, -1) for t in (1, -1)}
