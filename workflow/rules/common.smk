@@ -7,7 +7,13 @@ import sys
 from rockfrag.errors import InputError
 from rockfrag.report.gallery import figure_names
 from rockfrag.studies.loading import checked_study
+from rockfrag.report.supplements import (
+    sensitivity_figures,
+    supplement_figures,
+    supplement_tables,
+)
 from rockfrag.studies.digest import source_digest
+from rockfrag.studies.measured_tests import MEASURED_TABLES
 from rockfrag.studies.pedestal import PEDESTAL_TABLES
 from rockfrag.studies.study import PRINTED_TABLES
 from rockfrag.studies.study import RECORDS_FOLDER as RECORDS
@@ -43,6 +49,7 @@ REPORT_TABLES = [
 if STUDY.has_pairs:
     REPORT_TABLES += [f"pedestal/{name}" for name in PEDESTAL_TABLES]
     REPORT_TABLES += ["claims", "contradictions"]
+REPORT_TABLES += supplement_tables(STUDY)
 
 
 wildcard_constraints:

@@ -50,7 +50,7 @@ rule draw_figures:
 rule write_report:
     input:
         tables=[path for path in tables(*REPORT_TABLES) if path.endswith(".parquet")],
-        figures=figures(*figure_names(STUDY)),
+        figures=figures(*figure_names(STUDY), *supplement_figures(STUDY)),
     output:
         report(
             f"{RESULTS}/report.html",

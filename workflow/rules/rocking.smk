@@ -23,9 +23,10 @@ rule sweep_amplitudes:
 
 rule apply_protocol:
     input:
-        expand(
+        sweeps=expand(
             f"{RESULTS}/sweep/{{configuration}}.parquet", configuration=CONFIGURATIONS
         ),
+        limits=[] if STUDY.more.shaker is None else f"{RESULTS}/shaker.parquet",
     output:
         tables("tests"),
     log:

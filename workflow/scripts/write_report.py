@@ -8,6 +8,7 @@ from rockfrag.files import write_text
 from rockfrag.report.contents import write_page
 from rockfrag.report.gallery import pictures
 from rockfrag.report.provenance import provenance
+from rockfrag.report.supplements import supplement_pictures
 from rockfrag.studies.log import logged
 from rockfrag.studies.study import study_from
 
@@ -18,6 +19,7 @@ with logged(snakemake.log[0], "report") as log:
         Path(path).relative_to(folder).with_suffix("").as_posix(): pd.read_parquet(path)
         for path in snakemake.input.tables
     }
-    drawn = pictures(study, Path(snakemake.input.figures[0]).parent)
+    drawings = Path(snakemake.input.figures[0]).parent
+    drawn = {**pictures(study, drawings), **supplement_pictures(study, drawings)}
     write_text(write_page(study, tables, drawn, provenance(study, tables)), snakemake.output[0])
     log.info("the report is %s", snakemake.output[0])

@@ -8,6 +8,7 @@ from markupsafe import Markup
 from rockfrag.report.findings import READING, Finding, all_findings
 from rockfrag.report.ledger_html import ledger_html
 from rockfrag.report.page import Column, Picture, Section, comparison_html, render, table_html
+from rockfrag.report.supplements import supplement_sections
 from rockfrag.studies.study import Study
 
 COMPARISONS = ("table_3_1", "table_3_3", "table_4_1")
@@ -37,7 +38,8 @@ def write_page(
     tables
         Result tables by name, as in ``results/<study>/``: ``tests``, ``measures``, ``fragility``,
         ``survival_windows``, ``validity``, ``table_3_1``, ``table_3_3``, ``table_4_1`` and, where the study has
-        pairs, ``pedestal/effects``, ``pedestal/whole``, ``claims`` and ``contradictions``.
+        pairs, ``pedestal/effects``, ``pedestal/whole``, ``claims`` and ``contradictions``; further
+        those of the optional parts (:mod:`rockfrag.report.supplements`).
     pictures
         Figures by name, in the order in which they are to appear within a section.
     provenance
@@ -51,6 +53,7 @@ def write_page(
     ]
     if "pedestal/effects" in tables:
         sections.append(_pedestal(tables, pictures))
+    sections += supplement_sections(study, tables, pictures)
     if "claims" in tables:
         sections.append(_claims(tables["claims"], tables["contradictions"]))
     return render(

@@ -3,7 +3,7 @@
 One assumption is varied at a time around the building of a YAML file.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -132,6 +132,7 @@ def building_sensitivity(
     amplitudes_g: Floats,
     protocol: Protocol,
     threads: int = 1,
+    progress: Callable[[int], None] = lambda done: None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Overturning amplitudes and margins of the floor statements for every variant.
 
@@ -149,6 +150,8 @@ def building_sensitivity(
         Protocol of the laboratory.
     threads
         Threads to use; the results do not depend on it.
+    progress
+        Called with the number of variants done, after each.
 
     Returns
     -------
@@ -162,7 +165,7 @@ def building_sensitivity(
     tables: list[pd.DataFrame] = []
     rows: list[dict[str, object]] = []
     ground = _Ground(specimens, amplitudes_g, threads)
-    for variant in variants:
+    for done, variant in enumerate(variants, start=1):
         sweep, credible = _sweep(variant, motions, ground)
         tests = tests_from_sweep(sweep, protocol)
         about = {"axis": variant.axis, "value": variant.value, "label": variant.label}
@@ -180,6 +183,7 @@ def building_sensitivity(
                 }
                 for statement, margin in margins.items()
             )
+        progress(done)
     return pd.concat(tables, ignore_index=True), pd.DataFrame(rows)
 
 

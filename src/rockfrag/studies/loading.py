@@ -7,6 +7,8 @@ from typing import Any
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import check_steps
+from rockfrag.shaketable.measured import read_measured
+from rockfrag.shaketable.settings import read_shaker
 from rockfrag.studies.measured_table import (
     MeasuredTable,
     is_measured_table,
@@ -55,5 +57,20 @@ def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> S
     except InputError as error:
         raise InputError(f"{study.source}: key motions.processing: {error}") from error
     if study.building is not None:
-        read_building(study.building)
+        storeys = len(read_building(study.building).masses)
+        _check_levels(study, storeys)
+    if study.more.shaker is not None:
+        read_shaker(study.more.shaker)
+    if study.more.measured_tests is not None:
+        read_measured(study.more.measured_tests)
     return study
+
+
+def _check_levels(study: Study, storeys: int) -> None:
+    """Raise where the sensitivity names levels that the building does not have."""
+    for third, fifth in (study.more.sensitivity or {}).get("levels", ()):
+        if not third < fifth <= storeys:
+            raise InputError(
+                f"{study.source}: key building_sensitivity.levels: expected pairs of levels up to "
+                f"{storeys}, the lower one first, found [{third}, {fifth}]."
+            )

@@ -14,6 +14,7 @@ from rockfrag.records.fetching import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.studies.amplitudes import Amplitudes
 from rockfrag.studies.configurations import Configuration, read_configurations, read_specimens
+from rockfrag.studies.supplementary import Supplementary, supplementary_from
 from rockfrag.studies.validation import check_schema, read_schema
 
 RECORDS_FOLDER = "resources/records"
@@ -59,6 +60,8 @@ class Study:
         Settings of the fragility curves.
     printed
         Folder of printed tables to compare with, or None.
+    more
+        Optional parts: shaker, measured tests, sensitivity to the building, explanation.
     """
 
     name: str
@@ -77,6 +80,7 @@ class Study:
     protocol_step_percent: float
     fragility: FragilitySettings
     printed: Path | None
+    more: Supplementary
 
     def configuration(self, slug: str) -> Configuration:
         """Return the configuration whose file name is ``slug``."""
@@ -158,6 +162,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
             confidence=content["fragility"]["confidence"],
         ),
         printed=_printed(source, content.get("printed")),
+        more=supplementary_from(content, source),
     )
 
 

@@ -1,0 +1,339 @@
+"""Ratios P/NP simulated with one factor at a time away from the ideal model.
+
+What is varied: restitution of both interfaces, imperfections, the pedestal's width, mass that was not
+counted, the protocol's step, and all tolerances at once in perturbed copies.  The table that results is
+what :func:`rockfrag.pedestal.explanation.explain` takes.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import radians
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.pedestal.measurement import ratio_bias
+from rockfrag.records.motion import Motion
+from rockfrag.rocking import overturns
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.parameters import Restitution
+from rockfrag.units import STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
+
+BATCH = 16
+"""Bodies that are shaken at a time, between two lines of progress."""
+
+REFERENCE = "ideal"
+LARGEST_RESTITUTION = 0.995
+
+
+@dataclass(frozen=True)
+class Case:
+    """A tower with and without its pedestal at one level of one factor.
+
+    Attributes
+    ----------
+    factor, level, tower, replicate
+        What differs, how much, of which tower, and the number of the perturbed copy.
+    lone, stack
+        Bodies without and with the pedestal.
+    lone_restitution, stack_restitution
+        As :func:`rockfrag.rocking.overturns` takes them; None conserves momentum.
+    """
+
+    factor: str
+    level: float
+    tower: str
+    lone: Block
+    stack: Stack
+    lone_restitution: Restitution = None
+    stack_restitution: Restitution = None
+    replicate: int = 0
+
+
+def factor_cases(tower: str, stack: Stack, levels: Mapping[str, Sequence[float]]) -> list[Case]:
+    """One case per level of each mechanical factor.
+
+    Parameters
+    ----------
+    tower
+        Its name.
+    stack
+        The ideal stack; its statue is the lone tower.
+    levels
+        Any of ``statue_restitution``, ``interface_restitution``, ``ground_restitution`` (factors on
+        the restitution that conserves momentum), ``pedestal_lean_deg``, ``statue_offset_mm``,
+        ``statue_cg_offset_mm``, ``pedestal_width_cm``; others are left alone.
+
+    Raises
+    ------
+    InputError
+        If a body cannot stand or a restitution would add energy; factor and level are named.
+    """
+    make: dict[str, Callable[[Stack, float], tuple[Block, Stack, Restitution, Restitution]]] = {
+        "statue_restitution": _statue_restitution,
+        "interface_restitution": _interface_restitution,
+        "ground_restitution": _ground_restitution,
+        "pedestal_lean_deg": _pedestal_lean,
+        "statue_offset_mm": _statue_offset,
+        "statue_cg_offset_mm": _statue_cg_offset,
+        "pedestal_width_cm": _pedestal_width,
+    }
+    cases = []
+    for factor, build in make.items():
+        for level in levels.get(factor, ()):
+            try:
+                cases.append(Case(factor, level, tower, *build(stack, level)))
+            except InputError as error:
+                raise InputError(f"explanation.{factor}, {level:g}, {tower}: {error}") from error
+    return cases
+
+
+Bodies = tuple[Block, Stack, Restitution, Restitution]
+
+
+def _restitution(block: Block, factor: float) -> float:
+    value = factor * block.momentum_restitution()
+    if not 0 < value < 1:
+        raise InputError(
+            f"a restitution of {factor:g} times {block.momentum_restitution():.3f} would be "
+            f"{value:.3f}; choose a factor that keeps it between 0 and 1."
+        )
+    return value
+
+
+def _statue_restitution(stack: Stack, factor: float) -> Bodies:
+    value = _restitution(stack.statue, factor)
+    return stack.statue, stack, value, (None, value)
+
+
+def _interface_restitution(stack: Stack, factor: float) -> Bodies:
+    return stack.statue, stack, None, (None, _restitution(stack.statue, factor))
+
+
+def _ground_restitution(stack: Stack, factor: float) -> Bodies:
+    return stack.statue, stack, None, (_restitution(stack.pedestal, factor), None)
+
+
+def _pedestal_lean(stack: Stack, degrees: float) -> Bodies:
+    pedestal = replace(stack.pedestal, lean=stack.pedestal.lean + radians(degrees))
+    return stack.statue, replace(stack, pedestal=pedestal), None, None
+
+
+def _statue_offset(stack: Stack, millimetres: float) -> Bodies:
+    return stack.statue, replace(stack, offset=stack.offset + millimetres / 1000), None, None
+
+
+def _statue_cg_offset(stack: Stack, millimetres: float) -> Bodies:
+    statue = replace(stack.statue, cg_offset=stack.statue.cg_offset + millimetres / 1000)
+    return statue, replace(stack, statue=statue), None, None
+
+
+def _pedestal_width(stack: Stack, centimetres: float) -> Bodies:
+    # of the same material and depth; the inertia follows from the shape
+    width = centimetres / 100
+    mass = stack.pedestal.mass * width / stack.pedestal.width
+    pedestal = replace(stack.pedestal, width=width, mass=mass, inertia=None)
+    return stack.statue, replace(stack, pedestal=pedestal), None, None
+
+
+def perturbed_cases(
+    tower: str,
+    stack: Stack,
+    tolerance: float,
+    restitution: float,
+    replicates: int,
+    rng: np.random.Generator,
+) -> list[Case]:
+    """Copies with tolerances; the two sides of a pair are drawn apart, as in separate tests.
+
+    Parameters
+    ----------
+    tolerance
+        Standard deviation of every width and height, relative [-].
+    restitution
+        Standard deviation of every restitution [-].
+    replicates
+        Number of copies.
+    rng
+        Source of the random numbers.
+    """
+    cases = []
+    for number in range(1, replicates + 1):
+        lone, pedestal, statue = (
+            _perturbed(block, tolerance, rng)
+            for block in (stack.statue, stack.pedestal, stack.statue)
+        )
+        values = [
+            float(np.clip(b.momentum_restitution() + restitution * z, 0.01, LARGEST_RESTITUTION))
+            for b, z in zip((lone, pedestal, statue), rng.standard_normal(3), strict=True)
+        ]
+        both = (values[1], values[2])
+        level = 100 * tolerance
+        copy = Stack(pedestal, statue, stack.offset)
+        cases.append(Case("tolerances", level, tower, lone, copy, values[0], both, number))
+    return cases
+
+
+def _perturbed(block: Block, tolerance: float, rng: np.random.Generator) -> Block:
+    across, up = np.exp(tolerance * rng.standard_normal(2))
+    height = None if block.cg_height is None else block.cg_height * float(up)
+    width = block.width * float(across)
+    return replace(block, width=width, height=block.height * float(up), cg_height=height)
+
+
+def ladder_amplitudes(
+    bodies: Sequence[Body],
+    restitution: Sequence[Restitution],
+    motions: Sequence[Motion],
+    ladder_g: Floats,
+    threads: int = 1,
+) -> Floats:
+    """Largest amplitude survived before the first overturning, climbing a ladder from rest.
+
+    Parameters
+    ----------
+    bodies, restitution
+        What stands on the table.
+    motions
+        Motions of the table.
+    ladder_g
+        Amplitudes, rising [g].
+    threads
+        Threads to use; the result does not depend on it.
+
+    Returns
+    -------
+    Amplitudes [g], shape (bodies, motions); NaN where nothing or everything was survived.
+    """
+    scales = np.array([ladder_g * STANDARD_GRAVITY / motion.pga for motion in motions])
+    fell = overturns(
+        bodies,
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        scales,
+        restitution=list(restitution),
+        threads=threads,
+    ).overturned
+    first = fell.argmax(axis=2)
+    known = fell.any(axis=2) & (first > 0)
+    return np.where(known, ladder_g[np.maximum(first - 1, 0)], np.nan)
+
+
+def case_ratios(
+    cases: Sequence[Case],
+    motions: Sequence[Motion],
+    ladder_g: Floats,
+    threads: int = 1,
+    progress: Callable[[int], None] = lambda done: None,
+) -> pd.DataFrame:
+    """Ratio P/NP of every case under every motion.
+
+    Parameters
+    ----------
+    cases
+        What is tested.
+    motions, ladder_g, threads
+        As of :func:`ladder_amplitudes`.
+    progress
+        Called with the number of bodies done.
+
+    Returns
+    -------
+    One row per case and motion: ``factor``, ``level``, ``reference`` (False), ``tower``, ``event``,
+    ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``.
+    """
+    wanted: dict[tuple[Body, Restitution], int] = {}
+    for case in cases:
+        for key in _keys(case):
+            wanted.setdefault(key, len(wanted))
+    order = list(wanted)
+    parts = []
+    for first in range(0, len(order), BATCH):
+        batch = order[first : first + BATCH]
+        bodies, values = [body for body, _ in batch], [value for _, value in batch]
+        parts.append(ladder_amplitudes(bodies, values, motions, ladder_g, threads))
+        progress(first + len(batch))
+    amplitudes = np.concatenate(parts)
+    tables = []
+    for case in cases:
+        lone, stack = (amplitudes[wanted[key]] for key in _keys(case))
+        tables.append(_rows(case, motions, stack, lone))
+    return pd.concat(tables, ignore_index=True)
+
+
+def _keys(case: Case) -> Iterator[tuple[Body, Restitution]]:
+    yield case.lone, case.lone_restitution
+    yield case.stack, case.stack_restitution
+
+
+def _rows(case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats) -> pd.DataFrame:
+    return pd.DataFrame(
+        {
+            "factor": case.factor,
+            "level": case.level,
+            "reference": False,
+            "tower": case.tower,
+            "event": [str(one.metadata.get("event") or one.name) for one in motions],
+            "floor": [str(one.metadata.get("floor") or "GF") for one in motions],
+            "motion": [one.name for one in motions],
+            "replicate": case.replicate,
+            "p_g": stack,
+            "np_g": lone,
+            "ratio": stack / lone,
+        }
+    )
+
+
+def mass_error_rows(
+    ideal: pd.DataFrame, stacks: Mapping[str, Stack], table_masses: Sequence[float]
+) -> pd.DataFrame:
+    """Ratios that a laboratory would report which divides the force by the wrong mass.
+
+    Parameters
+    ----------
+    ideal
+        Rows of :func:`case_ratios` for the ideal model.
+    stacks
+        Stacks by tower.
+    table_masses
+        Moved masses of the table [kg].
+
+    Returns
+    -------
+    Rows like ``ideal`` with the factors ``pedestal_not_counted`` and ``table_not_counted`` and the
+    table's mass as level; see :mod:`rockfrag.pedestal.measurement`.
+    """
+    parts = []
+    for mass in table_masses:
+        for factor in ("pedestal_not_counted", "table_not_counted"):
+            bias = {}
+            for tower, stack in stacks.items():
+                statue, pedestal = stack.statue.mass, stack.pedestal.mass
+                counted = (
+                    (mass + statue, mass + statue)
+                    if factor == "pedestal_not_counted"
+                    else (statue + pedestal, statue)
+                )
+                bias[tower] = ratio_bias(
+                    statue, pedestal, mass, counted_with=counted[0], counted_without=counted[1]
+                )
+            ratio = ideal["ratio"] * ideal["tower"].map(bias)
+            parts.append(ideal.assign(factor=factor, level=float(mass), ratio=ratio))
+    return pd.concat(parts, ignore_index=True) if parts else ideal.iloc[:0]
+
+
+def with_references(rows: pd.DataFrame, ideal: pd.DataFrame) -> pd.DataFrame:
+    """Put the ideal model beside the levels of every factor, marked as the reference.
+
+    The level of the reference is NaN-free text ``ideal``; other levels become text too, with a unit
+    left to the factor's name.
+    """
+    parts = []
+    for factor, part in rows.groupby("factor", sort=False):
+        parts.append(ideal.assign(factor=factor, level=REFERENCE, reference=True))
+        parts.append(part.assign(level=[f"{value:g}" for value in part["level"]]))
+    return pd.concat(parts, ignore_index=True)

@@ -1,0 +1,15 @@
+"""Draw the shaker's limits beside what lone towers need."""
+
+import pandas as pd
+
+from rockfrag.report.building_figures import shaker_limits
+from rockfrag.report.findings import READING
+from rockfrag.report.style import save_figure
+from rockfrag.studies.log import logged
+
+with logged(snakemake.log[0], "shaker figure") as log:
+    limits = pd.read_parquet(snakemake.input.limits)
+    tests = pd.read_parquet(snakemake.input.tests)
+    lone = tests[(tests["reading"] == READING) & (tests["pedestal"] == "NP")]
+    save_figure(shaker_limits(limits, lone), *snakemake.output)
+    log.info("shaker_limits")

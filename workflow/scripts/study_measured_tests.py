@@ -1,0 +1,25 @@
+"""Take a laboratory's tests through the statistics of the simulated ones."""
+
+import pandas as pd
+
+from rockfrag.files import write_table
+from rockfrag.report.findings import READING
+from rockfrag.shaketable.measured import read_measured
+from rockfrag.studies.log import logged
+from rockfrag.studies.measured_tests import measured_tables
+from rockfrag.studies.study import study_from
+
+with logged(snakemake.log[0], "measured tests") as log:
+    study = study_from(snakemake.config, snakemake.params.study)
+    simulated = pd.read_parquet(snakemake.input.simulated)
+    found = measured_tables(
+        read_measured(snakemake.input.measured),
+        simulated[simulated["reading"] == READING],
+        pd.read_parquet(snakemake.input.measures),
+        study.tested_blocks,
+        study.seed,
+        study.fragility.confidence,
+    )
+    for number, table in enumerate(found.values()):
+        write_table(table, *snakemake.output[2 * number : 2 * number + 2])
+    log.info("%d measured tests", len(found["measured/tests"]))
