@@ -63,7 +63,7 @@ def converged(cases: Cases) -> NDArray[np.bool_]:
     return overturns(cases.bodies, dense, cases.dt / 8, cases.scales, step=0.1 / 8).overturned
 
 
-def two_thread_ratio(cases: Cases, repeats: int = 5) -> float:
+def two_thread_ratio(cases: Cases, repeats: int = 3) -> float:
     """Speed of two threads over that of one, wall clock, runs taken in turn."""
     one, two = math.inf, math.inf
     for _ in range(repeats):

@@ -15,7 +15,7 @@ def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:
     Parameters
     ----------
     programs
-        Columns ``bodies``, ``program``, ``histories_per_s_core``, ``wrong_share``.
+        Columns ``bodies``, ``program``, ``histories_per_s_core``, ``histories``, ``wrong_verdicts``.
     scaling
         Columns ``bodies``, ``histories``, ``seconds``.
     """
@@ -32,16 +32,23 @@ def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:
         )
         left.set_xscale("log")
         left.set_yticks(place, table["program"])
-        left.set_xlim(right=table["histories_per_s_core"].max() * 300)
-        for y, speed, wrong in zip(
-            place, table["histories_per_s_core"], table["wrong_share"], strict=True
+        fastest = table["histories_per_s_core"].max()
+        left.set_xlim(right=fastest * 3e4)
+        left.set_xticks([t for t in 10.0 ** np.arange(-1, 7) if t <= 10 * fastest])
+        left.minorticks_off()
+        columns = ("histories_per_s_core", "wrong_verdicts", "histories")
+        for y, (rate, wrong, count) in enumerate(
+            zip(*(table[column].tolist() for column in columns), strict=True)
         ):
-            left.text(speed * 1.2, y, f"{speed:.3g}/s, {100 * wrong:.2g} % wrong", va="center")
+            speed = f"{rate:.3g}" if rate < 1000 else f"{rate:,.0f}".replace(",", "\N{THIN SPACE}")
+            words = f"{speed}/s, {wrong} of {count} wrong"
+            left.text(rate * 1.2, y, words, va="center", fontsize=7)
         left.set_xlabel("histories per second and core")
         for bodies, part in scaling.groupby("bodies", sort=True):
             right.loglog(
                 part["histories"], part["seconds"], "o-", color=COLOURS[str(bodies)], label=bodies
             )
+        right.minorticks_off()
         right.set_xlabel("histories")
         right.set_ylabel("CPU time [s]")
         right.legend()
