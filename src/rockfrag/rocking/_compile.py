@@ -37,8 +37,8 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     except RuntimeError:
         # numba finds no folder it may write its cache to: compile for this process alone
         compiled = numba.njit(**options)(function)
-    else:
-        index = compiled._cache._cache_file
+    index = getattr(getattr(compiled, "_cache", None), "_cache_file", None)
+    if index is not None:
         index._source_stamp = (index._source_stamp, _digest())
     return compiled  # type: ignore[no-any-return]
 
