@@ -1,6 +1,7 @@
 """What could produce a pedestal effect: a forest of ratios by factor and level, and a section."""
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -71,8 +72,9 @@ def explanation_section(
             "rest is as in the study.",
             f"{small} of {len(whole)} departures leave the mean ratio P/NP within ±10 %."
             + (f" Beyond: {strong}." if strong else ""),
-            f"The signs that the thesis reports, above one on the ground floor and below one on the "
-            f"others, come from: {named}."
+            f"The mean ratios have the signs that the thesis reports, above one on the ground floor and "
+            f"below one on the others, with: {named}. The sign of a mean alone says nothing about its "
+            "interval, which the table gives."
             if named
             else "No departure gives the signs that the thesis reports, above one on the ground floor "
             "and below one on the others.",
@@ -84,7 +86,7 @@ def explanation_section(
     )
 
 
-def _name(row: Mapping[str, object]) -> str:
+def _name(row: Mapping[Hashable, Any]) -> str:
     factor, unit = FACTORS[str(row["factor"])]
     return f"{factor} {_level(unit, str(row['level']))}"
 
@@ -131,8 +133,9 @@ def explanation_figure(effects: pd.DataFrame) -> Figure:
                     drawn.append(value)
                     place = y + 0.16 * (number - 1)
                     axes.plot(value, place, marker, color=colour, ms=2.8, mew=0, zorder=2)
-            one = known.loc[(*key, "all")]
-            low, middle, high = (float(one[n]) for n in ("ratio_lower", "ratio", "ratio_upper"))
+            low, middle, high = (
+                float(known.loc[(*key, "all"), n]) for n in ("ratio_lower", "ratio", "ratio_upper")
+            )
             drawn += [low, middle, high]
             axes.plot([low, high], [y, y], color=BLACK, lw=1.0, zorder=3)
             axes.plot(middle, y, "D", color=BLACK, mfc="white", ms=3.5, zorder=4)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from rockfrag.report.ledger_html import ledger_html
@@ -40,7 +41,7 @@ def measured_section(
         Column("theta_upper", "to", 3),
         Column("beta", "β", 3),
     )
-    parts = [
+    parts: list[Markup | Picture] = [
         pictures["measured_beside"],
         table_html(beside, tests, "Measured tests beside simulated ones."),
         table_html(tables["measured/fragility"], curves, "Fragility from the measured tests."),

@@ -100,7 +100,8 @@ def export_curves(curves: pd.DataFrame, folder: Path) -> list[str]:
 def _usable(curves: pd.DataFrame, column: str) -> pd.DataFrame:
     rows = curves[curves["measure"] == column]
     found = rows[["theta", "beta"]].to_numpy(dtype=float)
-    return rows[(np.isfinite(found) & (found > 0)).all(axis=1)]
+    usable: pd.DataFrame = rows.loc[(np.isfinite(found) & (found > 0)).all(axis=1)]
+    return usable
 
 
 def recommended_names(choice: pd.DataFrame, configurations: Sequence[str]) -> dict[str, str]:

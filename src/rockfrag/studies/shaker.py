@@ -46,9 +46,8 @@ def limited_tests(sweeps: pd.DataFrame, protocol: Protocol, limits: pd.DataFrame
     Table of tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
     """
     known = limits.set_index("motion")
-    tests = tests_from_sweep(
-        sweeps, protocol, readings=["step_protocol"], limits_g=known["limit_g"].to_dict()
-    )
+    largest = dict(zip(limits["motion"], limits["limit_g"].astype(float), strict=True))
+    tests = tests_from_sweep(sweeps, protocol, readings=["step_protocol"], limits_g=largest)
     remarks = []
     for test in tests.to_dict("records"):
         limit = known.loc[test["motion"]]

@@ -1,0 +1,116 @@
+"""Optional parts of a study: shaker, measured tests, explanation, the building's sensitivity."""
+
+import shutil
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pandas as pd
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.studies.loading import load_study
+
+from .conftest import study_content, write_study
+from .test_run import ROOT, snakemake
+
+EXPLANATION = {
+    "statue_restitution": [0.9],
+    "interface_restitution": [0.95],
+    "ground_restitution": [1.5],
+    "pedestal_lean_deg": [2],
+    "statue_offset_mm": [5],
+    "statue_cg_offset_mm": [2],
+    "pedestal_width_cm": [14],
+    "table_mass_kg": [10],
+    "step_percent": [8],
+    "tolerance_percent": 1,
+    "tolerance_restitution": 0.02,
+    "replicates": 1,
+}
+
+SYNTHETIC_TESTS = (
+    "test,tower,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\n"
+    "synthetic 1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic\n"
+    "synthetic 2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic\n"
+    "synthetic 3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic\n"
+    "synthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic\n"
+)
+
+
+def full_study(folder: Path) -> Path:
+    """Write a study with every optional part, each as small as it can be."""
+    for name in ("building.yaml", "experiment/shaker.yaml"):
+        shutil.copy(ROOT / "config" / name, folder / Path(name).name)
+    (folder / "tests.csv").write_text(SYNTHETIC_TESTS)
+    content = study_content()
+    content["motions"]["use"] = ["motion 0", "motion 2", "motion 4"]
+    content["amplitudes"]["step_percent"] = 15
+    return write_study(
+        folder,
+        {
+            **content,
+            "building": "building.yaml",
+            "shaker": "shaker.yaml",
+            "measured_tests": "tests.csv",
+            "building_sensitivity": {"first_period_s": [0.5], "levels": [[3, 6]]},
+            "explanation": EXPLANATION,
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"shaker": "no.yaml"}, ["key shaker", "no.yaml"]),
+        ({"measured_tests": "no.csv"}, ["key measured_tests", "no.csv"]),
+        ({"building_sensitivity": {"periods": [1]}}, ["building_sensitivity.periods"]),
+        ({"building_sensitivity": {"levels": [[3, 9]]}}, ["levels", "up to 6", "[3, 9]"]),
+        ({"explanation": {**EXPLANATION, "replicates": 0}}, ["explanation.replicates"]),
+        ({"building": None}, ["building"]),
+    ],
+)
+def test_a_wrong_optional_part_is_named(study_folder: Path, change: dict, words: list[str]):
+    import yaml
+
+    path = full_study(study_folder)
+    content = {**yaml.safe_load(path.read_text()), **change}
+    with pytest.raises(InputError) as caught:
+        load_study(write_study(study_folder, {k: v for k, v in content.items() if v is not None}))
+    assert "\n" not in str(caught.value)
+    for word in words:
+        assert word in str(caught.value)
+
+
+@pytest.mark.slow
+def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
+    full_study(study_folder)
+    done = snakemake(study_folder, "--cores", "2")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = study_folder / "results" / "tiny"
+
+    tests = pd.read_csv(results / "tests.csv")
+    shaker = pd.read_csv(results / "shaker.csv").set_index("motion")["limit_g"]
+    limited = tests[tests["reading"] == "step_protocol_shaker"]
+    assert len(limited) == 3 * 3 * 4
+    assert (limited["lower_g"] <= limited["motion"].map(shaker) * (1 + 1e-9)).all()
+
+    beside = pd.read_csv(results / "measured" / "beside.csv")
+    assert len(beside) == 4
+    assert beside["ratio"].notna().sum() == 3
+    claims = pd.read_csv(results / "measured" / "claims.csv")
+    assert set(claims["basis"]) == {"measured"}
+
+    margins = pd.read_csv(results / "building_sensitivity" / "margins.csv")
+    assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels 3 and 6"}
+    effects = pd.read_csv(results / "explanation" / "effects.csv")
+    assert effects["factor"].nunique() == 11
+
+    nrml = ElementTree.parse(results / "exports" / "fragility_pga.xml").getroot()
+    assert nrml.tag.endswith("nrml")
+    choice = pd.read_csv(results / "measure_choice.csv")
+    assert choice.groupby("configuration")["recommended"].sum().eq(1).all()
+
+    page = (results / "report.html").read_text()
+    for anchor in ("measures", "explanation", "shaker", "sensitivity", "measured"):
+        assert f'id="{anchor}"' in page
+    assert 'src="http' not in page
