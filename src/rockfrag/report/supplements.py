@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
 from rockfrag.report.explanation_section import explanation_section
@@ -156,8 +155,8 @@ def _shaker(tables: Tables, pictures: Pictures) -> Section:
 
 
 def _sensitivity(tables: Tables, pictures: Pictures) -> Section:
-    margins = tables["building_sensitivity/margins"]
-    rows = margins[margins["reading"] == READING]
+    table = tables["building_sensitivity/margins"]
+    rows = table[table["reading"] == READING]
     order = rows[(rows["axis"] == "first_period_s") & (rows["statement"] == "order")]
     holds = [f"{value:g} s" for value in order.loc[order["margin"] > 0.02, "value"]]
     words = (
@@ -169,10 +168,8 @@ def _sensitivity(tables: Tables, pictures: Pictures) -> Section:
     )
     doubtful = sorted(set(rows.loc[~rows["credible"], "label"]))
     share = f"{len(doubtful)} of {rows['label'].nunique()}"
-    shown = rows.groupby(["axis", "statement"], sort=False)["margin"].agg(["min", "max"])
-    shown = 100 * shown.replace([np.inf, -np.inf], np.nan).reset_index().set_index(
-        ["axis", "statement"]
-    )
+    margins = rows.groupby(["axis", "statement"], sort=False)["margin"].agg(["min", "max"])
+    shown = (100 * margins).reset_index()
     columns = (
         Column("axis", "Assumption"),
         Column("statement", "Statement"),
@@ -188,6 +185,6 @@ def _sensitivity(tables: Tables, pictures: Pictures) -> Section:
         ],
         [
             *(pictures[name] for name in pictures if name.startswith("sensitivity_")),
-            table_html(shown.reset_index(), columns, "Range of the margins of each statement."),
+            table_html(shown, columns, "Range of the margins of each statement."),
         ],
     )
