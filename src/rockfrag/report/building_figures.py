@@ -71,7 +71,7 @@ def floor_order(tests: pd.DataFrame, margins: pd.DataFrame, readings: Sequence[s
             order = margins[margins["reading"] == reading].sort_values("value")
             _shade(axes, order["value"].to_numpy(), order["margin"].to_numpy())
             axes.set_title(READING_NAMES[reading])
-            axes.set_xlabel("First period of the elastic building [s]")
+            axes.set_xlabel("First period [s]")
         panels[0].set_ylabel("Mean overturning amplitude,\nlone towers [g]")
         handles, labels = panels[0].get_legend_handles_labels()
         handles += [Patch(color="#bbbbbb"), Patch(color="#e8e8e8")]

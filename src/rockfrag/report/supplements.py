@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from rockfrag.report.building_figures import AXIS_NAMES
 from rockfrag.report.explanation_section import explanation_section
 from rockfrag.report.findings import READING
 from rockfrag.report.measured_section import measured_section
@@ -47,11 +48,11 @@ def supplements(study: Study) -> list[Supplement]:
         )
         found.append(Supplement(("shaker",), _shaker, {"shaker_limits": caption}))
     if study.more.sensitivity is not None:
-        captions = dict.fromkeys(
-            sensitivity_figures(study),
-            "By how much each statement on floors holds (positive) or fails along one assumption; "
-            "dots: by more than 2 %.",
-        )
+        captions = {
+            name: "By how much each statement on floors holds (positive) or fails; dots: by more than "
+            f"2 %. {AXIS_NAMES.get(name.removeprefix(STATEMENTS_FIGURE), '')}."
+            for name in sensitivity_figures(study)
+        }
         if ORDER_FIGURE in captions:
             captions[ORDER_FIGURE] = (
                 "Mean overturning amplitude of lone towers on each floor over the first period of the "
@@ -168,8 +169,11 @@ def _sensitivity(tables: Tables, pictures: Pictures) -> Section:
     )
     doubtful = sorted(set(rows.loc[~rows["credible"], "label"]))
     share = f"{len(doubtful)} of {rows['label'].nunique()}"
-    margins = rows.groupby(["axis", "statement"], sort=False)["margin"].agg(["min", "max"])
-    shown = (100 * margins).reset_index()
+    varied = rows[rows["axis"] != "reference"]
+    margins = varied.groupby(["axis", "statement"], sort=False)["margin"].agg(["min", "max"])
+    # adding zero turns a negative zero into a plain one
+    shown = ((100 * margins).round(1) + 0.0).reset_index()
+    shown["axis"] = shown["axis"].map(AXIS_NAMES)
     columns = (
         Column("axis", "Assumption"),
         Column("statement", "Statement"),
