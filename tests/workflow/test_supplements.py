@@ -67,6 +67,10 @@ def full_study(folder: Path) -> Path:
         ({"building_sensitivity": {"levels": [[3, 9]]}}, ["levels", "up to 6", "[3, 9]"]),
         ({"explanation": {**EXPLANATION, "replicates": 0}}, ["explanation.replicates"]),
         ({"building": None}, ["building"]),
+        (
+            {"bodies": {**study_content()["bodies"], "use": ["T1", "T2"]}},
+            ["key explanation", "with and without"],
+        ),
     ],
 )
 def test_a_wrong_optional_part_is_named(study_folder: Path, change: dict, words: list[str]):

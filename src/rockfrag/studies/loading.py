@@ -61,6 +61,11 @@ def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> S
         _check_levels(study, storeys)
     if study.more.shaker is not None:
         read_shaker(study.more.shaker)
+    if study.more.explanation is not None and not study.has_pairs:
+        raise InputError(
+            f"{study.source}: key explanation: expected a tower tested with and without a pedestal "
+            "among the configurations."
+        )
     if study.more.measured_tests is not None:
         read_measured(study.more.measured_tests)
     return study
