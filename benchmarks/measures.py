@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import ensemble
-from rockfrag.rocking._march import scratch
+from rockfrag.rocking._tally import scratch
 from rockfrag.rocking._step import TH1, series
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from rockfrag.rocking._compile import kernel
-from rockfrag.rocking._march import EVENT, HISTORY, march, scratch
+from rockfrag.rocking._march import march
+from rockfrag.rocking._tally import EVENT, HISTORY, scratch
 
 
 @kernel

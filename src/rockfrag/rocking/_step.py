@@ -14,7 +14,7 @@ from rockfrag.rocking._series import ORDER, extend_circular, extend_rotation
 
 # Places of the series in the scratch array that a march allocates once.
 TH1, TH2, SIN1, COS1, SIN2, COS2, SIND, COSD, DELTA, GAP = (row * (ORDER + 1) for row in range(10))
-# Critical angles and squared frequencies of the ways to balance: see _march.
+# Critical angles and squared frequencies of the ways to balance: see _tally.
 CRITICAL, FREQUENCY2 = 10 * (ORDER + 1), 11 * (ORDER + 1)
 SCRATCH = 12 * (ORDER + 1)
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking import _lanes as lanes
-from rockfrag.rocking import _march as kmarch
+from rockfrag.rocking import _tally as tally
 from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking._ensemble import march_cases
 from rockfrag.rocking.bodies import Block, Body, Stack
@@ -191,7 +191,7 @@ def _stacks(
     samples = np.concatenate(values)
     offsets = np.concatenate([[0], np.cumsum([v.size for v in values])])
     shape = (len(bodies), *factors.shape)
-    table = np.empty((math.prod(shape), kmarch.SUMMARY))
+    table = np.empty((math.prod(shape), tally.SUMMARY))
 
     def work(first: int, last: int) -> None:
         march_cases(
@@ -200,16 +200,16 @@ def _stacks(
         )  # fmt: skip
 
     _in_parallel(march_cases, len(table), workers, work)
-    table = table.reshape(*shape, kmarch.SUMMARY)
-    fallen = table[..., kmarch.FALLEN]
+    table = table.reshape(*shape, tally.SUMMARY)
+    fallen = table[..., tally.FALLEN]
     result.overturned[rows] = fallen > 0
     result.overturned_body[rows] = fallen
-    result.overturning_time[rows] = table[..., kmarch.FALL_TIME]
-    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, table[..., kmarch.RATIO2])
-    result.peak_rotation_pedestal[rows] = np.where(fallen == 1, np.inf, table[..., kmarch.RATIO1])
-    result.peak_velocity[rows] = table[..., kmarch.SPEED2]
-    result.impacts[rows] = table[..., kmarch.IMPACTS]
-    result.closest_approach[rows] = table[..., kmarch.CLOSEST]
+    result.overturning_time[rows] = table[..., tally.FALL_TIME]
+    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, table[..., tally.RATIO2])
+    result.peak_rotation_pedestal[rows] = np.where(fallen == 1, np.inf, table[..., tally.RATIO1])
+    result.peak_velocity[rows] = table[..., tally.SPEED2]
+    result.impacts[rows] = table[..., tally.IMPACTS]
+    result.closest_approach[rows] = table[..., tally.CLOSEST]
 
 
 def _refined(values: Array, times: int) -> Array:

@@ -9,9 +9,10 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import _march as kmarch
 from rockfrag.rocking import _mechanics as km
+from rockfrag.rocking import _tally as tally
 from rockfrag.rocking._compile import compiling_alone
+from rockfrag.rocking._march import march
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.forces import contact_forces
 from rockfrag.rocking.inputs import (
@@ -82,17 +83,17 @@ def simulate(
     first, second = _initial(body, theta0, "theta0"), _initial(body, omega0, "omega0")
     initial = np.array([first[0], second[0], first[1], second[1]])
     free = math.ceil(FREE_TIME / slowest_frequency(body, g) / dt)
-    history = np.zeros((values.size + free, kmarch.HISTORY))
-    summary = np.zeros(kmarch.SUMMARY)
+    history = np.zeros((values.size + free, tally.HISTORY))
+    summary = np.zeros(tally.SUMMARY)
     capacity = 4096
     while True:
-        events = np.zeros((capacity, kmarch.EVENT))
-        with compiling_alone(kmarch.march):
-            done = kmarch.march(
+        events = np.zeros((capacity, tally.EVENT))
+        with compiling_alone(march):
+            done = march(
                 p, values, float(dt), 1.0, step_count(body, dt, g, STEP), free, initial,
-                CLOSING_SPEED, history, events, kmarch.scratch(), summary,
+                CLOSING_SPEED, history, events, tally.scratch(), summary,
             )  # fmt: skip
-        count = int(summary[kmarch.N_EVENTS])
+        count = int(summary[tally.N_EVENTS])
         if count <= capacity:
             break
         capacity = count
@@ -120,7 +121,7 @@ def _response(
     normal, friction = contact_forces(body, ground, state, theta, omega, alpha, g)
     time = np.arange(n, dtype=np.float64) * float(dt)
     table = _event_table(events, blocks)
-    fallen = int(summary[kmarch.FALLEN])
+    fallen = int(summary[tally.FALLEN])
     return Response(
         body=body,
         time=time,
@@ -132,18 +133,18 @@ def _response(
         events=table,
         overturned=fallen > 0,
         overturned_body=("", "pedestal", "block" if isinstance(body, Block) else "statue")[fallen],
-        overturning_time=float(summary[kmarch.FALL_TIME]),
+        overturning_time=float(summary[tally.FALL_TIME]),
         energy=_energy_table(p, time, history, events),
         normal_force=normal,
         friction_force=friction,
-        impacts=int(summary[kmarch.IMPACTS]),
-        grazings=int(summary[kmarch.GRAZINGS]),
-        closest_approach=float(summary[kmarch.CLOSEST]),
+        impacts=int(summary[tally.IMPACTS]),
+        grazings=int(summary[tally.GRAZINGS]),
+        closest_approach=float(summary[tally.CLOSEST]),
     )
 
 
 def _event_table(events: NDArray[np.float64], blocks: list[int]) -> pd.DataFrame:
-    kinds = {kmarch.OPENING: "opening", kmarch.CLOSING: "impact", kmarch.CHATTER: "chatter"}
+    kinds = {tally.OPENING: "opening", tally.CLOSING: "impact", tally.CHATTER: "chatter"}
     rows: list[dict[str, Any]] = [
         {
             "time": row[0],
@@ -180,7 +181,7 @@ def _energy_table(
         potential[i] = km.potential_energy(p, c1, c2, row[0], row[2])
     # an impact closes the ground if the pedestal's contact changed, the interface otherwise
     by_ground = (events[:, 2] != 0) & (events[:, 2] != events[:, 4])
-    loss = np.where(events[:, 1] == kmarch.OPENING, 0.0, events[:, 12] - events[:, 13])
+    loss = np.where(events[:, 1] == tally.OPENING, 0.0, events[:, 12] - events[:, 13])
     at = np.searchsorted(time, events[:, 0] - 1e-12 * max(1.0, time[-1]))
 
     def so_far(values: NDArray[np.float64]) -> NDArray[np.float64]:
