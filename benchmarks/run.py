@@ -259,7 +259,7 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     rows, costs, goals = [], [], []
     other: dict[str, float] = {}
-    memory_histories = 10**6 if given.quick else 10**7
+    memory_histories = 10**5 if given.quick else 10**7
     for kind in NAMES:
         set_ = cases(kind, 500 if given.quick else 10_000)
         rows += speeds(kind, set_, given.quick)
