@@ -42,6 +42,10 @@ def explanation_section(
     """Return the section on what could produce an effect."""
     effects = tables["explanation/effects"]
     whole = effects[(effects["floor"] == "all") & (effects["level"] != REFERENCE)]
+    order = list(FACTORS)
+    whole = whole.sort_values(
+        "factor", key=lambda names: names.map(order.index), kind="stable", ignore_index=True
+    )
     clear = whole[(whole["ratio"] > NONE[1]) | (whole["ratio"] < NONE[0])]
     small = len(whole) - len(clear)
     strong = "; ".join(
