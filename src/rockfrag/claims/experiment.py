@@ -8,6 +8,7 @@ import pandas as pd
 from rockfrag.claims import events, floors, protocol, slenderness
 from rockfrag.claims.evidence import Evidence, Undecidable
 from rockfrag.claims.ledger import ClaimResult, ledger_table
+from rockfrag.pedestal.units import TooFewUnitsError
 from rockfrag.rocking.bodies import Block
 
 Test = Callable[[Evidence], ClaimResult]
@@ -69,7 +70,7 @@ def experiment_claims(evidence: Evidence) -> list[ClaimResult]:
     for number, test in TESTS.items():
         try:
             result = test(evidence)
-        except Undecidable as reason:
+        except (Undecidable, TooFewUnitsError) as reason:
             result = ClaimResult(
                 number,
                 (test.__doc__ or "").split("\n")[0],

@@ -23,6 +23,10 @@ ROUNDING = 1e-12
 """Differences of logarithms below this are rounding, not scatter [-]."""
 
 
+class TooFewUnitsError(ValueError):
+    """There is nothing to estimate from: no unit, or a figure that its data do not define."""
+
+
 @dataclass(frozen=True)
 class Estimate:
     """A mean over sampled units with its t interval, in logarithms.
@@ -114,12 +118,12 @@ def t_estimate(values: npt.ArrayLike, confidence: float = CONFIDENCE) -> Estimat
 
     Raises
     ------
-    ValueError
+    TooFewUnitsError
         If there are no values or one is not finite.
     """
     x = np.asarray(values, dtype=float)
     if x.size == 0 or not np.all(np.isfinite(x)):
-        raise ValueError("a mean needs at least one unit and finite values")
+        raise TooFewUnitsError("a mean needs at least one unit and finite values")
     mean = float(x.mean())
     if x.size == 1:
         return Estimate(mean, math.nan, 1, math.nan, math.nan, math.nan)

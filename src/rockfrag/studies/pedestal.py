@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import pandas as pd
 
+from rockfrag.errors import InputError
 from rockfrag.pedestal import study_pedestal
 
 PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "mixed", "notes")
@@ -29,6 +30,8 @@ def pedestal_tables(
     The tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with
     the column ``reading`` first.
     """
+    if tests.empty:
+        raise InputError("tests: there is no row; the pedestal's effect needs tests.")
     parts: dict[str, list[pd.DataFrame]] = {name: [] for name in PEDESTAL_TABLES}
     for reading, rows in tests.groupby("reading", sort=False):
         found = study_pedestal(rows, seed=seed, slenderness=slenderness)
