@@ -174,7 +174,8 @@ def test_few_verdicts_change_when_the_step_is_halved(kind, gate, count):
         cases.bodies, cases.accelerations, cases.dt, cases.scales, sample=cases.count
     )
     assert fragile.sampled == cases.count
-    assert fragile.share < gate
+    # the gate is for 10⁴ cases; a thousand may by chance hold two more than their share
+    assert fragile.changed < gate * fragile.sampled + (2 if count < 10_000 else 0)
 
 
 def test_verdicts_taken_with_long_steps_are_fragile():

@@ -66,7 +66,7 @@ def glide(p, c2, theta, omega, k, last, substeps, dt, acceleration, scale, extre
         for sub in range(substeps):
             a = left + sub * rise
             s, c = sine_cosine(psi)
-            w1, w2, w3, w4, w5 = rates(s, c, w, swing, a, rise)
+            w1, w2, w3, w4, w5, w6 = rates(s, c, w, swing, a, rise)
             if not fixed:
                 square = w * w
                 push = a * per_a
@@ -79,8 +79,8 @@ def glide(p, c2, theta, omega, k, last, substeps, dt, acceleration, scale, extre
                         k -= 1
                         p_sample, w_sample = before_psi, before_w
                     break
-            end = psi + travel(w, w1, w2, w3, w4, w5, 1.0)
-            v = rate(w, w1, w2, w3, w4, w5, 1.0)
+            end = psi + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
+            v = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
             if end >= angle or (w > 0.0 and v < 0.0) or end <= angle - 0.5 * math.pi:
                 stop = True
                 break

@@ -83,16 +83,18 @@ def advance(x):
         kappa = x[KAPPA + i]
         a = x[A0 + i]
         s, c = sine_cosine(psi)
-        w1, w2, w3, w4, w5 = rates(s, c, w, kappa, a, x[A1 + i] - a)
-        p = psi + travel(w, w1, w2, w3, w4, w5, 1.0)
-        v = rate(w, w1, w2, w3, w4, w5, 1.0)
+        w1, w2, w3, w4, w5, w6 = rates(s, c, w, kappa, a, x[A1 + i] - a)
+        p = psi + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
+        v = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
         x[NEW_PSI + i] = p
         x[NEW_RATE + i] = v
         certain = (w < 0.0) & (0.5 * w * w >= kappa * (x[CREST + i] - c + x[BOUND + i] * s))
         grazes = (w > 0.0) & (v < 0.0)
         touches = p >= x[ANGLE + i]
         lies = p <= x[ANGLE + i] - HALF_TURN
-        flag = TOUCHES if touches | grazes | lies else QUIET
+        # leaves, and may fall back and be pulled open again before the sample is over
+        hops = (w <= 0.0) & (v < 0.0) & (psi + 0.5 * w1 >= x[ANGLE + i])
+        flag = TOUCHES if touches | grazes | lies | hops else QUIET
         x[FLAG + i] = CERTAIN_FALL if certain else flag
         # the turning point of a parabola lies between the samples
         turn = psi + 0.5 * w * w / min(w - v, -1e-300)
@@ -103,7 +105,7 @@ def advance(x):
 
 
 @kernel
-def _flight(gap, w, w1, w2, w3, w4, w5, high):
+def _flight(gap, w, w1, w2, w3, w4, w5, w6, high):
     """Time at which ψ reaches the angle of impact, ``gap`` below it; 2 if it never left it.
 
     The angle is passed by the time ``high``.
@@ -115,18 +117,18 @@ def _flight(gap, w, w1, w2, w3, w4, w5, high):
         gap = 0.0
         guess = -2.0 * w / w1 if w1 > 0.0 else 0.5 * last
         low = min(1e-3 * last, 0.5 * guess)
-        while travel(w, w1, w2, w3, w4, w5, low) >= 0.0:
+        while travel(w, w1, w2, w3, w4, w5, w6, low) >= 0.0:
             low *= 0.1
             if low < 1e-13:
                 return 2.0
     else:
-        over = gap + travel(w, w1, w2, w3, w4, w5, last)
-        guess = last - over / max(1e-300, rate(w, w1, w2, w3, w4, w5, last))
+        over = gap + travel(w, w1, w2, w3, w4, w5, w6, last)
+        guess = last - over / max(1e-300, rate(w, w1, w2, w3, w4, w5, w6, last))
     for _ in range(100):
         if not low < guess < high:
             guess = 0.5 * (low + high)
-        f = gap + travel(w, w1, w2, w3, w4, w5, guess)
-        d = rate(w, w1, w2, w3, w4, w5, guess)
+        f = gap + travel(w, w1, w2, w3, w4, w5, w6, guess)
+        d = rate(w, w1, w2, w3, w4, w5, w6, guess)
         if f < 0.0:
             low = guess
         else:
@@ -140,23 +142,23 @@ def _flight(gap, w, w1, w2, w3, w4, w5, high):
 
 
 @kernel
-def _graze(gap, w, w1, w2, w3, w4, w5):
+def _graze(gap, w, w1, w2, w3, w4, w5, w6):
     """Time of impact of a ψ that rises and falls again within a step; 2 if it stays clear."""
     low = 0.0
     high = 1.0
     while high - low > 1e-9:
         t = 0.5 * (low + high)
-        if rate(w, w1, w2, w3, w4, w5, t) > 0.0:
+        if rate(w, w1, w2, w3, w4, w5, w6, t) > 0.0:
             low = t
         else:
             high = t
-    if gap + travel(w, w1, w2, w3, w4, w5, low) < 0.0:
+    if gap + travel(w, w1, w2, w3, w4, w5, w6, low) < 0.0:
         return 2.0
     high = low
     low = 0.0
     while high - low > 1e-15:
         t = 0.5 * (low + high)
-        if gap + travel(w, w1, w2, w3, w4, w5, t) < 0.0:
+        if gap + travel(w, w1, w2, w3, w4, w5, w6, t) < 0.0:
             low = t
         else:
             high = t
@@ -245,36 +247,36 @@ def _sample(psi, w, side, tau, k, end, factor, samples, b, o, tally, r):
             s, c = b[o + j + SIN], b[o + j + COS]
         else:
             s, c = sine_cosine(psi)
-        w1, w2, w3, w4, w5 = rates(
+        w1, w2, w3, w4, w5, w6 = rates(
             s, c, speed, full * left * left, side * now, side * ramp_all * left
         )
-        p = psi + travel(speed, w1, w2, w3, w4, w5, 1.0)
-        v = rate(speed, w1, w2, w3, w4, w5, 1.0)
+        p = psi + travel(speed, w1, w2, w3, w4, w5, w6, 1.0)
+        v = rate(speed, w1, w2, w3, w4, w5, w6, 1.0)
         t = 2.0
         if p >= angle:
-            t = _flight(gap, speed, w1, w2, w3, w4, w5, 1.0)
+            t = _flight(gap, speed, w1, w2, w3, w4, w5, w6, 1.0)
             if t > 1.0:
                 # it never left the ground
                 return 0.0, 0.0, 0
         elif speed > 0.0 and v < 0.0:
-            t = _graze(gap, speed, w1, w2, w3, w4, w5)
-        elif gap >= 0.0 and w1 > 0.0 and -2.0 * speed < w1:
-            # falls back within the step, and may be pulled open again before its end
+            t = _graze(gap, speed, w1, w2, w3, w4, w5, w6)
+        elif speed <= 0.0 and v < 0.0 and min(gap, 0.0) + 0.5 * w1 >= 0.0:
+            # may fall back within the step and be pulled open again before its end
             for part in range(1, 8):
-                if travel(speed, w1, w2, w3, w4, w5, part / 8) >= 0.0:
-                    t = _flight(gap, speed, w1, w2, w3, w4, w5, part / 8)
+                if min(gap, 0.0) + travel(speed, w1, w2, w3, w4, w5, w6, part / 8) >= 0.0:
+                    t = _flight(gap, speed, w1, w2, w3, w4, w5, w6, part / 8)
                     break
         if t > 1.0:
             _note(tally, r, p, v / left, angle, full)
             if speed < 0.0 and v > 0.0:
                 turn = speed / (speed - v)
-                low = psi + travel(speed, w1, w2, w3, w4, w5, turn)
+                low = psi + travel(speed, w1, w2, w3, w4, w5, w6, turn)
                 _note(tally, r, low, 0.0, angle, full)
             return p, v / left, side
-        v = max(0.0, rate(speed, w1, w2, w3, w4, w5, t)) / left
+        v = max(0.0, rate(speed, w1, w2, w3, w4, w5, w6, t)) / left
         if gap >= 0.0:
             # the highest point of a flight that begins and ends in this step
-            low = psi + travel(speed, w1, w2, w3, w4, w5, 0.5 * t)
+            low = psi + travel(speed, w1, w2, w3, w4, w5, w6, 0.5 * t)
             _note(tally, r, low, v, angle, full)
         tally[r + SPEED] = max(tally[r + SPEED], v)
         tally[r + IMPACTS] += 1.0

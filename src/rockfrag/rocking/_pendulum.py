@@ -32,7 +32,7 @@ def sine_cosine(x):
 
 @numba.njit(inline="always", error_model="numpy")
 def rates(s0, c0, w, kappa, a, ramp):
-    """Taylor coefficients 1 to 5 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0."""
+    """Taylor coefficients 1 to 6 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0."""
     w1 = kappa * (s0 + a * c0)
     s1 = c0 * w
     c1 = -s0 * w
@@ -46,18 +46,27 @@ def rates(s0, c0, w, kappa, a, ramp):
     s4 = 0.25 * (c0 * w3 + c1 * w2 + c2 * w1 + c3 * w)
     c4 = -0.25 * (s0 * w3 + s1 * w2 + s2 * w1 + s3 * w)
     w5 = 0.2 * kappa * (s4 + a * c4 + ramp * c3)
-    return w1, w2, w3, w4, w5
+    s5 = 0.2 * (c0 * w4 + c1 * w3 + c2 * w2 + c3 * w1 + c4 * w)
+    c5 = -0.2 * (s0 * w4 + s1 * w3 + s2 * w2 + s3 * w1 + s4 * w)
+    w6 = (1.0 / 6.0) * kappa * (s5 + a * c5 + ramp * c4)
+    return w1, w2, w3, w4, w5, w6
 
 
 @numba.njit(inline="always", error_model="numpy")
-def travel(w, w1, w2, w3, w4, w5, t):
+def travel(w, w1, w2, w3, w4, w5, w6, t):
     """ψ(t) - ψ(0)."""
     return t * (
-        w + t * (0.5 * w1 + t * (1 / 3 * w2 + t * (0.25 * w3 + t * (0.2 * w4 + t * (1 / 6 * w5)))))
+        w
+        + t
+        * (
+            0.5 * w1
+            + t
+            * (1 / 3 * w2 + t * (0.25 * w3 + t * (0.2 * w4 + t * (1 / 6 * w5 + t * (1 / 7 * w6)))))
+        )
     )
 
 
 @numba.njit(inline="always", error_model="numpy")
-def rate(w, w1, w2, w3, w4, w5, t):
+def rate(w, w1, w2, w3, w4, w5, w6, t):
     """ψ'(t)."""
-    return w + t * (w1 + t * (w2 + t * (w3 + t * (w4 + t * w5))))
+    return w + t * (w1 + t * (w2 + t * (w3 + t * (w4 + t * (w5 + t * w6)))))

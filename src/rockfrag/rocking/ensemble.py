@@ -29,7 +29,7 @@ from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 
-CHUNK = 2048
+CHUNK = 512
 """Cases that a thread takes at a time."""
 
 
