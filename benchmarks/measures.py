@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import ensemble
-from rockfrag.rocking._tally import scratch
 from rockfrag.rocking._step import TH1, series
+from rockfrag.rocking._tally import scratch
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.parameters import body_parameters
