@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Body
-from rockfrag.rocking.inputs import STEP
+from rockfrag.rocking.inputs import STEP, checked_scales
 from rockfrag.rocking.parameters import Restitution
 from rockfrag.rocking.scattered import listed, scattered_overturns
 from rockfrag.units import STANDARD_GRAVITY
@@ -70,14 +70,7 @@ def fragile_verdicts(
         If an argument cannot be used; the message says which and why.
     """
     body_list, motions, dts = listed(bodies, accelerations, dt, restitution)
-    factors = np.asarray(scales, dtype=float)
-    if factors.ndim == 1:
-        factors = np.broadcast_to(factors, (len(motions), factors.size))
-    if factors.ndim != 2 or len(factors) != len(motions) or not np.isfinite(factors).all():
-        raise InputError(
-            f"scales: expected finite numbers of shape (scales,) or ({len(motions)}, scales), "
-            f"got shape {np.shape(scales)}."
-        )
+    factors = checked_scales(scales, len(motions))
     shape = (len(body_list), *factors.shape)
     total = int(np.prod(shape))
     if sample < 1 or total < 1:

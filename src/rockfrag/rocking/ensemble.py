@@ -21,6 +21,7 @@ from rockfrag.rocking.inputs import (
     FREE_TIME,
     STEP,
     checked_acceleration,
+    checked_scales,
     slowest_frequency,
     step_count,
 )
@@ -109,7 +110,7 @@ def overturns(
         checked_acceleration(motion, float(interval), f"accelerations[{i}]")
         for i, (motion, interval) in enumerate(zip(motions, dts, strict=True))
     ]
-    factors = _factors(scales, len(motions))
+    factors = checked_scales(scales, len(motions))
     if restitution is not None and len(restitution) != len(body_list):
         raise InputError(
             f"restitution: expected {len(body_list)} entries, one per body, got {len(restitution)}."
@@ -146,18 +147,6 @@ def _listed(accelerations: ArrayLike | Sequence[ArrayLike]) -> list[ArrayLike]:
     if isinstance(accelerations, np.ndarray) and accelerations.ndim == 1:
         return [accelerations]
     return list(accelerations)  # type: ignore[arg-type]
-
-
-def _factors(scales: ArrayLike, n_motions: int) -> Array:
-    factors = np.asarray(scales, dtype=float)
-    if factors.ndim == 1:
-        factors = np.broadcast_to(factors, (n_motions, factors.size))
-    if factors.ndim != 2 or factors.shape[0] != n_motions or not np.isfinite(factors).all():
-        raise InputError(
-            f"scales: expected finite numbers of shape (scales,) or ({n_motions}, scales), "
-            f"got shape {np.shape(scales)}."
-        )
-    return np.ascontiguousarray(factors)
 
 
 def _in_parallel(kernel: Any, count: int, workers: int, work: Callable[[int, int], None]) -> None:

@@ -65,6 +65,25 @@ def checked_acceleration(
     return values
 
 
+def checked_scales(scales: ArrayLike, n_motions: int) -> NDArray[np.float64]:
+    """Return factors on the accelerations as an array of shape (motions, scales).
+
+    Raises
+    ------
+    InputError
+        If the shape does not fit the motions or a factor is not finite.
+    """
+    factors = np.asarray(scales, dtype=float)
+    if factors.ndim == 1:
+        factors = np.broadcast_to(factors, (n_motions, factors.size))
+    if factors.ndim != 2 or factors.shape[0] != n_motions or not np.isfinite(factors).all():
+        raise InputError(
+            f"scales: expected finite numbers of shape (scales,) or ({n_motions}, scales), "
+            f"got shape {np.shape(scales)}."
+        )
+    return np.ascontiguousarray(factors)
+
+
 def warn_if_weak(values: NDArray[np.float64]) -> None:
     """Warn if the motion looks as if it were given in g."""
     peak = float(np.abs(values).max())

@@ -14,7 +14,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
-from rockfrag.rocking.inputs import STEP
+from rockfrag.rocking.inputs import STEP, checked_scales
 from rockfrag.rocking.parameters import Restitution
 from rockfrag.rocking.scattered import listed
 from rockfrag.units import STANDARD_GRAVITY
@@ -79,14 +79,7 @@ def stream_overturns(
     if columns not in ("verdict", "peaks"):
         raise InputError(f'columns: expected "verdict" or "peaks", got {columns!r}.')
     body_list, motions, dts = listed(bodies, accelerations, dt, restitution)
-    factors = np.asarray(scales, dtype=float)
-    if factors.ndim == 1:
-        factors = np.broadcast_to(factors, (len(motions), factors.size))
-    if factors.ndim != 2 or len(factors) != len(motions) or not np.isfinite(factors).all():
-        raise InputError(
-            f"scales: expected finite numbers of shape (scales,) or ({len(motions)}, scales), "
-            f"got shape {np.shape(scales)}."
-        )
+    factors = checked_scales(scales, len(motions))
     total = len(body_list) * factors.size
     schema = pa.schema(
         {"body": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
