@@ -20,8 +20,8 @@ from rockfrag.rocking.inputs import (
     COARSE_CLOSING_SPEED,
     FREE_TIME,
     STEP,
-    checked_acceleration,
     checked_scales,
+    listed,
     slowest_frequency,
     step_count,
 )
@@ -103,18 +103,8 @@ def overturns(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    body_list = [bodies] if isinstance(bodies, (Block, Stack)) else list(bodies)
-    motions = _listed(accelerations)
-    dts = np.broadcast_to(np.asarray(dt, dtype=float), (len(motions),)).copy()
-    values = [
-        checked_acceleration(motion, float(interval), f"accelerations[{i}]")
-        for i, (motion, interval) in enumerate(zip(motions, dts, strict=True))
-    ]
-    factors = checked_scales(scales, len(motions))
-    if restitution is not None and len(restitution) != len(body_list):
-        raise InputError(
-            f"restitution: expected {len(body_list)} entries, one per body, got {len(restitution)}."
-        )
+    body_list, values, dts = listed(bodies, accelerations, dt, restitution)
+    factors = checked_scales(scales, len(values))
     if not (math.isfinite(step) and step > 0):
         raise InputError(f"step: expected a positive number, got {step}.")
     workers = threads or os.cpu_count() or 1
@@ -141,12 +131,6 @@ def overturns(
                 values, dts, factors, g, step, workers, result, np.array(chosen),
             )  # fmt: skip
     return result
-
-
-def _listed(accelerations: ArrayLike | Sequence[ArrayLike]) -> list[ArrayLike]:
-    if isinstance(accelerations, np.ndarray) and accelerations.ndim == 1:
-        return [accelerations]
-    return list(accelerations)  # type: ignore[arg-type]
 
 
 def _in_parallel(kernel: Any, count: int, workers: int, work: Callable[[int, int], None]) -> None:

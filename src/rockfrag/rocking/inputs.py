@@ -2,12 +2,14 @@
 
 import math
 import warnings
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.parameters import Restitution
 
 STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""
@@ -63,6 +65,42 @@ def checked_acceleration(
     ):
         raise InputError(f"dt: expected a positive number of seconds, got {dt!r}.")
     return values
+
+
+def listed(
+    bodies: Body | Sequence[Body],
+    accelerations: ArrayLike | Sequence[ArrayLike],
+    dt: float | Sequence[float],
+    restitution: Sequence[Restitution] | None,
+) -> tuple[list[Body], list[NDArray[np.float64]], NDArray[np.float64]]:
+    """Return bodies, checked motions [m/s²] and the sampling interval of each motion [s].
+
+    Raises
+    ------
+    InputError
+        If a body is none, a motion cannot be used, or the lengths of the lists do not fit together.
+    """
+    body_list = [bodies] if isinstance(bodies, (Block, Stack)) else list(bodies)
+    for i, body in enumerate(body_list):
+        if not isinstance(body, (Block, Stack)):
+            raise InputError(
+                f"bodies[{i}]: expected a Block or a Stack, got {type(body).__name__}."
+            )
+    one = isinstance(accelerations, np.ndarray) and accelerations.ndim == 1
+    motions: list[ArrayLike] = [accelerations] if one else list(accelerations)  # type: ignore[arg-type, list-item]
+    intervals = np.asarray(dt, dtype=float)
+    if intervals.ndim and intervals.shape != (len(motions),):
+        raise InputError(f"dt: expected one number or {len(motions)}, got {intervals.size}.")
+    if restitution is not None and len(restitution) != len(body_list):
+        raise InputError(
+            f"restitution: expected {len(body_list)} entries, one per body, got {len(restitution)}."
+        )
+    dts = np.broadcast_to(intervals, (len(motions),)).copy()
+    values = [
+        checked_acceleration(motion, float(interval), f"accelerations[{i}]")
+        for i, (motion, interval) in enumerate(zip(motions, dts, strict=True))
+    ]
+    return body_list, values, dts
 
 
 def checked_scales(scales: ArrayLike, n_motions: int) -> NDArray[np.float64]:

@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP, checked_acceleration
+from rockfrag.rocking.inputs import STEP
+from rockfrag.rocking.inputs import listed as listed  # accuracy and thresholds take it from here
 from rockfrag.rocking.parameters import Restitution
 from rockfrag.units import STANDARD_GRAVITY
 
@@ -73,34 +73,3 @@ def scattered_overturns(
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
         list(pool.map(run, np.unique(body).tolist()))
     return verdicts
-
-
-def listed(
-    bodies: Body | Sequence[Body],
-    accelerations: ArrayLike | Sequence[ArrayLike],
-    dt: float | Sequence[float],
-    restitution: Sequence[Restitution] | None,
-) -> tuple[list[Body], list[Array], Array]:
-    """Return bodies, checked motions [m/s²] and the sampling interval of each motion [s].
-
-    Raises
-    ------
-    InputError
-        If a motion cannot be used, or the lengths of the lists do not fit together.
-    """
-    body_list = [bodies] if isinstance(bodies, (Block, Stack)) else list(bodies)
-    one = isinstance(accelerations, np.ndarray) and accelerations.ndim == 1
-    motions: list[ArrayLike] = [accelerations] if one else list(accelerations)  # type: ignore[arg-type, list-item]
-    intervals = np.asarray(dt, dtype=float)
-    if intervals.ndim and intervals.shape != (len(motions),):
-        raise InputError(f"dt: expected one number or {len(motions)}, got {intervals.size}.")
-    if restitution is not None and len(restitution) != len(body_list):
-        raise InputError(
-            f"restitution: expected {len(body_list)} entries, one per body, got {len(restitution)}."
-        )
-    dts = np.broadcast_to(intervals, (len(motions),)).copy()
-    values = [
-        checked_acceleration(motion, float(interval), f"accelerations[{i}]")
-        for i, (motion, interval) in enumerate(zip(motions, dts, strict=True))
-    ]
-    return body_list, values, dts

@@ -14,9 +14,8 @@ from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
-from rockfrag.rocking.inputs import STEP, checked_scales
+from rockfrag.rocking.inputs import STEP, checked_scales, listed
 from rockfrag.rocking.parameters import Restitution
-from rockfrag.rocking.scattered import listed
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
