@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.errors import InputError
 from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import _tally as tally
 from rockfrag.rocking._compile import compiling_alone
@@ -105,8 +104,6 @@ def overturns(
     """
     body_list, values, dts = listed(bodies, accelerations, dt, restitution)
     factors = checked_scales(scales, len(values))
-    if not (math.isfinite(step) and step > 0):
-        raise InputError(f"step: expected a positive number, got {step}.")
     workers = threads or os.cpu_count() or 1
     per_body: Sequence[Restitution]
     per_body = restitution if restitution is not None else [None] * len(body_list)

@@ -146,7 +146,15 @@ def slowest_frequency(body: Body, g: float) -> float:
 
 
 def step_count(body: Body, dt: float, g: float, step: float) -> int:
-    """Steps per sample so that p h does not exceed ``step``."""
+    """Steps per sample so that p h does not exceed ``step``.
+
+    Raises
+    ------
+    InputError
+        If ``step`` is not positive, or ``dt`` is far too long for the body.
+    """
+    if not (math.isfinite(step) and step > 0):
+        raise InputError(f"step: expected a positive number, got {step}.")
     steps = math.ceil(fastest_frequency(body, g) * dt / step - 1e-9)
     if steps > 10_000:
         raise InputError(
