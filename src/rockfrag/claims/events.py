@@ -8,6 +8,7 @@ from scipy import stats
 
 from rockfrag.claims.evidence import Evidence, Undecidable
 from rockfrag.claims.ledger import ClaimResult
+from rockfrag.claims.results import ratio_result
 from rockfrag.claims.verdicts import all_of, direction, extreme, remark
 from rockfrag.pedestal.bootstrap import rank_probabilities, share_largest
 from rockfrag.pedestal.multiplicity import holm
@@ -38,18 +39,15 @@ def c45(evidence: Evidence) -> ClaimResult:
     verdicts = [direction(one, +1, p=_p_holm(evidence, name)) for name, one in effects.items()]
     verdict = all_of(verdicts)
     weakest = min(effects.values(), key=lambda one: one.mean)
-    return ClaimResult(
+    return ratio_result(
         45,
         "mean of d of each of the three events, t over its motions, Holm over the events",
         "P/NP " + ", ".join(f"{name} {one.text()}" for name, one in effects.items()),
         verdict,
         evidence.basis,
-        weakest.ratio,
-        weakest.ratio_lower,
-        weakest.ratio_upper,
-        remark=remark(
-            verdict, weakest, "motion", more=f"the figure is the smallest of them; {ONE_EVENT}"
-        ),
+        weakest,
+        unit="motion",
+        more=f"the figure is the smallest of them; {ONE_EVENT}",
     )
 
 
@@ -58,16 +56,15 @@ def c46(evidence: Evidence) -> ClaimResult:
     effect = evidence.effect(event="Northridge")
     p = _p_holm(evidence, "Northridge")
     verdict = direction(effect, -1, p=p)
-    return ClaimResult(
+    return ratio_result(
         46,
         "mean of d of Northridge, t over its motions, Holm over the events",
         f"P/NP {effect.text()}, p (Holm) = {p:.3f}",
         verdict,
         evidence.basis,
-        effect.ratio,
-        effect.ratio_lower,
-        effect.ratio_upper,
-        remark=remark(verdict, effect, "motion", more=ONE_EVENT),
+        effect,
+        unit="motion",
+        more=ONE_EVENT,
     )
 
 
@@ -81,17 +78,16 @@ def c47(evidence: Evidence) -> ClaimResult:
     ranks = rank_probabilities(table, "event", "motion", evidence.seed, within=True)
     p_largest = share_largest(ranks, top)
     one = differences[decisive]
-    return ClaimResult(
+    return ratio_result(
         47,
         "d of Loma Prieta minus that of each other event, floor by floor, each one-sided at 5 %; "
         "bootstrap over motions",
         f"Loma Prieta over {decisive} {one.text()}; it is largest with probability {p_largest:.2f}",
         verdict,
         evidence.basis,
-        one.ratio,
-        one.ratio_lower,
-        one.ratio_upper,
-        remark=remark(verdict, one, "floor", more="see C48, which says otherwise"),
+        one,
+        unit="floor",
+        more="see C48, which says otherwise",
     )
 
 
@@ -106,17 +102,16 @@ def c48(evidence: Evidence) -> ClaimResult:
     exceeds, decisive = extreme(differences)
     verdict = all_of([direction(own, +1, p=p), exceeds])
     one = differences[decisive]
-    return ClaimResult(
+    return ratio_result(
         48,
         "mean of d of Friuli, t over its motions, Holm over the events; d of Friuli minus that of "
         "Kobe and of Loma Prieta, floor by floor, each one-sided at 5 %",
         f"P/NP Friuli {own.text()}, p (Holm) = {p:.3f}; over {decisive} {one.text()}",
         verdict,
         evidence.basis,
-        own.ratio,
-        own.ratio_lower,
-        own.ratio_upper,
-        remark=remark(verdict, own, "motion", more="see C47, which says otherwise"),
+        own,
+        unit="motion",
+        more="see C47, which says otherwise",
     )
 
 

@@ -8,6 +8,7 @@ import pandas as pd
 from rockfrag.claims import events, floors, protocol, slenderness
 from rockfrag.claims.evidence import Evidence, Undecidable
 from rockfrag.claims.ledger import ClaimResult, ledger_table
+from rockfrag.claims.results import not_decidable
 from rockfrag.pedestal.units import TooFewUnitsError
 from rockfrag.rocking.bodies import Block
 
@@ -71,14 +72,7 @@ def experiment_claims(evidence: Evidence) -> list[ClaimResult]:
         try:
             result = test(evidence)
         except (Undecidable, TooFewUnitsError) as reason:
-            result = ClaimResult(
-                number,
-                (test.__doc__ or "").split("\n")[0],
-                "no figure",
-                "undecided",
-                evidence.basis,
-                remark=f"not decidable with these data: {reason}",
-            )
+            result = not_decidable(number, test, evidence.basis, reason)
         if number in EXPLORATORY:
             result = replace(result, remark="; ".join(filter(None, ["exploratory", result.remark])))
         results.append(result)

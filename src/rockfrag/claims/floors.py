@@ -7,6 +7,7 @@ import pandas as pd
 
 from rockfrag.claims.evidence import Evidence, Undecidable
 from rockfrag.claims.ledger import ClaimResult
+from rockfrag.claims.results import ratio_result
 from rockfrag.claims.verdicts import all_of, direction, extreme, remark
 from rockfrag.pedestal.bootstrap import rank_probabilities, share_largest
 from rockfrag.pedestal.equivalence import MARGIN
@@ -30,16 +31,13 @@ def _one_floor(evidence: Evidence, number: int, floor: str, sign: int, slight: b
     effect = evidence.effect(floor=floor)
     p = evidence.p_holm("floor", evidence.level("floor", floor))
     verdict = direction(effect, sign, p=p, slight=slight)
-    return ClaimResult(
+    return ratio_result(
         number,
         f"mean of d on {floor}, t over events, Holm over the floors",
         f"P/NP {effect.text()}, p (Holm) = {p:.3f}",
         verdict,
         evidence.basis,
-        effect.ratio,
-        effect.ratio_lower,
-        effect.ratio_upper,
-        remark=remark(verdict, effect),
+        effect,
     )
 
 
@@ -58,17 +56,15 @@ def c34(evidence: Evidence) -> ClaimResult:
             verdicts.append("supported" if one.p_below(noticeable) < 0.05 else "undecided")
     verdict = all_of(verdicts)
     above = ", ".join(f"{floor} {one.text()}" for floor, one in upper.items())
-    return ClaimResult(
+    return ratio_result(
         34,
         "d on GF above zero (t over events, Holm) and an increase of 10 % or more excluded on F3 and "
         "on F5 (one-sided 5 %)",
         f"P/NP GF {ground.text()}, {above}",
         verdict,
         evidence.basis,
-        ground.ratio,
-        ground.ratio_lower,
-        ground.ratio_upper,
-        remark=remark(verdict, ground, more="the figure is that of GF"),
+        ground,
+        more="the figure is that of GF",
     )
 
 
@@ -131,17 +127,14 @@ def _first_tower(evidence: Evidence, number: int, floor: str, sign: int) -> Clai
         verdict = "contradicted"
     one = differences[decisive]
     word = "increase" if sign > 0 else "decrease"
-    return ClaimResult(
+    return ratio_result(
         number,
         f"{word} of T1 on {floor} minus that of T2 and of T3, event by event, each one-sided at 5 %",
         f"T1's {word} over that of {decisive}, as ratio {one.text()}; T1's own as ratio "
         f"{own.text()}",
         verdict,
         evidence.basis,
-        one.ratio,
-        one.ratio_lower,
-        one.ratio_upper,
-        remark=remark(verdict, one),
+        one,
     )
 
 
@@ -165,7 +158,7 @@ def c41(evidence: Evidence) -> ClaimResult:
     verdict, decisive = extreme(differences)
     p_largest = share_largest(rank_probabilities(sized, "floor", "event", evidence.seed), ground)
     one = differences[decisive]
-    return ClaimResult(
+    return ratio_result(
         41,
         "change on GF minus that on F3 and on F5, each in the direction of its floor's mean, event "
         "by event, each one-sided at 5 %; bootstrap over events",
@@ -173,12 +166,8 @@ def c41(evidence: Evidence) -> ClaimResult:
         f"probability {p_largest:.2f}",
         verdict,
         evidence.basis,
-        one.ratio,
-        one.ratio_lower,
-        one.ratio_upper,
-        remark=remark(
-            verdict, one, more="directions are read from the data, which flatters small changes"
-        ),
+        one,
+        more="directions are read from the data, which flatters small changes",
     )
 
 
@@ -195,7 +184,7 @@ def _largest_floor(evidence: Evidence, number: int, side: str, floor: str) -> Cl
     p_largest = share_largest(ranks, top)
     means = rows.groupby("floor")["a_g"].mean()
     one = differences[decisive]
-    return ClaimResult(
+    return ratio_result(
         number,
         f"ln a of {side} on {floor} minus that on the other floors, event by event, each one-sided "
         "at 5 %; bootstrap over events",
@@ -204,10 +193,7 @@ def _largest_floor(evidence: Evidence, number: int, side: str, floor: str) -> Cl
         + f"; {floor} is largest with probability {p_largest:.2f}",
         verdict,
         evidence.basis,
-        one.ratio,
-        one.ratio_lower,
-        one.ratio_upper,
-        remark=remark(verdict, one),
+        one,
     )
 
 
@@ -235,7 +221,7 @@ def c44(evidence: Evidence) -> ClaimResult:
             differences[name] = contrast(part, "floor", other, low, value="ln_a")
     verdict, decisive = extreme(differences)
     one = differences[decisive]
-    return ClaimResult(
+    return ratio_result(
         44,
         "ln a on GF and on F5 minus that on F3, for every tower and side, event by event, each "
         "one-sided at 5 %",
@@ -243,10 +229,8 @@ def c44(evidence: Evidence) -> ClaimResult:
         f"{decisive} {one.text()}",
         verdict,
         evidence.basis,
-        one.ratio,
-        one.ratio_lower,
-        one.ratio_upper,
-        remark=remark(verdict, one, more="the figure is the decisive comparison"),
+        one,
+        more="the figure is the decisive comparison",
     )
 
 
@@ -261,17 +245,14 @@ def c50(evidence: Evidence) -> ClaimResult:
     few = share.lower > 0.5
     if verdict == "supported" and not few:
         verdict = "undecided"
-    return ClaimResult(
+    return ratio_result(
         50,
         "mean of d on F3 and F5, t over events; share of pairs that decrease, t over events against "
         "one half",
         f"P/NP {effect.text()}; {down} of {len(table)} pairs decrease",
         verdict,
         evidence.basis,
-        effect.ratio,
-        effect.ratio_lower,
-        effect.ratio_upper,
-        remark=remark(verdict, effect),
+        effect,
     )
 
 
@@ -282,21 +263,15 @@ def c51(evidence: Evidence) -> ClaimResult:
     p = evidence.p_holm("floor", evidence.level("floor", "GF"))
     flips = sign_flip_test(unit_means(rows, sampled_unit(rows)))
     verdict = direction(effect, +1, p=p)
-    return ClaimResult(
+    return ratio_result(
         51,
         "mean of d on GF, t over events, Holm over the floors; sign flips over events",
         f"P/NP {effect.text()}, p = {effect.p:.3f}, Holm {p:.3f}, sign flips {flips.p:.3f}",
         verdict,
         evidence.basis,
-        effect.ratio,
-        effect.ratio_lower,
-        effect.ratio_upper,
-        remark=remark(
-            verdict,
-            effect,
-            more=f"no test was made in the thesis; {flips.units} events give no sign-flip p below "
-            f"{flips.smallest_p:.3g}",
-        ),
+        effect,
+        more=f"no test was made in the thesis; {flips.units} events give no sign-flip p below "
+        f"{flips.smallest_p:.3g}",
     )
 
 

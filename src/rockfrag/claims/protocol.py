@@ -6,7 +6,8 @@ import numpy as np
 
 from rockfrag.claims.evidence import Evidence, Undecidable
 from rockfrag.claims.ledger import ClaimResult
-from rockfrag.claims.verdicts import direction, remark
+from rockfrag.claims.results import ratio_result
+from rockfrag.claims.verdicts import direction
 from rockfrag.pedestal.measurement import MASSES, mass_errors
 from rockfrag.pedestal.units import t_estimate
 from rockfrag.units import STANDARD_GRAVITY
@@ -75,16 +76,14 @@ def c56(evidence: Evidence) -> ClaimResult:
     verdict = "supported" if abs(error.ratio - 1) < 0.02 and error.p >= 0.05 else "undecided"
     if error.p < 0.05 and abs(error.ratio - 1) > 0.02:
         verdict = "contradicted"
-    return ClaimResult(
+    return ratio_result(
         56,
         "ln of force over moved mass against the reported acceleration, t over events; 2 % allowed",
         f"force over mass over reported {error.text()}",
         verdict,
         evidence.basis,
-        error.ratio,
-        error.ratio_lower,
-        error.ratio_upper,
-        remark=remark(verdict, error, more=meaning),
+        error,
+        more=meaning,
     )
 
 
@@ -132,14 +131,11 @@ def c58(evidence: Evidence) -> ClaimResult:
     gain = sliding.assign(gain=np.log(sliding["sliding_g"] / sliding["rocking_g"]))
     effect = t_estimate(gain.groupby("event")["gain"].mean())
     verdict = direction(effect, +1)
-    return ClaimResult(
+    return ratio_result(
         58,
         "ln of overturning amplitude with sliding over without, t over events",
         f"ratio {effect.text()}",
         verdict,
         evidence.basis,
-        effect.ratio,
-        effect.ratio_lower,
-        effect.ratio_upper,
-        remark=remark(verdict, effect),
+        effect,
     )

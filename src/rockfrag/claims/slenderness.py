@@ -9,7 +9,8 @@ from scipy import stats
 
 from rockfrag.claims.evidence import THESIS_BODIES, Evidence, Undecidable
 from rockfrag.claims.ledger import ClaimResult
-from rockfrag.claims.verdicts import all_of, direction, extreme, remark, same
+from rockfrag.claims.results import ratio_result
+from rockfrag.claims.verdicts import all_of, direction, extreme, same
 from rockfrag.pedestal.bootstrap import rank_probabilities, share_largest
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.units import Array, Estimate, contrast, slope_effect, t_estimate
@@ -49,7 +50,7 @@ def c25(evidence: Evidence) -> ClaimResult:
     if falls == "supported" and not straight.shown():
         verdict = "contradicted" if bend.p < 0.05 else "undecided"
     better = "H/B" if linear < inverse else "B/H"
-    return ClaimResult(
+    return ratio_result(
         25,
         "slope of ln a on H/B inside each event, t over events; mean of T2 against the middle of T1 "
         "and T3, equivalence ±10 %; AICc of H/B against B/H",
@@ -57,16 +58,10 @@ def c25(evidence: Evidence) -> ClaimResult:
         f"{linear:.1f}, B/H {inverse:.1f}",
         verdict,
         evidence.basis,
-        bend.ratio,
-        bend.ratio_lower,
-        bend.ratio_upper,
-        remark=remark(
-            verdict,
-            bend,
-            more=f"AICc prefers {better}"
-            + ("" if abs(linear - inverse) >= AICC_MARGIN else ", by less than 2, so hardly")
-            + "; equilibrium alone gives B/H",
-        ),
+        bend,
+        more=f"AICc prefers {better}"
+        + ("" if abs(linear - inverse) >= AICC_MARGIN else ", by less than 2, so hardly")
+        + "; equilibrium alone gives B/H",
     )
 
 
@@ -83,16 +78,14 @@ def c26(evidence: Evidence) -> ClaimResult:
     slopes = _slopes(evidence)
     verdict = all_of([direction(one, -1) for one in slopes.values()])
     weakest = max(slopes.values(), key=lambda one: one.mean)
-    return ClaimResult(
+    return ratio_result(
         26,
         "slope of ln a on H/B inside each event, t over events, P and NP each at 5 %",
         f"factor per unit of H/B: P {slopes['P'].text()}, NP {slopes['NP'].text()}",
         verdict,
         evidence.basis,
-        weakest.ratio,
-        weakest.ratio_lower,
-        weakest.ratio_upper,
-        remark=remark(verdict, weakest, more="the figure is the weaker of the two"),
+        weakest,
+        more="the figure is the weaker of the two",
     )
 
 
@@ -101,17 +94,14 @@ def c27(evidence: Evidence) -> ClaimResult:
     low, high = evidence.level("tower", FLATTEST), evidence.level("tower", STEEPEST)
     difference = contrast(evidence.table, "tower", high, low)
     verdict = same(difference)
-    return ClaimResult(
+    return ratio_result(
         27,
         "decrease of ln a from T1 to T3, P minus NP, event by event; equivalence ±10 %",
         f"decrease with P over decrease without {difference.text()}, equivalence p "
         f"{equivalence(difference).p:.3f}",
         verdict,
         evidence.basis,
-        difference.ratio,
-        difference.ratio_lower,
-        difference.ratio_upper,
-        remark=remark(verdict, difference),
+        difference,
     )
 
 
@@ -156,17 +146,14 @@ def c28(evidence: Evidence) -> ClaimResult:
     elif all(equivalence(one).shown() for one in pairs.values()):
         verdict = "contradicted"
     figure = pairs[widest]
-    return ClaimResult(
+    return ratio_result(
         28,
         "slope of ln a on H/B by event and floor; F test of floors with events as blocks; "
         "equivalence ±10 % of all pairs of floors over the range of H/B",
         f"F = {f:.2f}, p = {p:.3f}; decrease over the range, {widest}: ratio {figure.text()}",
         verdict,
         evidence.basis,
-        figure.ratio,
-        figure.ratio_lower,
-        figure.ratio_upper,
-        remark=remark(verdict, figure),
+        figure,
     )
 
 
@@ -174,16 +161,13 @@ def c29(evidence: Evidence) -> ClaimResult:
     """The whole effect of the pedestal."""
     effect = evidence.effect()
     verdict = direction(effect, +1)
-    return ClaimResult(
+    return ratio_result(
         29,
         "mean of ln(P/NP) of all pairs, t over events; equivalence ±10 %",
         f"P/NP {effect.text()}, p = {effect.p:.3f}, equivalence p = {equivalence(effect).p:.3f}",
         verdict,
         evidence.basis,
-        effect.ratio,
-        effect.ratio_lower,
-        effect.ratio_upper,
-        remark=remark(verdict, effect),
+        effect,
     )
 
 
@@ -237,16 +221,13 @@ def c31(evidence: Evidence) -> ClaimResult:
         if np.ptp(table["d"]) > 0
         else 0.0
     )
-    return ClaimResult(
+    return ratio_result(
         31,
         "slope of d on H/B inside each event, t over events; equivalence ±10 % over the range",
         f"change of P/NP over the range of H/B {over.text()}; correlation over pairs {r:.2f}",
         verdict,
         evidence.basis,
-        over.ratio,
-        over.ratio_lower,
-        over.ratio_upper,
-        remark=remark(verdict, over),
+        over,
     )
 
 
@@ -259,7 +240,7 @@ def c32(evidence: Evidence) -> ClaimResult:
     verdict, decisive = extreme(differences)
     p_largest = share_largest(rank_probabilities(table, "tower", "motion", evidence.seed), top)
     one = differences[decisive]
-    return ClaimResult(
+    return ratio_result(
         32,
         "d of T3 minus d of T1 and of T2, event by event, each one-sided at 5 %; bootstrap over "
         "motions",
@@ -267,10 +248,7 @@ def c32(evidence: Evidence) -> ClaimResult:
         f"{p_largest:.2f}",
         verdict,
         evidence.basis,
-        one.ratio,
-        one.ratio_lower,
-        one.ratio_upper,
-        remark=remark(verdict, one),
+        one,
     )
 
 
@@ -279,18 +257,14 @@ def c33(evidence: Evidence) -> ClaimResult:
     effect = evidence.effect(tower="T2")
     p = evidence.p_holm("tower", evidence.level("tower", "T2"))
     verdict = direction(effect, +1, p=p, slight=True)
-    return ClaimResult(
+    return ratio_result(
         33,
         "mean of d of T2, t over events, Holm over the towers",
         f"P/NP of T2 {effect.text()}, p (Holm) = {p:.3f}",
         verdict,
         evidence.basis,
-        effect.ratio,
-        effect.ratio_lower,
-        effect.ratio_upper,
-        remark=remark(
-            verdict, effect, more="'nearly opposite' and 'still increases' cannot both be the sign"
-        ),
+        effect,
+        more="'nearly opposite' and 'still increases' cannot both be the sign",
     )
 
 
@@ -304,16 +278,14 @@ def c53(evidence: Evidence) -> ClaimResult:
     }
     verdict, decisive = extreme(steps)
     one = steps[decisive]
-    return ClaimResult(
+    return ratio_result(
         53,
         "ln a of T1 minus T2 and of T2 minus T3, event by event, each one-sided at 5 %",
         f"{decisive} {one.text()}",
         verdict,
         evidence.basis,
-        one.ratio,
-        one.ratio_lower,
-        one.ratio_upper,
-        remark=remark(verdict, one, more="the figure is the weaker of the two steps"),
+        one,
+        more="the figure is the weaker of the two steps",
     )
 
 
@@ -336,15 +308,13 @@ def c54(evidence: Evidence) -> ClaimResult:
         verdict = "supported"
     elif size.p_below(bound) < 0.05:
         verdict = "contradicted"
-    return ClaimResult(
+    return ratio_result(
         54,
         "line of ln a through T1 and T2 prolonged to T3, motion by motion and side; mean absolute "
         "error by event, t over events, against 10 %",
         f"mean error of the prediction, as a factor {size.text()}",
         verdict,
         evidence.basis,
-        size.ratio,
-        size.ratio_lower,
-        size.ratio_upper,
-        remark=remark(verdict, size, more="contains the scatter of the tests themselves"),
+        size,
+        more="contains the scatter of the tests themselves",
     )

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from rockfrag.claims import theory_blocks, theory_spectra, theory_stacks
 from rockfrag.claims.evidence import Undecidable
 from rockfrag.claims.ledger import ClaimResult
+from rockfrag.claims.results import not_decidable
 from rockfrag.claims.theory_setting import FreeRocking, Setting, make_setting
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Body
@@ -80,14 +81,5 @@ def theory_claims(
         try:
             results.append(check(setting))
         except Undecidable as reason:
-            results.append(
-                ClaimResult(
-                    number,
-                    (check.__doc__ or "").split("\n")[0],
-                    "no figure",
-                    "undecided",
-                    "simulated",
-                    remark=f"not decidable with these data: {reason}",
-                )
-            )
+            results.append(not_decidable(number, check, "simulated", reason))
     return results
