@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import pandas as pd
 from markupsafe import Markup
 
+from rockfrag.report.estimate_columns import EFFECT, with_limits
 from rockfrag.report.findings import READING, Finding, all_findings
 from rockfrag.report.ledger_html import ledger_html
 from rockfrag.report.page import Column, Picture, Section, comparison_html, render, table_html
@@ -220,22 +221,14 @@ def _pedestal(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture
     whole = tables["pedestal/whole"]
     whole = whole.assign(reading=whole["reading"].str.replace("_", " "))
     shown = (
-        Column("scope", "Scope"),
-        Column("level", "Level"),
-        Column("pairs", "Pairs", 0),
-        Column("ratio", "P/NP", 3),
-        Column("lower", "from", 3),
-        Column("upper", "to", 3),
-        Column("p_holm", "p (Holm)", 3),
+        *EFFECT,
         Column("equivalent", "Within ±10 %"),
         Column("detectable_ratio", "Detectable", 3),
     )
     methods = (
         Column("reading", "Reading"),
         Column("method", "Method"),
-        Column("estimate", "P/NP", 3),
-        Column("lower", "from", 3),
-        Column("upper", "to", 3),
+        *with_limits("estimate", "P/NP", "lower", "upper"),
         Column("p", "p", 3),
         Column("smallest_p", "Smallest possible p", 3),
         Column("remark", "Remark"),

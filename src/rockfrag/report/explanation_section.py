@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rockfrag.pedestal.simulated_explanation import REFERENCE
 from rockfrag.report.building_figures import FLOOR_STYLES
+from rockfrag.report.estimate_columns import P_HOLM, PAIRS, with_limits
 from rockfrag.report.page import Column, Picture, Section, table_html
 from rockfrag.report.style import BLACK, PAGE_WIDTH, figure_style, new_figure
 
@@ -60,11 +61,9 @@ def explanation_section(
     )
     columns = (
         Column("name", "Departure from the ideal model"),
-        Column("ratio", "P/NP", 3),
-        Column("ratio_lower", "from", 3),
-        Column("ratio_upper", "to", 3),
-        Column("p_holm", "p (Holm)", 3),
-        Column("pairs", "Pairs", 0),
+        *with_limits("ratio", "P/NP", "ratio_lower", "ratio_upper"),
+        P_HOLM,
+        PAIRS,
         Column("left_out", "Left out", 0),
         Column("signs", "Signs of the thesis"),
     )

@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from rockfrag.fragility.user_table import UserFragility
+from rockfrag.report.estimate_columns import with_limits
 from rockfrag.report.findings import Finding
 from rockfrag.report.fragility_figures import calibration_figure, measures_figure, surface_figure
 from rockfrag.report.page import Column, Picture, Section, render, table_html
@@ -159,12 +160,8 @@ def _curves(
     curves = (
         Column("im", "Measure"),
         Column("unit", "Unit"),
-        Column("theta", "Median θ", 3),
-        Column("theta_lower", "from", 3),
-        Column("theta_upper", "to", 3),
-        Column("beta", "β", 3),
-        Column("beta_lower", "from", 3),
-        Column("beta_upper", "to", 3),
+        *with_limits("theta", "Median θ", "theta_lower", "theta_upper"),
+        *with_limits("beta", "β", "beta_lower", "beta_upper"),
         Column("aic", "AIC", 1),
     )
     fits = (

@@ -7,6 +7,7 @@ import pandas as pd
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from rockfrag.report.estimate_columns import EFFECT, with_limits
 from rockfrag.report.ledger_html import ledger_html
 from rockfrag.report.page import Column, Picture, Section, table_html
 from rockfrag.report.style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
@@ -36,9 +37,7 @@ def measured_section(
     )
     curves = (
         Column("configuration", "Configuration"),
-        Column("theta", "Median θ [g]", 3),
-        Column("theta_lower", "from", 3),
-        Column("theta_upper", "to", 3),
+        *with_limits("theta", "Median θ [g]", "theta_lower", "theta_upper"),
         Column("beta", "β", 3),
     )
     parts: list[Markup | Picture] = [
@@ -48,17 +47,8 @@ def measured_section(
     ]
     effects = tables["measured/effects"]
     if len(effects):
-        columns = (
-            Column("scope", "Scope"),
-            Column("level", "Level"),
-            Column("pairs", "Pairs", 0),
-            Column("ratio", "P/NP", 3),
-            Column("lower", "from", 3),
-            Column("upper", "to", 3),
-            Column("p_holm", "p (Holm)", 3),
-        )
         parts.append(
-            table_html(effects, columns, "Measured effect of the pedestal, 95 % intervals.")
+            table_html(effects, EFFECT, "Measured effect of the pedestal, 95 % intervals.")
         )
     if len(tables["measured/claims"]):
         parts.append(ledger_html(tables["measured/claims"]))
