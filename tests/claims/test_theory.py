@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from rockfrag.claims.evidence import THESIS_BODIES
 from rockfrag.claims.ledger import ClaimResult
 from rockfrag.claims.theory import CHECKS, theory_claims
 from rockfrag.claims.theory_blocks import _perturbed
@@ -15,6 +14,7 @@ from rockfrag.claims.theory_setting import bisect, make_setting, uplift_threshol
 from rockfrag.claims.theory_spectra import _auc, _crossings, _discordance
 from rockfrag.claims.theory_stacks import _free_fall
 from rockfrag.errors import InputError
+from rockfrag.pedestal.specimens import THESIS_BODIES
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Stack, simulate
 

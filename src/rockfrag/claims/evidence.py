@@ -13,14 +13,6 @@ from rockfrag.pedestal.study import effects_table
 from rockfrag.pedestal.units import Estimate, mean_effect
 from rockfrag.rocking.bodies import Block
 
-THESIS_BODIES: Mapping[str, Block] = {
-    "T1": Block(0.124, 0.372, 2.172),
-    "T2": Block(0.124, 0.496, 2.790),
-    "T3": Block(0.124, 0.620, 3.456),
-    "P": Block(0.184, 0.208, 2.300),
-}
-"""Specimens of Table 3.1."""
-
 
 class Undecidable(Exception):
     """The data at hand cannot speak about a statement; the message says why."""

@@ -12,6 +12,7 @@ from rockfrag.claims.verdicts import all_of, direction, extreme, remark
 from rockfrag.pedestal.bootstrap import rank_probabilities, share_largest
 from rockfrag.pedestal.equivalence import MARGIN
 from rockfrag.pedestal.exact import sign_flip_test
+from rockfrag.pedestal.pairs import FLOORS
 from rockfrag.pedestal.units import (
     Estimate,
     contrast,
@@ -21,7 +22,6 @@ from rockfrag.pedestal.units import (
     unit_means,
 )
 
-FLOORS = ("GF", "F3", "F5")
 TOWERS = ("T1", "T2", "T3")
 SIGNS = {"GF": (1, 1, 1), "F3": (1, -1, -1), "F5": (-1, -1, -1)}
 """Signs of the effect that C38 claims, by floor for T1, T2, T3."""

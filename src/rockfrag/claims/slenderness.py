@@ -7,12 +7,13 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from rockfrag.claims.evidence import THESIS_BODIES, Evidence, Undecidable
+from rockfrag.claims.evidence import Evidence, Undecidable
 from rockfrag.claims.ledger import ClaimResult
 from rockfrag.claims.results import ratio_result
 from rockfrag.claims.verdicts import all_of, direction, extreme, same
 from rockfrag.pedestal.bootstrap import rank_probabilities, share_largest
 from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.specimens import THESIS_BODIES
 from rockfrag.pedestal.units import Array, Estimate, contrast, slope_effect, t_estimate
 from rockfrag.rocking.bodies import Stack
 

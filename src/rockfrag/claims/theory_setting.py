@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.claims.evidence import THESIS_BODIES, Undecidable
+from rockfrag.claims.evidence import Undecidable
+from rockfrag.pedestal.specimens import THESIS_BODIES
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
 from rockfrag.units import STANDARD_GRAVITY

@@ -15,9 +15,10 @@ import pandas as pd
 from scipy import stats
 
 from rockfrag.errors import InputError
+from rockfrag.pedestal.specimens import THESIS_BODIES
 
-MASSES: Mapping[str, float] = {"T1": 2.172, "T2": 2.790, "T3": 3.456, "P": 2.300}
-"""Masses of the specimens (Table 3.1) [kg]."""
+MASSES: Mapping[str, float] = {name: body.mass for name, body in THESIS_BODIES.items()}
+"""Masses of the thesis's specimens [kg]."""
 
 SD_TEST = 0.10
 """Scatter of ln a of one test from ±1 % of geometry and ±0.02 of restitution [-]."""

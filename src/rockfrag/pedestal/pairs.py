@@ -10,11 +10,14 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.pedestal.specimens import THESIS_BODIES
 
-SLENDERNESS: Mapping[str, float] = {"T1": 3.0, "T2": 4.0, "T3": 5.0}
-"""Height over width of the thesis's towers (Table 3.1) [-]."""
+SLENDERNESS: Mapping[str, float] = {
+    name: body.slenderness for name, body in THESIS_BODIES.items() if name != "P"
+}
+"""Height over width of the thesis's towers [-]."""
 
-CENTRE = 4.0
+CENTRE = SLENDERNESS["T2"]
 """Slenderness at which models are centred, that of T2 [-]."""
 
 FLOORS = ("GF", "F3", "F5")
