@@ -22,7 +22,14 @@ from rockfrag.fragility.intervals import (
     population,
     resampled_interval,
 )
-from rockfrag.fragility.lognormal import LEAST_SLOPE, FragilityFit, curve_parameters
+from rockfrag.fragility.lognormal import (
+    LEAST_SLOPE,
+    NO_COVARIANCE,
+    NO_CURVE,
+    Curve,
+    FragilityFit,
+    curve_parameters,
+)
 from rockfrag.fragility.outcomes import Floats, labels, name_and_unit, numbers
 
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
@@ -108,24 +115,11 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     n, fell = low.size, brackets.n_overturned
     motions = len(pd.unique(pd.Series(brackets.motion)))
     notes: tuple[str, ...] = ()
-    nan = float("nan")
-    unknown = ((nan, nan), (nan, nan))
 
-    def result(
-        theta: float,
-        beta: float,
-        spread: tuple[tuple[float, float], tuple[float, float]],
-        log_likelihood: float,
-        method: str,
-    ) -> FragilityFit:
+    def result(curve: Curve, log_likelihood: float, method: str) -> FragilityFit:
         return FragilityFit(
-            theta,
-            beta,
-            float(np.sqrt(spread[0][0])),
-            float(np.sqrt(spread[1][1])),
-            spread,
+            *curve,
             log_likelihood,
-            4.0 - 2.0 * log_likelihood,
             n,
             fell,
             motions,
@@ -145,14 +139,14 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
             f"None of {n} tests overturned; every one survived {top:g} {brackets.unit}: θ is "
             "above and not estimated.",
         )
-        return result(nan, nan, unknown, 0.0, "none: all tests survived")
+        return result(NO_CURVE, 0.0, "none: all tests survived")
     if brackets.lower.max() == 0:
         notes = (
             *notes,
             f"All {n} tests overturned at their first step, of {brackets.upper.min():g} "
             f"{brackets.unit} or more: θ is below and not estimated.",
         )
-        return result(nan, nan, unknown, 0.0, "none: all tests overturned at once")
+        return result(NO_CURVE, 0.0, "none: all tests overturned at once")
     weights = np.ones((1, n))
     coefficients, information, log_likelihood = _fit_weighted(low, high, weights)
     theta, beta, spread = curve_parameters(coefficients[0], _inverse(information[0]))
@@ -163,12 +157,14 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
             f"{brackets.upper.min():g} {brackets.unit}: β is not resolved by the steps; θ is the "
             "middle of that range and β its width / √12.",
         )
-        return result(theta, beta, unknown, nan, "interval estimate (brackets overlap)")
+        return result(
+            (theta, beta, NO_COVARIANCE), float("nan"), "interval estimate (brackets overlap)"
+        )
     if coefficients[0, 1] < LEAST_SLOPE:
         notes = (*notes, "The brackets are too few or too wide to give a curve.")
-        return result(nan, nan, unknown, float(log_likelihood[0]), "none: no curve in the brackets")
+        return result(NO_CURVE, float(log_likelihood[0]), "none: no curve in the brackets")
     method = "lognormal, interval- and right-censored maximum likelihood"
-    return result(theta, beta, spread, float(log_likelihood[0]), method)
+    return result((theta, beta, spread), float(log_likelihood[0]), method)
 
 
 def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedFit, int]:

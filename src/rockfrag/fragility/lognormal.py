@@ -20,6 +20,14 @@ from rockfrag.fragility.outcomes import Floats, Outcomes
 LEAST_SLOPE = 1e-3
 """A curve with a smaller slope in ln IM (β above 1000) is flat: the measure foretells nothing."""
 
+Covariance = tuple[tuple[float, float], tuple[float, float]]
+Curve = tuple[float, float, Covariance]
+"""θ, β and the covariance of (ln θ, β)."""
+
+_NAN = float("nan")
+NO_COVARIANCE: Covariance = ((_NAN, _NAN), (_NAN, _NAN))
+NO_CURVE: Curve = (_NAN, _NAN, NO_COVARIANCE)
+
 
 @dataclass(frozen=True)
 class FragilityFit:
@@ -34,13 +42,11 @@ class FragilityFit:
         Median of the intensity measure at overturning, in ``unit``; NaN where the data give none.
     beta
         Logarithmic standard deviation (probit) or logistic scale (logit); NaN likewise.
-    se_log_theta, se_beta
-        Standard errors by the delta method from the expected information. They take tests for
-        independent; where motions repeat, use an interval over motions instead.
     covariance
-        Covariance of (ln θ, β), 2 × 2.
-    log_likelihood, aic
-        With binomial coefficients; the parameters counted are two.
+        Covariance of (ln θ, β), 2 × 2, by the delta method from the expected information. It takes
+        tests for independent; where motions repeat, use an interval over motions instead.
+    log_likelihood
+        With binomial coefficients.
     n, n_overturned, n_motions
         Tests, those that overturned, and different motions.
     method
@@ -55,11 +61,8 @@ class FragilityFit:
 
     theta: float
     beta: float
-    se_log_theta: float
-    se_beta: float
-    covariance: tuple[tuple[float, float], tuple[float, float]]
+    covariance: Covariance
     log_likelihood: float
-    aic: float
     n: int
     n_overturned: int
     n_motions: int
@@ -75,6 +78,21 @@ class FragilityFit:
         return self.se_log_theta, self.se_beta
 
     @property
+    def se_log_theta(self) -> float:
+        """Standard error of ln θ."""
+        return float(np.sqrt(self.covariance[0][0]))
+
+    @property
+    def se_beta(self) -> float:
+        """Standard error of β."""
+        return float(np.sqrt(self.covariance[1][1]))
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion; the parameters counted are two."""
+        return 4.0 - 2.0 * self.log_likelihood
+
+    @property
     def coefficients(self) -> tuple[float, float]:
         """Intercept and slope of the linear predictor in ln IM."""
         return -np.log(self.theta) / self.beta, 1.0 / self.beta
@@ -87,9 +105,7 @@ class FragilityFit:
         return np.asarray(special.ndtr(eta) if self.link == "probit" else special.expit(eta))
 
 
-def curve_parameters(
-    coefficients: Floats, covariance: Floats
-) -> tuple[float, float, tuple[tuple[float, float], tuple[float, float]]]:
+def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
     """Turn intercept and slope into θ = exp(-c0/c1), β = 1/c1 and the covariance of (ln θ, β)."""
     c0, c1 = float(coefficients[0]), float(coefficients[1])
     jacobian = np.array([[-1.0 / c1, c0 / c1**2], [0.0, -1.0 / c1**2]])
@@ -112,9 +128,7 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     """
     notes = _notes(outcomes)
     if outcomes.n_overturned in (0, outcomes.n):
-        return _without_curve(
-            outcomes, link, "none: all tests agree", (*notes, _all_agree(outcomes))
-        )
+        return _fit(outcomes, link, "none: all tests agree", (*notes, _all_agree(outcomes)))
     if np.ptp(outcomes.log_im) == 0:
         raise InputError(
             f"all tests have the same {outcomes.name} of {outcomes.im[0]:g} {outcomes.unit}: a "
@@ -140,27 +154,11 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
             f"The probability of overturning does not rise with {outcomes.name}; there is no "
             "fragility curve in this measure."
         )
-        return _without_curve(
+        return _fit(
             outcomes, link, "none: probability does not rise", (*notes, falling), log_likelihood
         )
-    theta, beta, spread = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
-    return FragilityFit(
-        theta,
-        beta,
-        float(np.sqrt(spread[0][0])),
-        float(np.sqrt(spread[1][1])),
-        spread,
-        log_likelihood,
-        4.0 - 2.0 * log_likelihood,
-        outcomes.n,
-        outcomes.n_overturned,
-        outcomes.n_motions,
-        method,
-        outcomes.name,
-        outcomes.unit,
-        link,
-        notes,
-    )
+    curve = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
+    return _fit(outcomes, link, method, notes, log_likelihood, curve)
 
 
 def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
@@ -246,22 +244,17 @@ def _all_agree(outcomes: Outcomes) -> str:
     )
 
 
-def _without_curve(
+def _fit(
     outcomes: Outcomes,
     link: Link,
     method: str,
     notes: tuple[str, ...],
     log_likelihood: float = 0.0,
+    curve: Curve = NO_CURVE,
 ) -> FragilityFit:
-    nan = float("nan")
     return FragilityFit(
-        nan,
-        nan,
-        nan,
-        nan,
-        ((nan, nan), (nan, nan)),
+        *curve,
         log_likelihood,
-        4.0 - 2.0 * log_likelihood,
         outcomes.n,
         outcomes.n_overturned,
         outcomes.n_motions,
