@@ -199,6 +199,12 @@ def interval_over_motions(
     )
 
 
+def bootstrap_draws(groups: int, replicates: int, seed: int) -> NDArray[np.int64]:
+    """How often each group is in each bootstrap sample, shape (replicates, groups)."""
+    shares = np.full(groups, 1.0 / groups)
+    return np.random.default_rng(seed).multinomial(groups, shares, size=replicates)
+
+
 def resampled_interval(
     fit: WeightedFit,
     groups: int,
@@ -241,9 +247,7 @@ def resampled_interval(
         return Interval(
             theta, beta, level, method, groups, over, _pair(estimate), deleted, link, notes
         )
-    draws = np.random.default_rng(seed).multinomial(
-        groups, np.full(groups, 1.0 / groups), size=replicates
-    )
+    draws = bootstrap_draws(groups, replicates, seed)
     # few groups have few different samples (35 of four), each fitted once
     different, which = np.unique(draws, axis=0, return_inverse=True)
     again = fit(different.astype(np.float64))[which]

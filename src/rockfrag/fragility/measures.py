@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.intervals import Interval, interval_over_motions
+from rockfrag.fragility.intervals import Interval, bootstrap_draws, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.newton import fit_batch
 from rockfrag.fragility.outcomes import Floats, Outcomes, numbers, outcomes_from_table
@@ -184,12 +184,7 @@ def _row(
 
 def _chosen_share(data: Sequence[Outcomes], replicates: int, seed: int) -> Floats:
     """Share of bootstrap samples of motions in which each measure has the largest likelihood."""
-    codes, names = pd.factorize(pd.Series(data[0].event))
-    groups = len(names)
-    draws = np.random.default_rng(seed).multinomial(
-        groups, np.full(groups, 1.0 / groups), size=replicates
-    )
-    weights = draws[:, codes].astype(np.float64)
+    weights = drawn_rows(data[0].event, replicates, seed)
     likelihood = np.empty((len(data), replicates))
     for k, outcomes in enumerate(data):
         design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
@@ -202,9 +197,20 @@ def _chosen_share(data: Sequence[Outcomes], replicates: int, seed: int) -> Float
             tolerance=1e-5,
         )
         likelihood[k] = np.where(fit.coefficients[:, 1] > 0, fit.log_likelihood, -np.inf)
-    usable = np.isfinite(likelihood).any(axis=0)
-    winner = likelihood[:, usable].argmax(axis=0)
-    return np.asarray(np.bincount(winner, minlength=len(data)) / max(int(usable.sum()), 1))
+    return share_likeliest(likelihood[:, np.isfinite(likelihood).any(axis=0)])
+
+
+def drawn_rows(event: NDArray[np.object_], replicates: int, seed: int) -> Floats:
+    """How often each row is in each bootstrap sample of whole events, shape (replicates, n)."""
+    codes, names = pd.factorize(pd.Series(event))
+    return bootstrap_draws(len(names), replicates, seed)[:, codes].astype(np.float64)
+
+
+def share_likeliest(likelihood: Floats) -> Floats:
+    """Share of samples in which each measure is the likeliest, (measures, samples) to (measures,)."""
+    measures, samples = likelihood.shape
+    winner = likelihood.argmax(axis=0)
+    return np.asarray(np.bincount(winner, minlength=measures) / max(samples, 1))
 
 
 def _best_pair(

@@ -24,8 +24,10 @@ from rockfrag.fragility.measures import (
     MeasureChoice,
     area_under_curve,
     dependence_p_value,
+    drawn_rows,
     ranked,
     recommendation,
+    share_likeliest,
 )
 from rockfrag.fragility.outcomes import Floats, outcomes_from_table, positive
 from rockfrag.fragility.sweeps import scale_power, with_measures
@@ -152,15 +154,8 @@ def _residuals(brackets: Brackets, fit: FragilityFit) -> tuple[Floats, NDArray[n
 
 def _chosen_share(brackets: Sequence[Brackets], replicates: int, seed: int) -> Floats:
     """Share of bootstrap samples of events (motions) in which each measure is the likeliest."""
-    codes, names = pd.factorize(pd.Series(brackets[0].event))
-    groups = len(names)
-    draws = np.random.default_rng(seed).multinomial(
-        groups, np.full(groups, 1.0 / groups), size=replicates
-    )
-    weights = draws[:, codes].astype(np.float64)
+    weights = drawn_rows(brackets[0].event, replicates, seed)
     likelihood = np.array([bracket_likelihoods(one, weights) for one in brackets])
     # samples in which a measure puts all motions into one bracket, or none overturned, decide
     # nothing
-    usable = np.isfinite(likelihood).all(axis=0)
-    winner = likelihood[:, usable].argmax(axis=0)
-    return np.asarray(np.bincount(winner, minlength=len(brackets)) / max(int(usable.sum()), 1))
+    return share_likeliest(likelihood[:, np.isfinite(likelihood).all(axis=0)])
