@@ -16,6 +16,7 @@ from rockfrag.pedestal.equivalence import MARGIN
 from rockfrag.pedestal.pairs import SLENDERNESS, Pairs, check_tests, pair_tests, slenderness_of
 from rockfrag.pedestal.study import SCOPES
 from rockfrag.pedestal.units import mean_effect
+from rockfrag.report.building_figures import FLOOR_STYLES
 from rockfrag.report.style import (
     BLACK,
     BLUE,
@@ -37,7 +38,7 @@ SIDE_NAME = {"NP": "without pedestal (NP)", "P": "with pedestal (P)"}
 SIDE_SHIFT = {"NP": -0.13, "P": 0.13}
 TOWER_MARKERS = ("o", "s", "^", "D", "v", "P")
 TOWER_COLOURS = (BLUE, RED, GREEN, *OKABE_ITO)
-FLOOR_NAME = {"GF": "ground floor", "F3": "3rd floor", "F5": "5th floor"}
+FLOOR_NAME = {floor: name for floor, (name, _, _) in FLOOR_STYLES.items()}
 LIMIT = 1.08
 AMPLITUDE = "Overturning acceleration [g]"
 
