@@ -65,7 +65,7 @@ def _rest_moment(p, which, s, a):
 
 
 @kernel
-def _hold(p, which, c1, c2, q, tau, h, a):
+def hold_at(p, which, c1, c2, q, tau, h, a):
     """Least contact moment at τ: of the ground (which = 1) or the interface (2)."""
     t1 = value(q, TH1, tau)
     t2 = value(q, TH2, tau)
@@ -82,12 +82,12 @@ def _hold(p, which, c1, c2, q, tau, h, a):
 @kernel
 def _failing_time(p, which, c1, c2, q, end, h, a0, ramp):
     """Find when a closed contact's criterion first fails in [0, end]; 2.0 if it holds."""
-    at_start = _hold(p, which, c1, c2, q, 0.0, h, a0)
-    at_end = _hold(p, which, c1, c2, q, end, h, a0 + ramp * end)
+    at_start = hold_at(p, which, c1, c2, q, 0.0, h, a0)
+    at_end = hold_at(p, which, c1, c2, q, end, h, a0 + ramp * end)
     high = end
     if at_end >= 0.0:
         # a parabola through the middle shows a dip between the ends
-        middle = _hold(p, which, c1, c2, q, 0.5 * end, h, a0 + 0.5 * ramp * end)
+        middle = hold_at(p, which, c1, c2, q, 0.5 * end, h, a0 + 0.5 * ramp * end)
         curve = 2.0 * (at_start + at_end - 2.0 * middle)
         if curve <= 0.0:
             return 2.0
@@ -95,14 +95,14 @@ def _failing_time(p, which, c1, c2, q, end, h, a0, ramp):
         if not 0.0 < vertex < 1.0:
             return 2.0
         high = vertex * end
-        if _hold(p, which, c1, c2, q, high, h, a0 + ramp * high) >= 0.0:
+        if hold_at(p, which, c1, c2, q, high, h, a0 + ramp * high) >= 0.0:
             return 2.0
     low = 0.0
     if at_start < 0.0:
         return 0.0
     while high - low > 1e-13:
         tau = 0.5 * (low + high)
-        if _hold(p, which, c1, c2, q, tau, h, a0 + ramp * tau) >= 0.0:
+        if hold_at(p, which, c1, c2, q, tau, h, a0 + ramp * tau) >= 0.0:
             low = tau
         else:
             high = tau
@@ -168,7 +168,7 @@ def let_go(p, fails, stuck, c1, c2, theta1, omega1, theta2, omega2, a):
 @kernel
 def strike(
     p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, a, closing_speed, forced, drop, fast,
-    k, tau, dt, acceleration, scale, summary,
+    k, tau, dt, samples, last, scale, summary,
 ):  # fmt: skip
     """Contact state, velocities and kind of event after contacts close.
 
@@ -181,8 +181,8 @@ def strike(
     summary[IMPACTS] += 1.0
     n1, n2, w1, w2 = impact(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2)
     limit = math.inf if forced else closing_speed
-    slow1 = closes1 and n1 != 0 and abs(w1) < limit
-    slow2 = closes2 and n2 != 0 and abs(w2 - w1) < limit
+    slow1 = (closes1 or c1 == 0) and n1 != 0 and abs(w1) < limit
+    slow2 = (closes2 or c2 == 0) and n2 != 0 and abs(w2 - w1) < limit
     if slow1 or slow2:
         n1 = 0 if slow1 else n1
         n2 = 0 if slow2 else n2
@@ -192,7 +192,7 @@ def strike(
     elif theta1 == 0.0 and theta2 == 0.0 and (n1 != 0 or n2 != 0):
         slow = max(abs(w1), abs(w2)) < fast
         if slow and _chatter_dies(
-            p, c1, c2, omega1, omega2, n1, n2, w1, w2, drop, k, tau, dt, acceleration, scale
+            p, c1, c2, omega1, omega2, n1, n2, w1, w2, drop, k, tau, dt, samples, last, scale
         ):
             n1, n2, w1, w2 = 0, 0, 0.0, 0.0
             summary[CLOSURES] += 1.0
@@ -228,7 +228,7 @@ def _least_restoring(p, a):
 
 @kernel
 def _chatter_dies(
-    p, was1, was2, old1, old2, c1, c2, omega1, omega2, drop, k, tau, dt, acceleration, scale
+    p, was1, was2, old1, old2, c1, c2, omega1, omega2, drop, k, tau, dt, samples, last, scale
 ):  # fmt: skip
     """Whether the impacts that follow one at θ1 = θ2 = 0 are over before anything else can happen.
 
@@ -249,10 +249,9 @@ def _chatter_dies(
     # a pedestal that is thrown about lengthens the flights of the statue
     safety = 1.03 if p[FIXED] > 0.0 else 1.5
     least = math.inf
-    n = acceleration.size
     for ahead in range(33):
         i = k + ahead
-        a = acceleration[i] * scale if i < n else 0.0
+        a = samples[i] * scale if i <= last else 0.0
         least = min(least, _least_restoring(p, a))
         if least <= 0.0 or speed * speed * frequency2 > 0.04 * least * least:
             return False

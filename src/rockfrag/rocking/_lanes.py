@@ -333,7 +333,7 @@ def _left_alone(psi, w, side, b, o, tally, r):
 
 
 @kernel
-def _next_uplift(samples, highest, lowest, k, end, low, high):
+def next_uplift(samples, highest, lowest, k, end, low, high):
     """First sample after k, up to ``end``, outside [low, high]; -1 if there is none."""
     m = k + 1
     while m <= end:
@@ -449,7 +449,7 @@ def lone_blocks(
                         if samples[k] > high or samples[k] < low:
                             m = k + 1
                         else:
-                            m = _next_uplift(samples, highest, lowest, k, end, low, high)
+                            m = next_uplift(samples, highest, lowest, k, end, low, high)
                         if m < 0:
                             done = True
                         else:

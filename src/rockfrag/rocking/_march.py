@@ -6,26 +6,17 @@ march goes on.  Every step size, root and decision depends on this one case alon
 
 import math
 
-import numpy as np
-
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._events import (
-    COARSE_DROP,
     FINE_DROP,
     MAX_EVENTS_PER_STEP,
     chatter_speed,
     let_go,
     next_event,
-    rest_interval,
     strike,
 )
-from rockfrag.rocking._glide import glide
 from rockfrag.rocking._mechanics import (
     FIXED,
-    LINEAR,
-    first_moment2,
-    kinetic_energy,
-    potential_energy,
     settle,
 )
 from rockfrag.rocking._series import slope, value
@@ -37,13 +28,10 @@ from rockfrag.rocking._tally import (
     OPENING,
     PEAK1,
     PEAK2,
-    RATIO2,
     REST_TIME,
     SPEED1,
     SPEED2,
     WORK,
-    balance,
-    barrier,
     keep_event,
     keep_sample,
     track,
@@ -70,7 +58,7 @@ def march(
     free_samples : samples that the march goes on after the last one at most
     initial : θ1, ω1, θ2, ω2 at the first sample
     closing_speed : separation speed after an impact [rad/s] below which a contact stays closed
-    history : (samples, HISTORY) or (0, HISTORY) to keep none; filled until the march ends
+    history : (samples, HISTORY), filled until the march ends
     events : (capacity, EVENT)
     q : (SCRATCH,) see ``scratch``
     summary : (SUMMARY,)
@@ -80,41 +68,20 @@ def march(
     Number of samples done, the first included.
     """
     _begin(initial, summary)
-    keep = history.shape[0] > 0
-    drop = FINE_DROP if keep else COARSE_DROP
-    gliding = not keep and p[LINEAR] == 0.0
     n = acceleration.size
     theta1, omega1, theta2, omega2 = initial[0], initial[1], initial[2], initial[3]
     c1, c2 = _first_contacts(theta1, omega1, theta2, omega2)
     c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, acceleration[0] * scale)
     ways_to_balance(p, q)
-    least_energy = barrier(p)
-    rest_low, rest_high = rest_interval(p)
     fast = chatter_speed(p)
-    extremes = np.zeros(3)
-    if keep:
-        first = acceleration[0] * scale
-        keep_sample(p, 0, c1, c2, theta1, omega1, theta2, omega2, first, history, summary)
+    first = acceleration[0] * scale
+    keep_sample(p, 0, c1, c2, theta1, omega1, theta2, omega2, first, history, summary)
     h = dt / substeps
     done = 1
-    k = -1
-    while k + 1 < n - 1 + free_samples:
-        k += 1
-        if gliding and c1 == 0 and c2 != 0 and k < n - 1:
-            k, theta2, omega2 = glide(
-                p, c2, theta2, omega2, k, n - 1, substeps, dt, acceleration, scale, extremes
-            )
-            summary[RATIO2] = max(summary[RATIO2], extremes[0])
-            summary[SPEED2] = max(summary[SPEED2], extremes[1])
-            summary[CLOSEST] = min(summary[CLOSEST], math.sqrt(extremes[2]))
+    for k in range(n - 1 + free_samples):
         free = k >= n - 1
-        if free and not keep and _safe(p, c1, c2, theta1, omega1, theta2, omega2, least_energy):
-            break
         left = acceleration[k] * scale if k < n else 0.0
         right = acceleration[k + 1] * scale if k + 1 < n else 0.0
-        at_rest = c1 == 0 and c2 == 0 and not keep and k + 1 < n
-        if at_rest and rest_low < left < rest_high and rest_low < right < rest_high:
-            continue
         n_events = 0
         for sub in range(substeps):
             a0 = left + (right - left) * (sub / substeps)
@@ -134,8 +101,7 @@ def march(
                 omega2 = slope(q, TH2, at) / hr if c2 != 0 else omega1
                 if c1 != 0 or c2 != 0:
                     track(p, c1, c2, q, at, theta1, omega1, theta2, omega2, hr, summary)
-                    if keep:
-                        summary[WORK] += work(p, c1, c2, q, at, hr, now, rise)
+                    summary[WORK] += work(p, c1, c2, q, at, hr, now, rise)
                 tau += at * remaining
                 if when > 1.0:
                     break
@@ -154,16 +120,15 @@ def march(
                         theta2 = theta1
                     c1, c2, omega1, omega2, kind = strike(
                         p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, now,
-                        closing_speed, n_events > MAX_EVENTS_PER_STEP, drop, fast, k,
-                        (sub + tau) / substeps, dt, acceleration, scale, summary,
+                        closing_speed, n_events > MAX_EVENTS_PER_STEP, FINE_DROP, fast, k,
+                        (sub + tau) / substeps, dt, acceleration, n - 1, scale, summary,
                     )  # fmt: skip
                 keep_event(
                     p, (k + (sub + tau) / substeps) * dt, kind, was1, was2, old1, old2,
                     c1, c2, theta1, omega1, theta2, omega2, events, summary,
                 )  # fmt: skip
         done = k + 2
-        if keep:
-            keep_sample(p, k + 1, c1, c2, theta1, omega1, theta2, omega2, right, history, summary)
+        keep_sample(p, k + 1, c1, c2, theta1, omega1, theta2, omega2, right, history, summary)
         lying1 = abs(theta1) >= HALF_TURN
         lying2 = abs(theta2) >= HALF_TURN or abs(theta2 - theta1) >= HALF_TURN
         if lying1 or lying2:
@@ -202,22 +167,3 @@ def _first_contacts(theta1, omega1, theta2, omega2):
     elif omega2 != omega1:
         c2 = 1 if omega2 > omega1 else -1
     return c1, c2
-
-
-@kernel
-def _safe(p, c1, c2, theta1, omega1, theta2, omega2, least_energy):
-    """Whether nothing can fall once the ground is still: energy cannot grow and does not suffice."""
-    energy = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
-    energy += potential_energy(p, c1, c2, theta1, theta2)
-    if energy >= least_energy:
-        return False
-    # low energy on this side of balance, not beyond it
-    if c2 != 0:
-        vx, vy = first_moment2(p, c2)
-        if c2 * theta2 >= math.atan2(-c2 * vx, vy):
-            return False
-    if c1 != 0:
-        critical, _, _, _ = balance(p, c1, c2)
-        if c1 * theta1 >= critical:
-            return False
-    return True

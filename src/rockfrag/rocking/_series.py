@@ -140,3 +140,48 @@ def closing_time(q, row, end):
         falls = not rises
         before = after
     return 2.0
+
+
+@kernel
+def crossing_time(q, row):
+    """Find when a q that starts at zero or above falls through zero, given q(1) < 0.
+
+    Newton's method inside a bracket, from the root of the parabola that q begins as.  A q that dips below
+    zero and comes back before is for ``closing_time``.
+    """
+    q0 = max(0.0, q[row])
+    q1 = q[row + 1]
+    q2 = q[row + 2]
+    square = q1 * q1 - 4.0 * q2 * q0
+    tau = 0.5
+    low = 0.0
+    high = 1.0
+    if q0 == 0.0:
+        if q2 < 0.0 and 0.0 < -q1 / q2 < 1.0:
+            tau = -q1 / q2
+        # look behind the root at zero
+        low = 1e-3 * tau
+        while value(q, row, low) <= 0.0:
+            low *= 0.1
+            if low < 1e-13:
+                return 0.0
+    elif square > 0.0:
+        tau = 2.0 * q0 / (math.sqrt(square) - q1)
+    for _ in range(100):
+        if not low < tau < high:
+            tau = 0.5 * (low + high)
+        f = q[row + ORDER]
+        d = 0.0
+        for k in range(ORDER - 1, -1, -1):
+            d = d * tau + f
+            f = f * tau + q[row + k]
+        if f > 0.0:
+            low = tau
+        else:
+            high = tau
+        step = f / d if d != 0.0 else 2.0
+        tau -= step
+        # the error after this step is of the order of its square
+        if abs(step) <= 1e-8 or high - low <= 1e-15:
+            break
+    return min(max(tau, 0.0), 1.0)

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking import _lanes as lanes
-from rockfrag.rocking import _tally as tally
+from rockfrag.rocking import _stack_lanes as stack_lanes
 from rockfrag.rocking._compile import compiling_alone
-from rockfrag.rocking._ensemble import march_cases
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.inputs import (
     COARSE_CLOSING_SPEED,
@@ -139,6 +138,53 @@ def _in_parallel(kernel: Any, count: int, workers: int, work: Callable[[int, int
         list(pool.map(lambda first: work(first, min(first + CHUNK, count)), starts))
 
 
+@dataclass(frozen=True)
+class _Motions:
+    """All motions end to end, sampled as densely as the bodies need."""
+
+    samples: Array
+    highest: Array  # extremes of each BLOCK of samples
+    lowest: Array
+    offsets: NDArray[np.int64]  # where each sampled motion begins
+    lasts: NDArray[np.int64]  # its last sample, which is zero
+    rows: NDArray[np.int64]  # (bodies, motions) which of the sampled motions to use
+    intervals: Array  # (bodies, motions) its sampling interval [s]
+
+
+def _sampled(
+    bodies: list[Body], values: list[Array], dts: Array, g: float, step: float
+) -> _Motions:
+    # a body that needs shorter steps than the samples gets the motion sampled more densely
+    times = np.array([[step_count(body, d, g, step) for d in dts] for body in bodies])
+    times = 2 ** np.ceil(np.log2(times)).astype(int)
+    kinds = sorted({(int(n), m) for m in range(len(values)) for n in times[:, m]})
+    number = {kind: i for i, kind in enumerate(kinds)}
+    sampled = [_refined(values[m], n) for n, m in kinds]
+    # whole blocks each, so that no block straddles two motions
+    padded = [np.append(v, np.zeros(-v.size % lanes.BLOCK)) for v in sampled]
+    offsets = np.concatenate([[0], np.cumsum([v.size for v in padded])])
+    samples = np.concatenate(padded)
+    blocks = samples.reshape(-1, lanes.BLOCK)
+    return _Motions(
+        samples=samples,
+        highest=blocks.max(axis=1),
+        lowest=blocks.min(axis=1),
+        offsets=offsets,
+        lasts=offsets[:-1] + np.array([v.size for v in sampled]) - 1,
+        rows=np.array([[number[int(n), m] for m, n in enumerate(row)] for row in times]),
+        intervals=dts[np.newaxis, :] / times,
+    )
+
+
+def _refined(values: Array, times: int) -> Array:
+    """Sample a piecewise linear motion ``times`` as densely, and let it end in zero."""
+    closed = np.append(values, 0.0)
+    if times == 1:
+        return closed
+    at = np.arange((closed.size - 1) * times + 1) / times
+    return np.asarray(np.interp(at, np.arange(closed.size), closed))
+
+
 def _stacks(
     bodies: list[Body],
     restitution: list[Restitution],
@@ -154,41 +200,35 @@ def _stacks(
     parameters = np.array(
         [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)]
     )
-    substeps = np.array([[step_count(body, d, g, step) for d in dts] for body in bodies])
-    free = np.array(
-        [[math.ceil(FREE_TIME / slowest_frequency(body, g) / d) for d in dts] for body in bodies]
-    )
-    samples = np.concatenate(values)
-    offsets = np.concatenate([[0], np.cumsum([v.size for v in values])])
+    motions = _sampled(bodies, values, dts, g, step)
+    slowest = np.array([slowest_frequency(body, g) for body in bodies])
+    free = np.ceil(FREE_TIME / slowest[:, np.newaxis] / motions.intervals).astype(np.int64)
     shape = (len(bodies), *factors.shape)
-    table = np.empty((math.prod(shape), tally.SUMMARY))
+    outcome = np.empty((math.prod(shape), stack_lanes.RESULTS))
 
     def work(first: int, last: int) -> None:
-        march_cases(
-            first, last, parameters, substeps, free, samples, offsets, dts, factors,
-            COARSE_CLOSING_SPEED, table[first:last],
+        stack_lanes.stack_cases(
+            first, last, parameters, motions.intervals, free, factors, motions.rows, motions.offsets,
+            motions.lasts, motions.samples, motions.highest, motions.lowest, COARSE_CLOSING_SPEED,
+            outcome[first:last],
         )  # fmt: skip
 
-    _in_parallel(march_cases, len(table), workers, work)
-    table = table.reshape(*shape, tally.SUMMARY)
-    fallen = table[..., tally.FALLEN]
+    _in_parallel(stack_lanes.stack_cases, len(outcome), workers, work)
+    outcome = outcome.reshape(*shape, stack_lanes.RESULTS)
+    fallen = outcome[..., stack_lanes.FALLEN]
+    interval = motions.intervals[:, :, np.newaxis]
     result.overturned[rows] = fallen > 0
     result.overturned_body[rows] = fallen
-    result.overturning_time[rows] = table[..., tally.FALL_TIME]
-    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, table[..., tally.RATIO2])
-    result.peak_rotation_pedestal[rows] = np.where(fallen == 1, np.inf, table[..., tally.RATIO1])
-    result.peak_velocity[rows] = table[..., tally.SPEED2]
-    result.impacts[rows] = table[..., tally.IMPACTS]
-    result.closest_approach[rows] = table[..., tally.CLOSEST]
-
-
-def _refined(values: Array, times: int) -> Array:
-    """Sample a piecewise linear motion ``times`` as densely, and let it end in zero."""
-    closed = np.append(values, 0.0)
-    if times == 1:
-        return closed
-    at = np.arange((closed.size - 1) * times + 1) / times
-    return np.asarray(np.interp(at, np.arange(closed.size), closed))
+    result.overturning_time[rows] = np.where(
+        fallen > 0, outcome[..., stack_lanes.CERTAIN] * interval, np.nan
+    )
+    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, outcome[..., stack_lanes.PEAK2])
+    result.peak_rotation_pedestal[rows] = np.where(
+        fallen == 1, np.inf, outcome[..., stack_lanes.PEAK1]
+    )
+    result.peak_velocity[rows] = outcome[..., stack_lanes.SPEED] / interval
+    result.impacts[rows] = outcome[..., stack_lanes.IMPACTS]
+    result.closest_approach[rows] = outcome[..., stack_lanes.CLOSEST]
 
 
 def _lone_blocks(
@@ -204,27 +244,17 @@ def _lone_blocks(
     rows: NDArray[np.intp],
 ) -> None:
     shape = (len(bodies), *factors.shape)
-    # a block that needs shorter steps than the samples gets the motion sampled more densely
-    times = np.array([[step_count(body, d, g, step) for d in dts] for body in bodies])
-    times = 2 ** np.ceil(np.log2(times)).astype(int)
-    kinds = sorted({(int(n), m) for m in range(len(values)) for n in times[:, m]})
-    number = {kind: i for i, kind in enumerate(kinds)}
-    sampled = [_refined(values[m], n) for n, m in kinds]
-    which = np.array([[number[int(n), m] for m, n in enumerate(row)] for row in times])
-    # whole blocks each, so that no block straddles two motions
-    padded = [np.append(v, np.zeros(-v.size % lanes.BLOCK)) for v in sampled]
-    offsets = np.concatenate([[0], np.cumsum([v.size for v in padded])])
-    lasts = offsets[:-1] + np.array([v.size for v in sampled]) - 1
-    samples = np.concatenate(padded)
-    blocks = samples.reshape(-1, lanes.BLOCK)
+    motions = _sampled(bodies, values, dts, g, step)
+    intervals = motions.intervals
+    bounds = zip(motions.offsets[:-1], motions.offsets[1:], strict=True)
+    parts = [slice(i // lanes.BLOCK, j // lanes.BLOCK) for i, j in bounds]
     # largest and smallest sample from the beginning of a block to the end of its motion
     ahead_high = np.concatenate(
-        [np.maximum.accumulate(v.reshape(-1, lanes.BLOCK).max(axis=1)[::-1])[::-1] for v in padded]
+        [np.maximum.accumulate(motions.highest[part][::-1])[::-1] for part in parts]
     )
     ahead_low = np.concatenate(
-        [np.minimum.accumulate(v.reshape(-1, lanes.BLOCK).min(axis=1)[::-1])[::-1] for v in padded]
+        [np.minimum.accumulate(motions.lowest[part][::-1])[::-1] for part in parts]
     )
-    intervals = dts[np.newaxis, :] / times
     table = np.empty((len(bodies), len(values), lanes.BODY))
     for i, (body, e) in enumerate(zip(bodies, restitution, strict=True)):
         assert isinstance(body, Block)
@@ -237,8 +267,9 @@ def _lone_blocks(
 
     def work(first: int, last: int) -> None:
         lanes.lone_blocks(
-            first, last, table.ravel(), per_g, which, offsets, lasts, samples, blocks.max(axis=1),
-            blocks.min(axis=1), ahead_high, ahead_low, outcome[first:last].reshape(-1),
+            first, last, table.ravel(), per_g, motions.rows, motions.offsets, motions.lasts,
+            motions.samples, motions.highest, motions.lowest, ahead_high, ahead_low,
+            outcome[first:last].reshape(-1),
         )  # fmt: skip
 
     _in_parallel(lanes.lone_blocks, len(outcome), workers, work)

@@ -1,0 +1,250 @@
+"""Many stacks side by side: the rows of the lanes, and one step of all of them.
+
+A lane is advanced from where it is within a sample to the end of that sample.  All patterns share the
+arithmetic of two rotations.  Where only one rotates (pattern 4, and pattern 3 with both blocks as one) it
+is the second; the first stands still, uncoupled.  Time is counted in samples.
+"""
+
+import math
+
+import numpy as np
+
+from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._mechanics import (
+    GRAVITY,
+    coupling,
+    first_moment1,
+    first_moment2,
+    inertia1,
+    inertia2,
+)
+from rockfrag.rocking._pendulum import rate, sine_cosine, travel
+from rockfrag.rocking._tally import balance
+from rockfrag.rocking._two_pendulums import rates_of_two
+
+LANES = 16
+HALF_TURN = 0.5 * math.pi
+
+# What a contact state fixes: columns of the table of a body and, times LANES, rows of the lanes.
+(
+    V1X,  # first moments
+    V1Y,
+    V2X,
+    V2Y,
+    PER_SPEED11,  # (1 over critical angle and frequency)² of the pedestal, by either rotation
+    PER_SPEED12,
+    PER_SPEED22,  # and of the statue
+    PER_ANGLE11,  # 1 over the critical angle, likewise, positive on the side of the pole
+    PER_ANGLE12,
+    PER_ANGLE22,
+    M11,
+    M22,
+    E,
+    F,
+    SIGN1,  # sides that ground and interface open to; 0 if closed
+    SIGN2,
+    # what holds the closed contact of pattern 3 or 4 at its right corner: coefficients of
+    # (1, sin θ, cos θ) θ'', (sin θ, cos θ, 1) θ'², and (sin θ, cos θ) of the ground and of gravity
+    RIGHT_A, RIGHT_AS, RIGHT_AC, RIGHT_W, RIGHT_WS, RIGHT_WC, RIGHT_G, RIGHT_GS, RIGHT_GC,
+    RIGHT_X, RIGHT_XS, RIGHT_XC,
+    # and at its left corner
+    LEFT_A, LEFT_AS, LEFT_AC, LEFT_W, LEFT_WS, LEFT_WC, LEFT_G, LEFT_GS, LEFT_GC,
+    LEFT_X, LEFT_XS, LEFT_XC,
+) = (LANES * row for row in range(40))  # fmt: skip
+COLUMNS = 40
+HOLD = RIGHT_A // LANES
+CORNER = 12
+
+# The other rows of the lanes.
+(
+    TH1, RATE1, TH2, RATE2,
+    GROUND, GROUND_END,  # acceleration now and at the end of the sample
+    REST_OF,  # the part of the sample that is left
+    NEW1, NEW_RATE1, NEW2, NEW_RATE2,
+    FLAG,
+    BEFORE2, BEFORE_RATE2, BEFORE_GROUND, BEFORE_REST, BEFORE,  # where the step before began, if it had no event
+    P1, P2, P3, P4, P5, P6,  # Taylor coefficients of both rates
+    Q1, Q2, Q3, Q4, Q5, Q6,
+    RATIO1, RATIO2, FAST, NEAR,  # extremes of the case so far
+) = (LANES * row for row in range(COLUMNS, COLUMNS + 33))  # fmt: skip
+ROWS = COLUMNS + 33
+
+QUIET, CLOSES, RELEASE, NEARS = 0.0, 1.0, 2.0, 3.0
+
+
+@kernel
+def contact_table(p, table):
+    """Fill the (9, COLUMNS) table of a body, the row 3 c1 + c2 + 4 for contact state (c1, c2)."""
+    g = p[GRAVITY]
+    table[:] = 0.0
+    for c1 in (-1, 0, 1):
+        for c2 in (-1, 0, 1):
+            t = table[3 * c1 + c2 + 4]
+            t[M11 // LANES] = 1.0
+            t[M22 // LANES] = 1.0
+            if c1 == 0 and c2 == 0:
+                continue
+            if c1 != 0:
+                critical, vx, vy, inertia = balance(p, c1, c2)
+                slot = 1 if c2 == 0 else 0
+                t[PER_ANGLE11 // LANES + slot] = c1 / critical
+                t[PER_SPEED11 // LANES + slot] = inertia / (
+                    g * math.hypot(vx, vy) * critical * critical
+                )
+                t[SIGN1 // LANES] = c1 if c2 != 0 else 0
+                t[SIGN2 // LANES] = c1
+            if c2 != 0:
+                vx, vy = first_moment2(p, c2)
+                critical = math.atan2(-c2 * vx, vy)
+                t[PER_ANGLE22 // LANES] = c2 / critical
+                t[PER_SPEED22 // LANES] = inertia2(p, c2) / (
+                    g * math.hypot(vx, vy) * critical * critical
+                )
+                t[SIGN2 // LANES] = c2
+                t[M22 // LANES] = inertia2(p, c2)
+                t[V2X // LANES], t[V2Y // LANES] = vx, vy
+            if c1 != 0 and c2 != 0:
+                t[M11 // LANES] = inertia1(p, c1, c2)
+                t[E // LANES], t[F // LANES] = coupling(p, c1, c2)
+                t[V1X // LANES], t[V1Y // LANES] = first_moment1(p, c1, c2)
+            elif c1 != 0:
+                e, _ = coupling(p, c1, 1)
+                v1x, v1y = first_moment1(p, c1, 1)
+                v2x, v2y = first_moment2(p, 1)
+                t[M22 // LANES] = inertia1(p, c1, 1) + 2.0 * e + inertia2(p, 1)
+                t[V2X // LANES], t[V2Y // LANES] = v1x + v2x, v1y + v2y
+                _interface_hold(p, c1, t)
+            else:
+                _ground_hold(p, c2, t)
+
+
+@kernel
+def _ground_hold(p, c2, t):
+    """Moments of the ground on a standing pedestal in pattern 4 (``_mechanics.ground_hold``)."""
+    for s1, at in ((1, HOLD), (-1, HOLD + CORNER)):
+        e, f = coupling(p, s1, c2)
+        vx, vy = first_moment1(p, s1, c2)
+        # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
+        t[at + 1], t[at + 2] = s1 * f, s1 * e
+        t[at + 4], t[at + 5] = -s1 * e, s1 * f
+        t[at + 6] = s1 * vy
+        t[at + 9] = -s1 * p[GRAVITY] * vx
+
+
+@kernel
+def _interface_hold(p, c1, t):
+    """Moments of the interface on the statue that turns with its pedestal (``interface_hold``)."""
+    for s2, at in ((1, HOLD), (-1, HOLD + CORNER)):
+        e, f = coupling(p, c1, s2)
+        vx, vy = first_moment2(p, s2)
+        # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
+        t[at] = s2 * (e + inertia2(p, s2))
+        t[at + 3] = -s2 * f
+        t[at + 7], t[at + 8] = -s2 * vx, s2 * vy
+        t[at + 10], t[at + 11] = -s2 * p[GRAVITY] * vy, -s2 * p[GRAVITY] * vx
+
+
+@kernel
+def advance(x, g, hh):
+    """Advance every lane to the end of its sample; flag those that need a closer look.
+
+    ``hh`` is the sampling interval squared of each lane [s²].
+    """
+    for i in range(LANES):
+        left = x[REST_OF + i]
+        scale = hh[i] * left * left
+        t1 = x[TH1 + i]
+        t2 = x[TH2 + i]
+        w1 = x[RATE1 + i] * left
+        w2 = x[RATE2 + i] * left
+        a = x[GROUND + i]
+        s1, c1 = sine_cosine(t1)
+        s2, c2 = sine_cosine(t2)
+        sd = s2 * c1 - c2 * s1
+        cd = c2 * c1 + s2 * s1
+        e = x[E + i]
+        f = x[F + i]
+        v1x = scale * x[V1X + i]
+        v1y = scale * x[V1Y + i]
+        v2x = scale * x[V2X + i]
+        v2y = scale * x[V2Y + i]
+        p1, p2, p3, p4, p5, p6, q1, q2, q3, q4, q5, q6 = rates_of_two(
+            x[M11 + i], x[M22 + i], e * cd + f * sd, f * cd - e * sd,
+            v1y * c1 - v1x * s1, v1x * c1 + v1y * s1, v2y * c2 - v2x * s2, v2x * c2 + v2y * s2,
+            g, w1, w2, a, x[GROUND_END + i] - a,
+        )  # fmt: skip
+        n1 = t1 + travel(w1, p1, p2, p3, p4, p5, p6, 1.0)
+        n2 = t2 + travel(w2, q1, q2, q3, q4, q5, q6, 1.0)
+        z1 = rate(w1, p1, p2, p3, p4, p5, p6, 1.0)
+        z2 = rate(w2, q1, q2, q3, q4, q5, q6, 1.0)
+        x[P1 + i], x[P2 + i], x[P3 + i], x[P4 + i], x[P5 + i], x[P6 + i] = p1, p2, p3, p4, p5, p6
+        x[Q1 + i], x[Q2 + i], x[Q3 + i], x[Q4 + i], x[Q5 + i], x[Q6 + i] = q1, q2, q3, q4, q5, q6
+        x[NEW1 + i] = n1
+        x[NEW2 + i] = n2
+        x[NEW_RATE1 + i] = z1 / left
+        x[NEW_RATE2 + i] = z2 / left
+        # a contact closes, nearly closes, or may close and open again
+        sign1 = x[SIGN1 + i]
+        sign2 = x[SIGN2 + i]
+        from1 = sign1 * t1
+        out1 = sign1 * w1
+        in1 = sign1 * z1
+        from2 = sign2 * (t2 - t1)
+        out2 = sign2 * (w2 - w1)
+        in2 = sign2 * (z2 - z1)
+        closes = (sign1 * n1 < 0.0) | (sign2 * (n2 - n1) < 0.0)
+        dips = ((out1 < 0.0) & (in1 > 0.0) & (from1 * (in1 - out1) < out1 * out1)) | (
+            (out2 < 0.0) & (in2 > 0.0) & (from2 * (in2 - out2) < out2 * out2)
+        )
+        hops = ((out1 >= 0.0) & (in1 > 0.0) & (from1 + 0.5 * sign1 * p1 < 0.0)) | (
+            (out2 >= 0.0) & (in2 > 0.0) & (from2 + 0.5 * sign2 * (q1 - p1) < 0.0)
+        )
+        lies = (max(abs(n1), abs(n2)) >= HALF_TURN) | (abs(n2 - n1) >= HALF_TURN)
+        # a closed contact would have to be pulled
+        square = w2 * w2
+        right = (x[RIGHT_A + i] + x[RIGHT_AS + i] * s2 + x[RIGHT_AC + i] * c2) * q1
+        right += (x[RIGHT_W + i] + x[RIGHT_WS + i] * s2 + x[RIGHT_WC + i] * c2) * square
+        right += scale * (a * (x[RIGHT_G + i] + x[RIGHT_GS + i] * s2 + x[RIGHT_GC + i] * c2))
+        right += scale * (x[RIGHT_X + i] + x[RIGHT_XS + i] * s2 + x[RIGHT_XC + i] * c2)
+        other = (x[LEFT_A + i] + x[LEFT_AS + i] * s2 + x[LEFT_AC + i] * c2) * q1
+        other += (x[LEFT_W + i] + x[LEFT_WS + i] * s2 + x[LEFT_WC + i] * c2) * square
+        other += scale * (a * (x[LEFT_G + i] + x[LEFT_GS + i] * s2 + x[LEFT_GC + i] * c2))
+        other += scale * (x[LEFT_X + i] + x[LEFT_XS + i] * s2 + x[LEFT_XC + i] * c2)
+        flag = CLOSES if closes else QUIET
+        flag = NEARS if dips | hops | lies else flag
+        flag = RELEASE if (right < 0.0) | (other < 0.0) else flag
+        x[FLAG + i] = flag
+
+
+@kernel
+def commit(x, hh):
+    """Let the lanes without an event take over what ``advance`` found, and keep its extremes."""
+    for i in range(LANES):
+        quiet = x[FLAG + i] == QUIET
+        t2 = x[TH2 + i]
+        w2 = x[RATE2 + i]
+        n1 = x[NEW1 + i]
+        n2 = x[NEW2 + i]
+        z1 = x[NEW_RATE1 + i]
+        z2 = x[NEW_RATE2 + i]
+        ratio1 = x[PER_ANGLE11 + i] * n1 + x[PER_ANGLE12 + i] * n2
+        ratio2 = x[PER_ANGLE22 + i] * n2
+        per = 1.0 / hh[i]
+        away1 = (1.0 - ratio1) * (1.0 - ratio1)
+        away1 += (x[PER_SPEED11 + i] * z1 * z1 + x[PER_SPEED12 + i] * z2 * z2) * per
+        away2 = (1.0 - ratio2) * (1.0 - ratio2) + x[PER_SPEED22 + i] * z2 * z2 * per
+        x[RATIO1 + i] = max(x[RATIO1 + i], ratio1 if quiet else 0.0)
+        x[RATIO2 + i] = max(x[RATIO2 + i], ratio2 if quiet else 0.0)
+        x[FAST + i] = max(x[FAST + i], abs(z2) if quiet else 0.0)
+        x[NEAR + i] = min(x[NEAR + i], min(away1, away2) if quiet else np.inf)
+        x[BEFORE2 + i] = t2 if quiet else x[BEFORE2 + i]
+        x[BEFORE_RATE2 + i] = w2 if quiet else x[BEFORE_RATE2 + i]
+        x[BEFORE_GROUND + i] = x[GROUND + i] if quiet else x[BEFORE_GROUND + i]
+        x[BEFORE_REST + i] = x[REST_OF + i] if quiet else x[BEFORE_REST + i]
+        x[BEFORE + i] = 1.0 if quiet else x[BEFORE + i]
+        x[TH1 + i] = n1 if quiet else x[TH1 + i]
+        x[TH2 + i] = n2 if quiet else t2
+        x[RATE1 + i] = z1 if quiet else x[RATE1 + i]
+        x[RATE2 + i] = z2 if quiet else w2
+        x[GROUND + i] = x[GROUND_END + i] if quiet else x[GROUND + i]
+        x[REST_OF + i] = 1.0 if quiet else x[REST_OF + i]
