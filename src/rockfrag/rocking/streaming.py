@@ -3,6 +3,7 @@
 import math
 import os
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Literal
 
 import numpy as np
@@ -23,6 +24,7 @@ Array = NDArray[np.float64]
 ROWS = 262_144
 """Most cases that are in memory at a time, and most rows of a row group."""
 
+CASE = {"body": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
 VERDICT = {"overturned": pa.bool_(), "overturned_body": pa.int8()}
 PEAKS = {
     "overturning_time_s": pa.float64(),
@@ -80,16 +82,9 @@ def stream_overturns(
     body_list, motions, dts = listed(bodies, accelerations, dt, restitution)
     factors = checked_scales(scales, len(motions))
     total = len(body_list) * factors.size
-    schema = pa.schema(
-        {"body": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
-        | VERDICT
-        | (PEAKS if columns == "peaks" else {})
-    )
+    schema = pa.schema(CASE | VERDICT | (PEAKS if columns == "peaks" else {}))
     done = 0
-    with (
-        whole_file(path) as part,
-        pq.ParquetWriter(part, schema, compression="zstd") as writer,
-    ):
+    with new_table(path, schema) as writer:
         for some, rows, cols in _groups(len(body_list), *factors.shape):
             result = overturns(
                 body_list[some],
@@ -106,6 +101,13 @@ def stream_overturns(
             if progress is not None:
                 progress(done, total)
     return total
+
+
+@contextmanager
+def new_table(path: str | os.PathLike[str], schema: pa.Schema) -> Iterator[pq.ParquetWriter]:
+    """Give a writer of a Parquet file that appears, whole, when the block ends without error."""
+    with whole_file(path) as part, pq.ParquetWriter(part, schema, compression="zstd") as writer:
+        yield writer
 
 
 def _groups(n_bodies: int, n_motions: int, n_scales: int) -> Iterator[tuple[slice, slice, slice]]:
