@@ -95,17 +95,32 @@ def _failing_time(p, which, c1, c2, q, end, h, a0, ramp):
         if not 0.0 < vertex < 1.0:
             return 2.0
         high = vertex * end
-        if hold_at(p, which, c1, c2, q, high, h, a0 + ramp * high) >= 0.0:
+        at_end = hold_at(p, which, c1, c2, q, high, h, a0 + ramp * high)
+        if at_end >= 0.0:
             return 2.0
     low = 0.0
     if at_start < 0.0:
         return 0.0
-    while high - low > 1e-13:
-        tau = 0.5 * (low + high)
-        if hold_at(p, which, c1, c2, q, tau, h, a0 + ramp * tau) >= 0.0:
+    # regula falsi, Illinois; the bracket closes to 1e-13 from both sides
+    moved = 0
+    for _ in range(200):
+        if high - low <= 1e-13:
+            break
+        tau = high - at_end * (high - low) / (at_end - at_start)
+        tau = min(max(tau, low + 4e-14), high - 4e-14)
+        hold = hold_at(p, which, c1, c2, q, tau, h, a0 + ramp * tau)
+        if hold >= 0.0:
             low = tau
+            at_start = hold
+            if moved == 1:
+                at_end *= 0.5
+            moved = 1
         else:
             high = tau
+            at_end = hold
+            if moved == -1:
+                at_start *= 0.5
+            moved = -1
     return high
 
 
@@ -167,7 +182,7 @@ def let_go(p, fails, stuck, c1, c2, theta1, omega1, theta2, omega2, a):
 
 @kernel
 def strike(
-    p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, a, closing_speed, forced, drop, fast,
+    p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, a, closing_speed, forced, drop, restoring,
     k, tau, dt, samples, last, scale, summary,
 ):  # fmt: skip
     """Contact state, velocities and kind of event after contacts close.
@@ -190,9 +205,25 @@ def strike(
         summary[FORCED if forced else CLOSURES] += 1.0
         kind = CHATTER
     elif theta1 == 0.0 and theta2 == 0.0 and (n1 != 0 or n2 != 0):
-        slow = max(abs(w1), abs(w2)) < fast
-        if slow and _chatter_dies(
-            p, c1, c2, omega1, omega2, n1, n2, w1, w2, drop, k, tau, dt, samples, last, scale
+        slow = max(abs(w1), abs(w2)) < restoring[9]
+        if slow and chatter_dies(
+            p,
+            restoring,
+            c1,
+            c2,
+            omega1,
+            omega2,
+            n1,
+            n2,
+            w1,
+            w2,
+            drop,
+            k,
+            tau,
+            dt,
+            samples,
+            last,
+            scale,
         ):
             n1, n2, w1, w2 = 0, 0, 0.0, 0.0
             summary[CLOSURES] += 1.0
@@ -202,12 +233,29 @@ def strike(
     return n1, n2, w1, w2, kind
 
 
+RESTORING = 10
+"""Numbers that ``restoring_table`` gives of a body."""
+
+
 @kernel
-def chatter_speed(p):
-    """Speed [rad/s] above which no chatter is closed: 0.2 D/p with the D of a still ground."""
+def restoring_table(p, table):
+    """Fill the numbers with which a chatter is closed at θ1 = θ2 = 0.
+
+    Four angular accelerations that bring the body back to rest on the ways in which it can leave it, each
+    a constant plus a factor times the ground acceleration; p²; and the speed above which no chatter is closed,
+    0.2 D/p with the D of a still ground.
+    """
+    n = 0
+    for c1, c2 in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        if c1 != 0 and p[FIXED] > 0.0:
+            table[n], table[n + 1] = math.inf, 0.0
+        else:
+            still = _restoring(p, c1, c2, 0.0)
+            table[n], table[n + 1] = still, _restoring(p, c1, c2, 1.0) - still
+        n += 2
     vx, vy = first_moment2(p, 1)
-    frequency = math.sqrt(p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, 1))
-    return 0.2 * _least_restoring(p, 0.0) / frequency
+    table[n] = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, 1)
+    table[n + 1] = 0.2 * _least_restoring(table, 0.0) / math.sqrt(table[n])
 
 
 @kernel
@@ -218,17 +266,17 @@ def _restoring(p, c1, c2, a):
 
 
 @kernel
-def _least_restoring(p, a):
+def _least_restoring(table, a):
     """Least restoring acceleration [rad/s²] over the ways in which the body can leave rest."""
-    least = min(_restoring(p, 0, 1, a), _restoring(p, 0, -1, a))
-    if p[FIXED] == 0.0:
-        least = min(least, _restoring(p, 1, 0, a), _restoring(p, -1, 0, a))
-    return least
+    return min(
+        min(table[0] + table[1] * a, table[2] + table[3] * a),
+        min(table[4] + table[5] * a, table[6] + table[7] * a),
+    )
 
 
 @kernel
-def _chatter_dies(
-    p, was1, was2, old1, old2, c1, c2, omega1, omega2, drop, k, tau, dt, samples, last, scale
+def chatter_dies(
+    p, restoring, was1, was2, old1, old2, c1, c2, omega1, omega2, drop, k, tau, dt, samples, last, scale
 ):  # fmt: skip
     """Whether the impacts that follow one at θ1 = θ2 = 0 are over before anything else can happen.
 
@@ -244,15 +292,14 @@ def _chatter_dies(
     e = math.sqrt(after / before)
     if e > 0.999:
         return False
-    vx, vy = first_moment2(p, 1)
-    frequency2 = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, 1)
+    frequency2 = restoring[8]
     # a pedestal that is thrown about lengthens the flights of the statue
     safety = 1.03 if p[FIXED] > 0.0 else 1.5
     least = math.inf
     for ahead in range(33):
         i = k + ahead
         a = samples[i] * scale if i <= last else 0.0
-        least = min(least, _least_restoring(p, a))
+        least = min(least, _least_restoring(restoring, a))
         if least <= 0.0 or speed * speed * frequency2 > 0.04 * least * least:
             return False
         if speed * speed > 2.0 * drop * least:

@@ -6,13 +6,16 @@ march goes on.  Every step size, root and decision depends on this one case alon
 
 import math
 
+import numpy as np
+
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._events import (
     FINE_DROP,
     MAX_EVENTS_PER_STEP,
-    chatter_speed,
+    RESTORING,
     let_go,
     next_event,
+    restoring_table,
     strike,
 )
 from rockfrag.rocking._mechanics import (
@@ -73,7 +76,8 @@ def march(
     c1, c2 = _first_contacts(theta1, omega1, theta2, omega2)
     c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, acceleration[0] * scale)
     ways_to_balance(p, q)
-    fast = chatter_speed(p)
+    restoring = np.zeros(RESTORING)
+    restoring_table(p, restoring)
     first = acceleration[0] * scale
     keep_sample(p, 0, c1, c2, theta1, omega1, theta2, omega2, first, history, summary)
     h = dt / substeps
@@ -120,7 +124,7 @@ def march(
                         theta2 = theta1
                     c1, c2, omega1, omega2, kind = strike(
                         p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, now,
-                        closing_speed, n_events > MAX_EVENTS_PER_STEP, FINE_DROP, fast, k,
+                        closing_speed, n_events > MAX_EVENTS_PER_STEP, FINE_DROP, restoring, k,
                         (sub + tau) / substeps, dt, acceleration, n - 1, scale, summary,
                     )  # fmt: skip
                 keep_event(

@@ -1,19 +1,22 @@
-"""Impacts of a stack that rocks on both contacts (patterns 1 and 2), from the tables of its contact states.
+"""Impacts of a stack from the tables of its contact states.
 
-The general treatment is in ``_mechanics.impact`` and ``_events.strike``; here are the two cases that make
-nearly all impacts of an ensemble: one contact of two closes, momentum is conserved, and both come off.
+The general treatment is in ``_mechanics.impact`` and ``_events.strike``; here are the cases that make nearly
+all impacts of an ensemble: one contact of two closes, momentum is conserved, and both come off; and a
+landing of what rocks alone (pattern 3 or 4), whose outcome is the same for every speed but for its size.
 """
 
 import math
 
 from rockfrag.rocking._compile import kernel
-from rockfrag.rocking._mechanics import I1, I2, M1, M2, arm1, arm2, reach
+from rockfrag.rocking._mechanics import I1, I2, M1, M2, arm1, arm2, impact, reach
 from rockfrag.rocking._pendulum import sine_cosine
-from rockfrag.rocking._stack_advance import LANES, M11, M22, V1X, V1Y, V2X, V2Y, E, F
+from rockfrag.rocking._stack_advance import CORNER, HOLD, LANES, M11, M22, V1X, V1Y, V2X, V2Y, E, F
 
 # Columns of the table of impacts: products of the velocity fields before and after.
 GROUND, BOTH11, BOTH12, BOTH21, BOTH22 = range(5)
-COLUMNS = 5
+# and of a landing: contacts and velocities after it, at unit speed before
+NEXT1, NEXT2, AFTER1, AFTER2 = range(5, 9)
+COLUMNS = 9
 
 CHATTER_ERROR = 1e-7
 """Largest ω² T [rad²/s] of a chatter that is closed at once; see ``chatter_closes``."""
@@ -41,6 +44,28 @@ def impact_table(p, table):
             row[BOTH12] = p[M2] * (ex * rx + ey * ry)
             row[BOTH21] = p[M2] * (dx * sx + dy * sy)
             row[BOTH22] = p[I2] + p[M2] * (rx * sx + ry * sy)
+    for c1, c2 in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        row = table[3 * c1 + c2 + 4]
+        n1, n2, w1, w2 = impact(p, c1, c2, c1 != 0, c2 != 0, 0.0, -1.0 * c1, 0.0, -1.0 * (c1 + c2))
+        row[NEXT1], row[NEXT2], row[AFTER1], row[AFTER2] = n1, n2, w1, w2
+
+
+@kernel
+def holds_at_landing(table, ground, omega, g):
+    """Whether the closed contact of pattern 3 or 4 still holds as the other comes down, at θ = 0.
+
+    ``ground``: acceleration of the ground; ``omega``: rate of what rocks.
+    """
+    x, y = table[V2Y // LANES], table[V2X // LANES]
+    alpha = -(ground * x - g * y) / table[M22 // LANES]
+    for corner in (0, CORNER):
+        moment = (table[HOLD + corner] + table[HOLD + corner + 2]) * alpha
+        moment += (table[HOLD + corner + 3] + table[HOLD + corner + 5]) * omega * omega
+        moment += (table[HOLD + corner + 6] + table[HOLD + corner + 8]) * ground
+        moment += table[HOLD + corner + 9] + table[HOLD + corner + 11]
+        if moment < 0.0:
+            return False
+    return True
 
 
 @kernel

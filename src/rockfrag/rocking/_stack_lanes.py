@@ -14,11 +14,12 @@ from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._events import (
     COARSE_DROP,
     MAX_EVENTS_PER_STEP,
-    chatter_speed,
-    hold_at,
+    RESTORING,
+    chatter_dies,
     let_go,
     next_event,
     rest_interval,
+    restoring_table,
     strike,
 )
 from rockfrag.rocking._lanes import next_uplift
@@ -71,14 +72,19 @@ from rockfrag.rocking._stack_advance import (
     commit,
     contact_table,
 )
-from rockfrag.rocking._stack_impacts import COLUMNS as PRODUCTS
 from rockfrag.rocking._stack_impacts import (
+    AFTER1,
+    AFTER2,
+    NEXT1,
+    NEXT2,
     chatter_closes,
     closed,
     ground_impact,
+    holds_at_landing,
     impact_table,
     interface_impact,
 )
+from rockfrag.rocking._stack_impacts import COLUMNS as PRODUCTS
 from rockfrag.rocking._step import GAP, series
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
@@ -123,7 +129,7 @@ def stack_cases(
     summary = np.zeros(SUMMARY)
     tables = np.zeros((n_bodies, 9, COLUMNS))
     products = np.zeros((n_bodies, 9, PRODUCTS))
-    about = np.zeros((n_bodies, 4))
+    about = np.zeros((n_bodies, 3 + RESTORING))
     known = np.zeros(n_bodies, dtype=np.bool_)
     cases = np.full(LANES, -1, dtype=np.int64)
     bodies = np.zeros(LANES, dtype=np.int64)
@@ -199,14 +205,11 @@ def stack_cases(
                     known_time = x[FLAG + i] == CLOSES
                     if known_time:
                         when, closes1, closes2 = _closing(c1, c2, q)
-                        if c1 == 0:
-                            known_time = (
-                                hold_at(p, 1, c1, c2, q, when, hr, now + rise * when) >= 0.0
-                            )
-                        elif c2 == 0:
-                            known_time = (
-                                hold_at(p, 2, c1, c2, q, when, hr, now + rise * when) >= 0.0
-                            )
+                        if c1 == 0 or c2 == 0:
+                            known_time = holds_at_landing(
+                                tables[bodies[i]][3 * c1 + c2 + 4], now + rise * when,
+                                slope(q, SERIES2, when) / hr, g,
+                            )  # fmt: skip
                     if not known_time:
                         when, fails, closes1, closes2 = next_event(p, c1, c2, q, hr, now, rise)
                     at = min(1.0, when)
@@ -233,18 +236,25 @@ def stack_cases(
                                 t2 = t1
                             impacts[i] += 1.0
                             b = bodies[i]
+                            forced = events[i] > MAX_EVENTS_PER_STEP
                             settled = False
-                            if c1 != 0 and c2 != 0 and closes1 != closes2 and p[MEASURED] == 0.0:
+                            if c1 == 0 or c2 == 0:
+                                if not closes1 or not closes2:
+                                    settled, n1, n2, v1, v2 = _land(
+                                        p, about[b], products[b][3 * c1 + c2 + 4], c1, c2, w2, now,
+                                        closing_speed, k, tau, h, samples, end, factor[i],
+                                    )  # fmt: skip
+                            elif closes1 != closes2 and p[MEASURED] == 0.0:
                                 settled, n1, n2, v1, v2 = _strike(
                                     tables[b], products[b], closes1, c1, c2, t1, w1, t2, w2, g,
                                     closing_speed, k, tau, h, samples, end, factor[i],
                                 )  # fmt: skip
-                            if settled and events[i] <= MAX_EVENTS_PER_STEP:
+                            if settled and not forced:
                                 c1, c2, w1, w2 = n1, n2, v1, v2
                             else:
                                 c1, c2, w1, w2, _ = strike(
                                     p, c1, c2, closes1, closes2, t1, w1, t2, w2, now, closing_speed,
-                                    events[i] > MAX_EVENTS_PER_STEP, COARSE_DROP, about[b, 3],
+                                    forced, COARSE_DROP, about[b, 3:],
                                     k, tau, h, samples, end, factor[i], summary,
                                 )  # fmt: skip
                         if events[i] > MAX_EVENTS_PER_STEP + 20:
@@ -305,7 +315,7 @@ def stack_cases(
                     impact_table(p, products[j])
                     about[j, 0], about[j, 1] = rest_interval(p)
                     about[j, 2] = barrier(p)
-                    about[j, 3] = chatter_speed(p)
+                    restoring_table(p, about[j, 3:])
                 factor[i] = factors[motion, case % n_scales]
                 row = rows[body, motion]
                 k = offsets[row]
@@ -450,6 +460,46 @@ def _strike(
             n1 = 0
         else:
             n2 = 0
+    return True, n1, n2, v1, v2
+
+
+@kernel
+def _land(
+    p, about, outcome, c1, c2, omega, a, closing_speed, k, tau, h, samples, end, factor
+):  # fmt: skip
+    """State after what rocks alone comes down: whether it is settled here, contacts and velocities."""
+    speed = abs(omega)
+    n1 = int(outcome[NEXT1])
+    n2 = int(outcome[NEXT2])
+    v1 = speed * outcome[AFTER1]
+    v2 = speed * outcome[AFTER2]
+    if n1 == 0 and n2 == 0:
+        return False, n1, n2, v1, v2
+    if (n1 != 0 and abs(v1) < closing_speed) or (n2 != 0 and abs(v2 - v1) < closing_speed):
+        return False, n1, n2, v1, v2
+    old1 = 0.0 if c1 == 0 else omega
+    restoring = about[3:]
+    if max(abs(v1), abs(v2)) < restoring[9] and chatter_dies(
+        p,
+        restoring,
+        c1,
+        c2,
+        old1,
+        omega,
+        n1,
+        n2,
+        v1,
+        v2,
+        COARSE_DROP,
+        k,
+        tau,
+        h,
+        samples,
+        end,
+        factor,
+    ):
+        n1, n2, v1, v2 = 0, 0, 0.0, 0.0
+    n1, n2 = settle(p, n1, n2, 0.0, v1, 0.0, v2, a)
     return True, n1, n2, v1, v2
 
 
