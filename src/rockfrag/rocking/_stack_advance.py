@@ -7,6 +7,7 @@ is the second; the first stands still, uncoupled.  Time is counted in samples.
 
 import math
 
+import numba
 import numpy as np
 
 from rockfrag.rocking._compile import kernel
@@ -144,6 +145,23 @@ def _interface_hold(p, c1, t):
         t[at + 10], t[at + 11] = -s2 * p[GRAVITY] * vy, -s2 * p[GRAVITY] * vx
 
 
+@numba.njit(inline="always", error_model="numpy")
+def _hops(gap, out, out_at_end, bend):
+    """Whether a contact that opens, and still opens at the end, may have closed in between.
+
+    The cubic through rate and acceleration at the start and rate at the end, over time, is
+    out + bend τ / 2 + c τ² / 3; it must have a minimum within the step that is negative, either by half.
+    """
+    c = out_at_end - out - bend
+    return (
+        (out >= 0.0)
+        & (out_at_end > 0.0)
+        & (gap + 0.5 * bend < 0.0)
+        & (-0.5 * bend < c)
+        & (bend * bend > 3.5 * out * c)
+    )
+
+
 @kernel
 def advance(x, g, hh):
     """Advance every lane to the end of its sample; flag those that need a closer look.
@@ -196,9 +214,7 @@ def advance(x, g, hh):
         dips = ((out1 < 0.0) & (in1 > 0.0) & (from1 * (in1 - out1) < out1 * out1)) | (
             (out2 < 0.0) & (in2 > 0.0) & (from2 * (in2 - out2) < out2 * out2)
         )
-        hops = ((out1 >= 0.0) & (in1 > 0.0) & (from1 + 0.5 * sign1 * p1 < 0.0)) | (
-            (out2 >= 0.0) & (in2 > 0.0) & (from2 + 0.5 * sign2 * (q1 - p1) < 0.0)
-        )
+        hops = _hops(from1, out1, in1, sign1 * p1) | _hops(from2, out2, in2, sign2 * (q1 - p1))
         lies = (max(abs(n1), abs(n2)) >= HALF_TURN) | (abs(n2 - n1) >= HALF_TURN)
         # a closed contact would have to be pulled
         square = w2 * w2

@@ -51,21 +51,23 @@ def impact_table(p, table):
 
 
 @kernel
-def holds_at_landing(table, ground, omega, g):
-    """Whether the closed contact of pattern 3 or 4 still holds as the other comes down, at θ = 0.
+def least_hold(table, theta, omega, ground, g):
+    """Least contact moment of the closed contact of pattern 3 or 4; negative if it would have to pull.
 
-    ``ground``: acceleration of the ground; ``omega``: rate of what rocks.
+    ``theta`` and ``omega`` are those of what rocks, ``ground`` the acceleration of the ground.
     """
-    x, y = table[V2Y // LANES], table[V2X // LANES]
-    alpha = -(ground * x - g * y) / table[M22 // LANES]
-    for corner in (0, CORNER):
-        moment = (table[HOLD + corner] + table[HOLD + corner + 2]) * alpha
-        moment += (table[HOLD + corner + 3] + table[HOLD + corner + 5]) * omega * omega
-        moment += (table[HOLD + corner + 6] + table[HOLD + corner + 8]) * ground
-        moment += table[HOLD + corner + 9] + table[HOLD + corner + 11]
-        if moment < 0.0:
-            return False
-    return True
+    s, c = sine_cosine(theta)
+    v2x, v2y = table[V2X // LANES], table[V2Y // LANES]
+    push = ground * (v2y * c - v2x * s) - g * (v2x * c + v2y * s)
+    alpha = -push / table[M22 // LANES]
+    least = math.inf
+    for at in (HOLD, HOLD + CORNER):
+        moment = (table[at] + table[at + 1] * s + table[at + 2] * c) * alpha
+        moment += (table[at + 3] + table[at + 4] * s + table[at + 5] * c) * omega * omega
+        moment += (table[at + 6] + table[at + 7] * s + table[at + 8] * c) * ground
+        moment += table[at + 9] + table[at + 10] * s + table[at + 11] * c
+        least = min(least, moment)
+    return least
 
 
 @kernel

@@ -80,9 +80,9 @@ from rockfrag.rocking._stack_impacts import (
     chatter_closes,
     closed,
     ground_impact,
-    holds_at_landing,
     impact_table,
     interface_impact,
+    least_hold,
 )
 from rockfrag.rocking._stack_impacts import COLUMNS as PRODUCTS
 from rockfrag.rocking._step import GAP, series
@@ -195,23 +195,29 @@ def stack_cases(
                     left = x[REST_OF + i]
                     now = x[GROUND + i]
                     rise = x[GROUND_END + i] - now
-                    t1, w1, t2, w2 = _state(x, i, c1, c2, h)
                     hr = h * left
+                    table = tables[bodies[i]][3 * c1 + c2 + 4]
+                    fails = 0
+                    closes1 = False
+                    closes2 = False
                     if at_release:
+                        t1, w1, t2, w2 = _state(x, i, c1, c2, h)
                         series(p, c1, c2, t1, w1, t2, w2, hr, now, rise, q)
+                        if x[BEFORE + i] == 1.0:
+                            fails = 1 if c1 == 0 else 2
+                            when = _release(table, q, hr, now, rise, g)
+                        else:
+                            when, fails, closes1, closes2 = next_event(p, c1, c2, q, hr, now, rise)
                     else:
                         _take_series(x, i, c1, c2, left, q)
-                    fails = 0
-                    known_time = x[FLAG + i] == CLOSES
-                    if known_time:
-                        when, closes1, closes2 = _closing(c1, c2, q)
-                        if c1 == 0 or c2 == 0:
-                            known_time = holds_at_landing(
-                                tables[bodies[i]][3 * c1 + c2 + 4], now + rise * when,
-                                slope(q, SERIES2, when) / hr, g,
-                            )  # fmt: skip
-                    if not known_time:
-                        when, fails, closes1, closes2 = next_event(p, c1, c2, q, hr, now, rise)
+                        surely = x[FLAG + i] == CLOSES
+                        if surely:
+                            when, closes1, closes2 = _closing(c1, c2, q)
+                            if c1 == 0 or c2 == 0:
+                                w2 = slope(q, SERIES2, when) / hr
+                                surely = least_hold(table, 0.0, w2, now + rise * when, g) >= 0.0
+                        if not surely:
+                            when, fails, closes1, closes2 = next_event(p, c1, c2, q, hr, now, rise)
                     at = min(1.0, when)
                     t1 = value(q, SERIES1, at) if c1 != 0 else 0.0
                     w1 = slope(q, SERIES1, at) / hr if c1 != 0 else 0.0
@@ -405,6 +411,42 @@ def _take_series(x, i, c1, c2, left, q):
     if c2 == 0:
         for n in range(8):
             q[SERIES1 + n] = q[SERIES2 + n]
+
+
+@kernel
+def _release(table, q, h, now, rise, g):
+    """Time in (0, 1] at which the closed contact of pattern 3 or 4 lets go, within 1e-13 after it.
+
+    It holds at the start of the step; regula falsi, Illinois.
+    """
+    low = 0.0
+    high = 1.0
+    at_low = least_hold(table, q[SERIES2], q[SERIES2 + 1] / h, now, g)
+    at_high = least_hold(table, value(q, SERIES2, 1.0), slope(q, SERIES2, 1.0) / h, now + rise, g)
+    if at_high >= 0.0:
+        return 1.0
+    moved = 0
+    for _ in range(200):
+        if high - low <= 1e-13:
+            break
+        tau = high - at_high * (high - low) / (at_high - at_low)
+        tau = min(max(tau, low + 4e-14), high - 4e-14)
+        hold = least_hold(
+            table, value(q, SERIES2, tau), slope(q, SERIES2, tau) / h, now + rise * tau, g
+        )
+        if hold >= 0.0:
+            low = tau
+            at_low = hold
+            if moved == 1:
+                at_high *= 0.5
+            moved = 1
+        else:
+            high = tau
+            at_high = hold
+            if moved == -1:
+                at_low *= 0.5
+            moved = -1
+    return high
 
 
 @kernel
