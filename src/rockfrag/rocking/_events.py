@@ -173,10 +173,11 @@ def let_go(p, fails, stuck, c1, c2, theta1, omega1, theta2, omega2, a):
     n1, n2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, a)
     if stuck and n1 == c1 and n2 == c2:
         # rounding at a threshold: open the contact that fails
+        alpha1, alpha2 = accelerations(p, c1, c2, theta1, omega1, theta2, omega2, a)
         if fails == 1:
-            _, n1 = ground_hold(p, c2, theta1, theta2, omega2, a, 0.0)
+            _, n1 = ground_hold(p, c2, theta1, theta2, omega2, a, alpha2)
         else:
-            _, n2 = interface_hold(p, c1, theta1, omega1, theta2, omega2, a, 0.0)
+            _, n2 = interface_hold(p, c1, theta1, omega1, theta2, omega2, a, alpha1)
     return n1, n2
 
 

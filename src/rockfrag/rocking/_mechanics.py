@@ -423,13 +423,14 @@ def impact(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2):
     measured restitution asks for.  Energy never grows: where a measured value would make it grow in
     this configuration, the impulse acts at the pole.
     """
-    n1, n2, w1, w2 = _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, True)
-    if p[MEASURED] == 0.0:
-        return n1, n2, w1, w2
     before = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
-    after = kinetic_energy(p, n1, n2, theta1, w1, theta2, w2)
-    if after > before * (1.0 + 1e-9):
-        n1, n2, w1, w2 = _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, False)
+    for measured in (True, False):
+        n1, n2, w1, w2 = _strike(
+            p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measured
+        )
+        after = kinetic_energy(p, n1, n2, theta1, w1, theta2, w2)
+        if p[MEASURED] == 0.0 or after <= before * (1.0 + 1e-9):
+            break
     return n1, n2, w1, w2
 
 

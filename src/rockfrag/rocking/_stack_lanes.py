@@ -17,7 +17,6 @@ from rockfrag.rocking._events import (
     RESTORING,
     chatter_dies,
     let_go,
-    next_event,
     rest_interval,
     restoring_table,
     strike,
@@ -34,7 +33,7 @@ from rockfrag.rocking._mechanics import (
     settle,
 )
 from rockfrag.rocking._pendulum import sine_cosine
-from rockfrag.rocking._series import ORDER, crossing_time, slope, value
+from rockfrag.rocking._series import ORDER, closing_time, crossing_time, slope, value
 from rockfrag.rocking._stack_advance import (
     BEFORE,
     BEFORE2,
@@ -85,7 +84,7 @@ from rockfrag.rocking._stack_impacts import (
     least_hold,
 )
 from rockfrag.rocking._stack_impacts import COLUMNS as PRODUCTS
-from rockfrag.rocking._step import GAP, series
+from rockfrag.rocking._step import GAP
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
 from rockfrag.rocking._tally import SUMMARY, balance, barrier, scratch
@@ -139,6 +138,7 @@ def stack_cases(
     frees = np.zeros(LANES, dtype=np.int64)
     events = np.zeros(LANES, dtype=np.int64)
     counted = np.zeros(LANES, dtype=np.int64)
+    releases = np.zeros(LANES, dtype=np.bool_)
     contact1 = np.zeros(LANES, dtype=np.int64)
     contact2 = np.zeros(LANES, dtype=np.int64)
     dts = np.ones(LANES)
@@ -162,7 +162,7 @@ def stack_cases(
                     continue
             elif case < 0:
                 continue
-            elif x[FLAG + i] == QUIET:
+            elif x[FLAG + i] == QUIET and not releases[i]:
                 k = where[i] + 1
                 where[i] = k
                 if k < ends[i]:
@@ -182,42 +182,34 @@ def stack_cases(
             fell = 0.0
             if case >= 0:
                 p = parameters[first_body + bodies[i]]
-                if x[FLAG + i] != QUIET:
-                    at_release = x[FLAG + i] == RELEASE
-                    if at_release and x[BEFORE + i] == 1.0:
-                        # it let go in the sample before
-                        k -= 1
-                        x[TH2 + i] = x[BEFORE2 + i]
-                        x[RATE2 + i] = x[BEFORE_RATE2 + i]
-                        x[GROUND_END + i] = x[GROUND + i]
-                        x[GROUND + i] = x[BEFORE_GROUND + i]
-                        x[REST_OF + i] = x[BEFORE_REST + i]
+                flag = x[FLAG + i]
+                if flag == RELEASE and x[BEFORE + i] == 1.0 and not releases[i]:
+                    # it let go in the sample before, which the next pass repeats
+                    where[i] = k - 1
+                    releases[i] = True
+                    _restore(x, i)
+                    continue
+                if flag != QUIET or releases[i]:
+                    if flag == QUIET:
+                        _restore(x, i)
                     left = x[REST_OF + i]
                     now = x[GROUND + i]
                     rise = x[GROUND_END + i] - now
                     hr = h * left
                     table = tables[bodies[i]][3 * c1 + c2 + 4]
+                    _take_series(x, i, c1, c2, left, q)
+                    surely = flag == CLOSES and not releases[i]
                     fails = 0
-                    closes1 = False
-                    closes2 = False
-                    if at_release:
-                        t1, w1, t2, w2 = _state(x, i, c1, c2, h)
-                        series(p, c1, c2, t1, w1, t2, w2, hr, now, rise, q)
-                        if x[BEFORE + i] == 1.0:
-                            fails = 1 if c1 == 0 else 2
-                            when = _release(table, q, hr, now, rise, g)
-                        else:
-                            when, fails, closes1, closes2 = next_event(p, c1, c2, q, hr, now, rise)
-                    else:
-                        _take_series(x, i, c1, c2, left, q)
-                        surely = x[FLAG + i] == CLOSES
-                        if surely:
-                            when, closes1, closes2 = _closing(c1, c2, q)
-                            if c1 == 0 or c2 == 0:
-                                w2 = slope(q, SERIES2, when) / hr
-                                surely = least_hold(table, 0.0, w2, now + rise * when, g) >= 0.0
-                        if not surely:
-                            when, fails, closes1, closes2 = next_event(p, c1, c2, q, hr, now, rise)
+                    if surely:
+                        when, closes1, closes2 = _closing(c1, c2, q)
+                        if c1 == 0 or c2 == 0:
+                            w2 = slope(q, SERIES2, when) / hr
+                            surely = least_hold(table, 0.0, w2, now + rise * when, g) >= 0.0
+                    if not surely:
+                        when, fails, closes1, closes2 = _next_event(
+                            c1, c2, table, q, hr, now, rise, g
+                        )
+                    releases[i] = False
                     at = min(1.0, when)
                     t1 = value(q, SERIES1, at) if c1 != 0 else 0.0
                     w1 = slope(q, SERIES1, at) / hr if c1 != 0 else 0.0
@@ -290,7 +282,7 @@ def stack_cases(
                             if k < 0:
                                 done = True
                             else:
-                                c1, c2 = _rise(parameters[first_body + bodies[i]], now)
+                                c1, c2 = _rise(parameters[first_body + bodies[i]], c1, c2, now)
                                 break
                     elif k >= end:
                         p = parameters[first_body + bodies[i]]
@@ -414,38 +406,79 @@ def _take_series(x, i, c1, c2, left, q):
 
 
 @kernel
-def _release(table, q, h, now, rise, g):
-    """Time in (0, 1] at which the closed contact of pattern 3 or 4 lets go, within 1e-13 after it.
+def _restore(x, i):
+    """Put a lane back to where its last step began."""
+    x[TH2 + i] = x[BEFORE2 + i]
+    x[RATE2 + i] = x[BEFORE_RATE2 + i]
+    x[GROUND_END + i] = x[GROUND + i]
+    x[GROUND + i] = x[BEFORE_GROUND + i]
+    x[REST_OF + i] = x[BEFORE_REST + i]
+    x[BEFORE + i] = 0.0
 
-    It holds at the start of the step; regula falsi, Illinois.
+
+@kernel
+def _next_event(c1, c2, table, q, h, now, rise, g):
+    """Time of the next event in this step, 2 if there is none; the contact that fails; what closes."""
+    when = 2.0
+    closes1 = False
+    closes2 = False
+    if c1 != 0:
+        for n in range(ORDER + 1):
+            q[GAP + n] = c1 * q[SERIES1 + n]
+        when = closing_time(q, GAP, 1.0)
+        closes1 = when <= 1.0
+    if c2 != 0:
+        for n in range(ORDER + 1):
+            q[GAP + n] = c2 * (q[SERIES2 + n] - q[SERIES1 + n])
+        time = closing_time(q, GAP, min(1.0, when))
+        if time < when:
+            when = time
+            closes1 = False
+            closes2 = True
+    if c1 == 0 or c2 == 0:
+        time = _release(table, q, min(1.0, when), h, now, rise, g)
+        if time < when:
+            return time, 1 if c1 == 0 else 2, False, False
+    return when, 0, closes1, closes2
+
+
+@kernel
+def _release(table, q, end, h, now, rise, g):
+    """Time up to ``end`` at which the closed contact of pattern 3 or 4 lets go; 2 if it holds.
+
+    Regula falsi, Illinois; the time is within 1e-13 after the release.
     """
     low = 0.0
-    high = 1.0
+    high = end
     at_low = least_hold(table, q[SERIES2], q[SERIES2 + 1] / h, now, g)
-    at_high = least_hold(table, value(q, SERIES2, 1.0), slope(q, SERIES2, 1.0) / h, now + rise, g)
-    if at_high >= 0.0:
-        return 1.0
+    if at_low < 0.0:
+        return 0.0
+    at_high = 0.0
     moved = 0
-    for _ in range(200):
+    for count in range(200):
         if high - low <= 1e-13:
             break
-        tau = high - at_high * (high - low) / (at_high - at_low)
-        tau = min(max(tau, low + 4e-14), high - 4e-14)
+        tau = high
+        if count > 0:
+            tau = high - at_high * (high - low) / (at_high - at_low)
+            tau = min(max(tau, low + 4e-14), high - 4e-14)
         hold = least_hold(
             table, value(q, SERIES2, tau), slope(q, SERIES2, tau) / h, now + rise * tau, g
         )
-        if hold >= 0.0:
-            low = tau
-            at_low = hold
-            if moved == 1:
-                at_high *= 0.5
-            moved = 1
-        else:
+        if hold < 0.0:
             high = tau
             at_high = hold
             if moved == -1:
                 at_low *= 0.5
             moved = -1
+        elif count == 0:
+            return 2.0
+        else:
+            low = tau
+            at_low = hold
+            if moved == 1:
+                at_high *= 0.5
+            moved = 1
     return high
 
 
@@ -588,13 +621,13 @@ def _uplift(k, tau, low, high, factor, samples, highest, lowest, end):
 
 
 @kernel
-def _rise(p, a):
-    """Contact state that a body at rest takes at or beyond the threshold ``a``."""
-    c1, c2 = settle(p, 0, 0, 0.0, 0.0, 0.0, 0.0, a)
+def _rise(p, c1, c2, a):
+    """Contact state that a body at rest, c1 = c2 = 0, takes at or beyond the threshold ``a``."""
+    c1, c2 = settle(p, c1, c2, 0.0, 0.0, 0.0, 0.0, a)
     if c1 == 0 and c2 == 0:
         # rounding at the threshold: open the contact with the least hold
-        hold1, corner1 = ground_hold(p, 0, 0.0, 0.0, 0.0, a, 0.0)
-        hold2, corner2 = interface_hold(p, 0, 0.0, 0.0, 0.0, 0.0, a, 0.0)
+        hold1, corner1 = ground_hold(p, c2, 0.0, 0.0, 0.0, a, 0.0)
+        hold2, corner2 = interface_hold(p, c1, 0.0, 0.0, 0.0, 0.0, a, 0.0)
         if hold1 <= hold2:
             return corner1, 0
         return 0, corner2
