@@ -206,29 +206,19 @@ def strike(
         summary[FORCED if forced else CLOSURES] += 1.0
         kind = CHATTER
     elif theta1 == 0.0 and theta2 == 0.0 and (n1 != 0 or n2 != 0):
-        slow = max(abs(w1), abs(w2)) < restoring[9]
-        if slow and chatter_dies(
-            p,
-            restoring,
-            c1,
-            c2,
-            omega1,
-            omega2,
-            n1,
-            n2,
-            w1,
-            w2,
-            drop,
-            k,
-            tau,
-            dt,
-            samples,
-            last,
-            scale,
-        ):
-            n1, n2, w1, w2 = 0, 0, 0.0, 0.0
-            summary[CLOSURES] += 1.0
-            kind = CHATTER
+        speed = max(abs(w1), abs(w2))
+        if speed < restoring[9]:
+            before = kinetic_energy(p, c1, c2, 0.0, omega1, 0.0, omega2)
+            after = kinetic_energy(p, n1, n2, 0.0, w1, 0.0, w2)
+            share = math.sqrt(after / before)
+            # a pedestal that is thrown about lengthens the flights of the statue
+            safety = 1.03 if p[FIXED] > 0.0 else 1.5
+            if chatter_dies(
+                speed, share, safety, restoring, 0, drop, k, tau, dt, samples, last, scale
+            ):
+                n1, n2, w1, w2 = 0, 0, 0.0, 0.0
+                summary[CLOSURES] += 1.0
+                kind = CHATTER
     if not forced:
         n1, n2 = settle(p, n1, n2, theta1, w1, theta2, w2, a)
     return n1, n2, w1, w2, kind
@@ -239,14 +229,14 @@ RESTORING = 10
 
 
 @kernel
-def restoring_table(p, table):
-    """Fill the numbers with which a chatter is closed at θ1 = θ2 = 0.
+def restoring_table(p, table, n):
+    """Fill, from place ``n``, the numbers with which a chatter is closed at θ1 = θ2 = 0.
 
     Four angular accelerations that bring the body back to rest on the ways in which it can leave it, each
     a constant plus a factor times the ground acceleration; p²; and the speed above which no chatter is closed,
     0.2 D/p with the D of a still ground.
     """
-    n = 0
+    start = n
     for c1, c2 in ((0, 1), (0, -1), (1, 0), (-1, 0)):
         if c1 != 0 and p[FIXED] > 0.0:
             table[n], table[n + 1] = math.inf, 0.0
@@ -256,7 +246,7 @@ def restoring_table(p, table):
         n += 2
     vx, vy = first_moment2(p, 1)
     table[n] = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, 1)
-    table[n + 1] = 0.2 * _least_restoring(table, 0.0) / math.sqrt(table[n])
+    table[n + 1] = 0.2 * _least_restoring(table, start, 0.0) / math.sqrt(table[n])
 
 
 @kernel
@@ -267,45 +257,39 @@ def _restoring(p, c1, c2, a):
 
 
 @kernel
-def _least_restoring(table, a):
+def _least_restoring(t, n, a):
     """Least restoring acceleration [rad/s²] over the ways in which the body can leave rest."""
     return min(
-        min(table[0] + table[1] * a, table[2] + table[3] * a),
-        min(table[4] + table[5] * a, table[6] + table[7] * a),
+        min(t[n] + t[n + 1] * a, t[n + 2] + t[n + 3] * a),
+        min(t[n + 4] + t[n + 5] * a, t[n + 6] + t[n + 7] * a),
     )
 
 
 @kernel
 def chatter_dies(
-    p, restoring, was1, was2, old1, old2, c1, c2, omega1, omega2, drop, k, tau, dt, samples, last, scale
+    speed, share, safety, restoring, at, drop, k, tau, dt, samples, last, scale
 ):  # fmt: skip
     """Whether the impacts that follow one at θ1 = θ2 = 0 are over before anything else can happen.
 
-    With a restoring acceleration of at least D, flights at speed ω last at most 2 ω / D, and impacts leave
-    the share e of the speed (√ of that of the kinetic energy), so together they last 2 ω / D / (1 - e).  If
-    the ground stays below the thresholds of rest that long, the body is at rest afterwards, whatever
-    the flights were like.  Flights of no more than D/p²/50 keep D within 2 %, and those of more than
-    ``drop`` [rad] are followed.
+    With a restoring acceleration of at least D, flights at ``speed`` ω last at most 2 ω / D, and impacts leave
+    the ``share`` e of the speed (√ of that of the kinetic energy), so together they last 2 ω / D / (1 - e),
+    here times ``safety``.  If the ground stays below the thresholds of rest that long, the body is at rest
+    afterwards, whatever the flights were like.  Flights of no more than D/p²/50 keep D within 2 %, and those of
+    more than ``drop`` [rad] are followed.  ``restoring`` holds a ``restoring_table`` from place ``at``.
     """
-    speed = max(abs(omega1), abs(omega2))
-    before = kinetic_energy(p, was1, was2, 0.0, old1, 0.0, old2)
-    after = kinetic_energy(p, c1, c2, 0.0, omega1, 0.0, omega2)
-    e = math.sqrt(after / before)
-    if e > 0.999:
+    if share > 0.999:
         return False
-    frequency2 = restoring[8]
-    # a pedestal that is thrown about lengthens the flights of the statue
-    safety = 1.03 if p[FIXED] > 0.0 else 1.5
+    frequency2 = restoring[at + 8]
     least = math.inf
     for ahead in range(33):
         i = k + ahead
         a = samples[i] * scale if i <= last else 0.0
-        least = min(least, _least_restoring(restoring, a))
+        least = min(least, _least_restoring(restoring, at, a))
         if least <= 0.0 or speed * speed * frequency2 > 0.04 * least * least:
             return False
         if speed * speed > 2.0 * drop * least:
             return False
-        time = safety * 2.0 * speed / (least * (1.0 - e))
+        time = safety * 2.0 * speed / (least * (1.0 - share))
         if ahead > 0 and time <= (ahead - tau) * dt:
             return True
         if time > 32.0 * dt:

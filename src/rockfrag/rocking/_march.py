@@ -77,7 +77,7 @@ def march(
     c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, acceleration[0] * scale)
     ways_to_balance(p, q)
     restoring = np.zeros(RESTORING)
-    restoring_table(p, restoring)
+    restoring_table(p, restoring, 0)
     first = acceleration[0] * scale
     keep_sample(p, 0, c1, c2, theta1, omega1, theta2, omega2, first, history, summary)
     h = dt / substeps

@@ -150,8 +150,8 @@ def crossing_time(q, row):
     zero and comes back before is for ``closing_time``.
     """
     q0 = max(0.0, q[row])
-    q1 = q[row + 1]
-    q2 = q[row + 2]
+    q1, q2, q3, q4 = q[row + 1], q[row + 2], q[row + 3], q[row + 4]
+    q5, q6, q7 = q[row + 5], q[row + 6], q[row + 7]
     square = q1 * q1 - 4.0 * q2 * q0
     tau = 0.5
     low = 0.0
@@ -170,11 +170,12 @@ def crossing_time(q, row):
     for _ in range(100):
         if not low < tau < high:
             tau = 0.5 * (low + high)
-        f = q[row + ORDER]
-        d = 0.0
-        for k in range(ORDER - 1, -1, -1):
-            d = d * tau + f
-            f = f * tau + q[row + k]
+        # pairs of terms side by side, which is quicker than Horner's chain
+        t2 = tau * tau
+        t4 = t2 * t2
+        f = (q0 + q1 * tau) + t2 * (q2 + q3 * tau) + t4 * ((q4 + q5 * tau) + t2 * (q6 + q7 * tau))
+        d = (q1 + 2.0 * q2 * tau) + t2 * (3.0 * q3 + 4.0 * q4 * tau)
+        d += t4 * ((5.0 * q5 + 6.0 * q6 * tau) + 7.0 * q7 * t2)
         if f > 0.0:
             low = tau
         else:

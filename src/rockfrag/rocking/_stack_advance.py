@@ -28,11 +28,11 @@ HALF_TURN = 0.5 * math.pi
 
 # What a contact state fixes: columns of the table of a body and, times LANES, rows of the lanes.
 (
-    V1X,  # first moments
+    V1X,  # first moments times the sampling interval squared
     V1Y,
     V2X,
     V2Y,
-    PER_SPEED11,  # (1 over critical angle and frequency)² of the pedestal, by either rotation
+    PER_SPEED11,  # (1 over critical angle, frequency and interval)² of the pedestal, by either rotation
     PER_SPEED12,
     PER_SPEED22,  # and of the statue
     PER_ANGLE11,  # 1 over the critical angle, likewise, positive on the side of the pole
@@ -61,88 +61,91 @@ CORNER = 12
     TH1, RATE1, TH2, RATE2,
     GROUND, GROUND_END,  # acceleration now and at the end of the sample
     REST_OF,  # the part of the sample that is left
-    NEW1, NEW_RATE1, NEW2, NEW_RATE2,
     FLAG,
     BEFORE2, BEFORE_RATE2, BEFORE_GROUND, BEFORE_REST, BEFORE,  # where the step before began, if it had no event
     P1, P2, P3, P4, P5, P6,  # Taylor coefficients of both rates
     Q1, Q2, Q3, Q4, Q5, Q6,
     RATIO1, RATIO2, FAST, NEAR,  # extremes of the case so far
-) = (LANES * row for row in range(COLUMNS, COLUMNS + 33))  # fmt: skip
-ROWS = COLUMNS + 33
+) = (LANES * row for row in range(COLUMNS, COLUMNS + 29))  # fmt: skip
+ROWS = COLUMNS + 29
 
 QUIET, CLOSES, RELEASE, NEARS = 0.0, 1.0, 2.0, 3.0
 
 
 @kernel
-def contact_table(p, table):
-    """Fill the (9, COLUMNS) table of a body, the row 3 c1 + c2 + 4 for contact state (c1, c2)."""
+def contact_table(p, hh, t, start):
+    """Fill, from place ``start``, what the contact states of a body fix; ``hh``: sampling interval squared.
+
+    Row 3 c1 + c2 + 4, of COLUMNS each, is for contact state (c1, c2).
+    """
     g = p[GRAVITY]
-    table[:] = 0.0
     for c1 in (-1, 0, 1):
         for c2 in (-1, 0, 1):
-            t = table[3 * c1 + c2 + 4]
-            t[M11 // LANES] = 1.0
-            t[M22 // LANES] = 1.0
+            o = start + COLUMNS * (3 * c1 + c2 + 4)
+            for n in range(COLUMNS):
+                t[o + n] = 0.0
+            t[o + M11 // LANES] = 1.0
+            t[o + M22 // LANES] = 1.0
             if c1 == 0 and c2 == 0:
                 continue
             if c1 != 0:
                 critical, vx, vy, inertia = balance(p, c1, c2)
                 slot = 1 if c2 == 0 else 0
-                t[PER_ANGLE11 // LANES + slot] = c1 / critical
-                t[PER_SPEED11 // LANES + slot] = inertia / (
-                    g * math.hypot(vx, vy) * critical * critical
-                )
-                t[SIGN1 // LANES] = c1 if c2 != 0 else 0
-                t[SIGN2 // LANES] = c1
+                t[o + PER_ANGLE11 // LANES + slot] = c1 / critical
+                per = hh * g * math.hypot(vx, vy) * critical * critical
+                t[o + PER_SPEED11 // LANES + slot] = inertia / per
+                t[o + SIGN1 // LANES] = c1 if c2 != 0 else 0
+                t[o + SIGN2 // LANES] = c1
             if c2 != 0:
                 vx, vy = first_moment2(p, c2)
                 critical = math.atan2(-c2 * vx, vy)
-                t[PER_ANGLE22 // LANES] = c2 / critical
-                t[PER_SPEED22 // LANES] = inertia2(p, c2) / (
-                    g * math.hypot(vx, vy) * critical * critical
-                )
-                t[SIGN2 // LANES] = c2
-                t[M22 // LANES] = inertia2(p, c2)
-                t[V2X // LANES], t[V2Y // LANES] = vx, vy
+                t[o + PER_ANGLE22 // LANES] = c2 / critical
+                per = hh * g * math.hypot(vx, vy) * critical * critical
+                t[o + PER_SPEED22 // LANES] = inertia2(p, c2) / per
+                t[o + SIGN2 // LANES] = c2
+                t[o + M22 // LANES] = inertia2(p, c2)
+                t[o + V2X // LANES], t[o + V2Y // LANES] = hh * vx, hh * vy
             if c1 != 0 and c2 != 0:
-                t[M11 // LANES] = inertia1(p, c1, c2)
-                t[E // LANES], t[F // LANES] = coupling(p, c1, c2)
-                t[V1X // LANES], t[V1Y // LANES] = first_moment1(p, c1, c2)
+                t[o + M11 // LANES] = inertia1(p, c1, c2)
+                t[o + E // LANES], t[o + F // LANES] = coupling(p, c1, c2)
+                vx, vy = first_moment1(p, c1, c2)
+                t[o + V1X // LANES], t[o + V1Y // LANES] = hh * vx, hh * vy
             elif c1 != 0:
                 e, _ = coupling(p, c1, 1)
                 v1x, v1y = first_moment1(p, c1, 1)
                 v2x, v2y = first_moment2(p, 1)
-                t[M22 // LANES] = inertia1(p, c1, 1) + 2.0 * e + inertia2(p, 1)
-                t[V2X // LANES], t[V2Y // LANES] = v1x + v2x, v1y + v2y
-                _interface_hold(p, c1, t)
+                t[o + M22 // LANES] = inertia1(p, c1, 1) + 2.0 * e + inertia2(p, 1)
+                t[o + V2X // LANES], t[o + V2Y // LANES] = hh * (v1x + v2x), hh * (v1y + v2y)
+                _interface_hold(p, c1, hh, t, o + HOLD)
             else:
-                _ground_hold(p, c2, t)
+                _ground_hold(p, c2, hh, t, o + HOLD)
 
 
 @kernel
-def _ground_hold(p, c2, t):
+def _ground_hold(p, c2, hh, t, o):
     """Moments of the ground on a standing pedestal in pattern 4 (``_mechanics.ground_hold``)."""
-    for s1, at in ((1, HOLD), (-1, HOLD + CORNER)):
+    for s1, at in ((1, o), (-1, o + CORNER)):
         e, f = coupling(p, s1, c2)
         vx, vy = first_moment1(p, s1, c2)
         # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
         t[at + 1], t[at + 2] = s1 * f, s1 * e
         t[at + 4], t[at + 5] = -s1 * e, s1 * f
-        t[at + 6] = s1 * vy
-        t[at + 9] = -s1 * p[GRAVITY] * vx
+        t[at + 6] = s1 * hh * vy
+        t[at + 9] = -s1 * hh * p[GRAVITY] * vx
 
 
 @kernel
-def _interface_hold(p, c1, t):
+def _interface_hold(p, c1, hh, t, o):
     """Moments of the interface on the statue that turns with its pedestal (``interface_hold``)."""
-    for s2, at in ((1, HOLD), (-1, HOLD + CORNER)):
+    for s2, at in ((1, o), (-1, o + CORNER)):
         e, f = coupling(p, c1, s2)
         vx, vy = first_moment2(p, s2)
         # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
         t[at] = s2 * (e + inertia2(p, s2))
         t[at + 3] = -s2 * f
-        t[at + 7], t[at + 8] = -s2 * vx, s2 * vy
-        t[at + 10], t[at + 11] = -s2 * p[GRAVITY] * vy, -s2 * p[GRAVITY] * vx
+        weight = s2 * hh * p[GRAVITY]
+        t[at + 7], t[at + 8] = -s2 * hh * vx, s2 * hh * vy
+        t[at + 10], t[at + 11] = -weight * vy, -weight * vx
 
 
 @numba.njit(inline="always", error_model="numpy")
@@ -163,14 +166,11 @@ def _hops(gap, out, out_at_end, bend):
 
 
 @kernel
-def advance(x, g, hh):
-    """Advance every lane to the end of its sample; flag those that need a closer look.
-
-    ``hh`` is the sampling interval squared of each lane [s²].
-    """
+def advance(x, g):
+    """Advance every lane to the end of its sample; flag those with an event, which stay where they are."""
     for i in range(LANES):
         left = x[REST_OF + i]
-        scale = hh[i] * left * left
+        scale = left * left
         t1 = x[TH1 + i]
         t2 = x[TH2 + i]
         w1 = x[RATE1 + i] * left
@@ -197,10 +197,6 @@ def advance(x, g, hh):
         z2 = rate(w2, q1, q2, q3, q4, q5, q6, 1.0)
         x[P1 + i], x[P2 + i], x[P3 + i], x[P4 + i], x[P5 + i], x[P6 + i] = p1, p2, p3, p4, p5, p6
         x[Q1 + i], x[Q2 + i], x[Q3 + i], x[Q4 + i], x[Q5 + i], x[Q6 + i] = q1, q2, q3, q4, q5, q6
-        x[NEW1 + i] = n1
-        x[NEW2 + i] = n2
-        x[NEW_RATE1 + i] = z1 / left
-        x[NEW_RATE2 + i] = z2 / left
         # a contact closes, nearly closes, or may close and open again
         sign1 = x[SIGN1 + i]
         sign2 = x[SIGN2 + i]
@@ -230,37 +226,27 @@ def advance(x, g, hh):
         flag = NEARS if dips | hops | lies else flag
         flag = RELEASE if (right < 0.0) | (other < 0.0) else flag
         x[FLAG + i] = flag
-
-
-@kernel
-def commit(x, hh):
-    """Let the lanes without an event take over what ``advance`` found, and keep its extremes."""
-    for i in range(LANES):
-        quiet = x[FLAG + i] == QUIET
-        t2 = x[TH2 + i]
-        w2 = x[RATE2 + i]
-        n1 = x[NEW1 + i]
-        n2 = x[NEW2 + i]
-        z1 = x[NEW_RATE1 + i]
-        z2 = x[NEW_RATE2 + i]
+        # without an event the lane is at the end of the sample
+        quiet = flag == QUIET
+        z1 = z1 / left
+        z2 = z2 / left
         ratio1 = x[PER_ANGLE11 + i] * n1 + x[PER_ANGLE12 + i] * n2
         ratio2 = x[PER_ANGLE22 + i] * n2
-        per = 1.0 / hh[i]
         away1 = (1.0 - ratio1) * (1.0 - ratio1)
-        away1 += (x[PER_SPEED11 + i] * z1 * z1 + x[PER_SPEED12 + i] * z2 * z2) * per
-        away2 = (1.0 - ratio2) * (1.0 - ratio2) + x[PER_SPEED22 + i] * z2 * z2 * per
+        away1 += x[PER_SPEED11 + i] * z1 * z1 + x[PER_SPEED12 + i] * z2 * z2
+        away2 = (1.0 - ratio2) * (1.0 - ratio2) + x[PER_SPEED22 + i] * z2 * z2
         x[RATIO1 + i] = max(x[RATIO1 + i], ratio1 if quiet else 0.0)
         x[RATIO2 + i] = max(x[RATIO2 + i], ratio2 if quiet else 0.0)
         x[FAST + i] = max(x[FAST + i], abs(z2) if quiet else 0.0)
         x[NEAR + i] = min(x[NEAR + i], min(away1, away2) if quiet else np.inf)
         x[BEFORE2 + i] = t2 if quiet else x[BEFORE2 + i]
-        x[BEFORE_RATE2 + i] = w2 if quiet else x[BEFORE_RATE2 + i]
-        x[BEFORE_GROUND + i] = x[GROUND + i] if quiet else x[BEFORE_GROUND + i]
-        x[BEFORE_REST + i] = x[REST_OF + i] if quiet else x[BEFORE_REST + i]
+        x[BEFORE_RATE2 + i] = x[RATE2 + i] if quiet else x[BEFORE_RATE2 + i]
+        x[BEFORE_GROUND + i] = a if quiet else x[BEFORE_GROUND + i]
+        x[BEFORE_REST + i] = left if quiet else x[BEFORE_REST + i]
         x[BEFORE + i] = 1.0 if quiet else x[BEFORE + i]
-        x[TH1 + i] = n1 if quiet else x[TH1 + i]
+        x[TH1 + i] = n1 if quiet else t1
         x[TH2 + i] = n2 if quiet else t2
         x[RATE1 + i] = z1 if quiet else x[RATE1 + i]
-        x[RATE2 + i] = z2 if quiet else w2
-        x[GROUND + i] = x[GROUND_END + i] if quiet else x[GROUND + i]
-        x[REST_OF + i] = 1.0 if quiet else x[REST_OF + i]
+        x[RATE2 + i] = z2 if quiet else x[RATE2 + i]
+        x[GROUND + i] = x[GROUND_END + i] if quiet else a
+        x[REST_OF + i] = 1.0 if quiet else left

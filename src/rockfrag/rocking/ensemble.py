@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -28,8 +28,8 @@ from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 
-CHUNK = 512
-"""Cases that a thread takes at a time."""
+LEAST_CHUNK = 128
+"""Fewest cases that a thread takes at a time, unless fewer are left."""
 
 
 @dataclass(frozen=True)
@@ -133,9 +133,18 @@ def _in_parallel(kernel: Any, count: int, workers: int, work: Callable[[int, int
     """Call ``work(first, last)``, which calls ``kernel``, on chunks of ``count`` cases."""
     with compiling_alone(kernel):
         work(0, 0)
-    starts = range(0, count, CHUNK)
     with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(lambda first: work(first, min(first + CHUNK, count)), starts))
+        list(pool.map(lambda chunk: work(*chunk), _chunks(count, workers)))
+
+
+def _chunks(count: int, workers: int) -> Iterator[tuple[int, int]]:
+    """Cut the cases into chunks: large ones first, as lanes run dry at the end of each, small ones last."""
+    first = 0
+    while first < count:
+        left = count - first
+        size = left if workers == 1 else min(left, max(LEAST_CHUNK, left // (2 * workers)))
+        yield first, first + size
+        first += size
 
 
 @dataclass(frozen=True)
