@@ -224,10 +224,6 @@ def strike(
     return n1, n2, w1, w2, kind
 
 
-RESTORING = 10
-"""Numbers that ``restoring_table`` gives of a body."""
-
-
 @kernel
 def restoring_table(p, table, n):
     """Fill, from place ``n``, the numbers with which a chatter is closed at θ1 = θ2 = 0.

@@ -14,7 +14,7 @@ import math
 import numba
 import numpy as np
 
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import allocating_kernel, kernel
 from rockfrag.rocking._pendulum import rate, rates, sine_cosine, travel
 
 LANES = 32
@@ -350,7 +350,7 @@ def next_uplift(samples, highest, lowest, k, end, low, high):
     return -1
 
 
-@kernel
+@allocating_kernel
 def lone_blocks(
     first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low, results
 ):  # fmt: skip
@@ -371,7 +371,6 @@ def lone_blocks(
     -------
     Number of samples that lanes were advanced by.
     """
-    n_motions, n_scales = factors.shape
     x = np.zeros(ROWS * LANES)
     where = np.zeros(LANES, dtype=np.int64)
     ends = np.zeros(LANES, dtype=np.int64)
@@ -382,6 +381,19 @@ def lone_blocks(
     factor = np.zeros(LANES)
     signed = np.zeros(LANES)
     bases = np.zeros(LANES, dtype=np.int64)
+    return _march(
+        first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
+        results, x, where, ends, starts, sides, cases, moves, factor, signed, bases,
+    )  # fmt: skip
+
+
+@kernel
+def _march(
+    first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
+    results, x, where, ends, starts, sides, cases, moves, factor, signed, bases,
+):  # fmt: skip
+    """``lone_blocks`` with its working arrays, one entry per lane in most of them."""
+    n_motions, n_scales = factors.shape
     b = table
     tally = results
     o = 0

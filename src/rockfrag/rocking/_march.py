@@ -6,13 +6,10 @@ march goes on.  Every step size, root and decision depends on this one case alon
 
 import math
 
-import numpy as np
-
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._events import (
     FINE_DROP,
     MAX_EVENTS_PER_STEP,
-    RESTORING,
     let_go,
     next_event,
     restoring_table,
@@ -23,7 +20,7 @@ from rockfrag.rocking._mechanics import (
     settle,
 )
 from rockfrag.rocking._series import slope, value
-from rockfrag.rocking._step import TH1, TH2, series
+from rockfrag.rocking._step import RESTORING, TH1, TH2, series
 from rockfrag.rocking._tally import (
     CLOSEST,
     FALL_TIME,
@@ -76,8 +73,7 @@ def march(
     c1, c2 = _first_contacts(theta1, omega1, theta2, omega2)
     c1, c2 = settle(p, c1, c2, theta1, omega1, theta2, omega2, acceleration[0] * scale)
     ways_to_balance(p, q)
-    restoring = np.zeros(RESTORING)
-    restoring_table(p, restoring, 0)
+    restoring_table(p, q, RESTORING)
     first = acceleration[0] * scale
     keep_sample(p, 0, c1, c2, theta1, omega1, theta2, omega2, first, history, summary)
     h = dt / substeps
@@ -124,7 +120,7 @@ def march(
                         theta2 = theta1
                     c1, c2, omega1, omega2, kind = strike(
                         p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, now,
-                        closing_speed, n_events > MAX_EVENTS_PER_STEP, FINE_DROP, restoring, k,
+                        closing_speed, n_events > MAX_EVENTS_PER_STEP, FINE_DROP, q[RESTORING:], k,
                         (sub + tau) / substeps, dt, acceleration, n - 1, scale, summary,
                     )  # fmt: skip
                 keep_event(

@@ -11,7 +11,7 @@ where the row of a contact state begins.
 import math
 
 from rockfrag.rocking._compile import kernel
-from rockfrag.rocking._events import RESTORING, restoring_table
+from rockfrag.rocking._events import restoring_table
 from rockfrag.rocking._mechanics import (
     I1,
     I2,
@@ -40,6 +40,7 @@ from rockfrag.rocking._stack_advance import (
 )
 from rockfrag.rocking._stack_advance import E as E_ROW
 from rockfrag.rocking._stack_advance import F as F_ROW
+from rockfrag.rocking._step import RESTORED
 
 # Rows of impacts, one per contact state before: products of the velocity fields before and after, ...
 GROUND, BOTH11, BOTH12, BOTH21, BOTH22 = range(5)
@@ -51,7 +52,7 @@ PRODUCTS = 10
 STATES = 0
 IMPACTS = STATES + 9 * COLUMNS
 RESTORING_AT = IMPACTS + 9 * PRODUCTS
-HAS_MEASURED = RESTORING_AT + RESTORING
+HAS_MEASURED = RESTORING_AT + RESTORED
 TABLE = HAS_MEASURED + 1
 
 CHATTER_ERROR = 1e-7

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import allocating_kernel, kernel
 from rockfrag.rocking._events import MAX_EVENTS_PER_STEP, let_go, rest_interval
 from rockfrag.rocking._lanes import next_uplift
 from rockfrag.rocking._mechanics import (
@@ -64,7 +64,7 @@ FALLEN, CERTAIN, PEAK1, PEAK2, SPEED, IMPACTS, CLOSEST = range(7)
 RESULTS = 7
 
 
-@kernel
+@allocating_kernel
 def stack_cases(
     first, last, parameters, intervals, free, factors, rows, offsets, lasts, samples, highest, lowest,
     closing_speed, results,
@@ -88,10 +88,7 @@ def stack_cases(
     -------
     Number of samples that lanes were advanced by.
     """
-    n_motions, n_scales = factors.shape
-    g = parameters[0, GRAVITY]
     x = np.zeros(ROWS * LANES)
-    q = scratch()
     summary = np.zeros(SUMMARY)
     # table of the body of each lane, and which body and interval it is for
     t = np.zeros(LANES * TABLE)
@@ -112,6 +109,25 @@ def stack_cases(
     contact2 = np.zeros(LANES, dtype=np.int64)
     factor = np.zeros(LANES)
     impacts = np.zeros(LANES)
+    q = scratch()
+    return _march(
+        first, last, parameters, intervals, free, factors, rows, offsets, lasts, samples, highest, lowest,
+        closing_speed, results,
+        q, x, summary, t, bodies, intervals_of, low, high, least_energy, cases, where, starts, ends, frees, events,
+    counted, repeats, contact1, contact2, factor, impacts,
+    )  # fmt: skip
+
+
+@kernel
+def _march(
+    first, last, parameters, intervals, free, factors, rows, offsets, lasts, samples, highest, lowest,
+    closing_speed, results,
+    q, x, summary, t, bodies, intervals_of, low, high, least_energy, cases, where, starts, ends, frees, events,
+    counted, repeats, contact1, contact2, factor, impacts,
+):  # fmt: skip
+    """``stack_cases`` with its working arrays, one entry per lane in most of them."""
+    n_motions, n_scales = factors.shape
+    g = parameters[0, GRAVITY]
     upcoming = first
     busy = 0
     passes = 0

@@ -16,7 +16,9 @@ from rockfrag.rocking._series import ORDER, extend_circular, extend_rotation
 TH1, TH2, SIN1, COS1, SIN2, COS2, SIND, COSD, DELTA, GAP = (row * (ORDER + 1) for row in range(10))
 # Critical angles and squared frequencies of the ways to balance: see _tally.
 CRITICAL, FREQUENCY2 = 10 * (ORDER + 1), 11 * (ORDER + 1)
-SCRATCH = 12 * (ORDER + 1)
+# What chatter at rest is closed with: see _events.restoring_table.
+RESTORING, RESTORED = 12 * (ORDER + 1), 10
+SCRATCH = RESTORING + RESTORED
 
 
 @kernel

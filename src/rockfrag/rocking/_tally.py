@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import allocating_kernel, kernel
 from rockfrag.rocking._mechanics import (
     FIXED,
     GRAVITY,
@@ -186,7 +186,7 @@ def keep_event(
     summary[REST_TIME] = clock if c1 == 0 and c2 == 0 else math.nan
 
 
-@kernel
+@allocating_kernel
 def scratch():
     """Scratch array of a march."""
     return np.zeros(SCRATCH)
