@@ -15,13 +15,9 @@ from cases import Cases
 from numpy.typing import NDArray
 
 from rockfrag.rocking import _lanes as lanes
-from rockfrag.rocking import ensemble
-from rockfrag.rocking._step import TH1, series
-from rockfrag.rocking._tally import scratch
+from rockfrag.rocking import _stack_lanes as stack_lanes
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
-from rockfrag.rocking.parameters import body_parameters
-from rockfrag.rocking.simulation import simulate
 
 SEPARATE = Path(__file__).with_name("separate.py")
 Array = NDArray[np.float64]
@@ -73,99 +69,59 @@ def two_thread_ratio(cases: Cases, repeats: int = 3) -> float:
 
 
 @numba.njit(nogil=True)  # type: ignore[misc]
-def _only_lanes(rows: Array, count: int) -> None:
+def _only_lone(rows: Array, count: int) -> None:
     for _ in range(count):
         lanes.advance(rows)
 
 
-def lone_limit(cases: Cases) -> tuple[float, float]:
+@numba.njit(nogil=True)  # type: ignore[misc]
+def _only_stacks(rows: Array, count: int) -> None:
+    for _ in range(count):
+        stack_lanes.advance(rows, 9.81)
+
+
+def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
     """CPU time of all cases over that of as many lane steps of smooth arithmetic; steps per case."""
+    module, name = (lanes, "lone_blocks") if kind == "lone" else (stack_lanes, "stack_cases")
     steps = 0
-    kernel = lanes.lone_blocks
+    kernel = getattr(module, name)
 
-    def counted(*arguments: object) -> int:
-        nonlocal steps
-        done = int(kernel(*arguments))
-        steps += done
-        return done
+    class Counted:
+        """The kernel, adding up the steps it says it took."""
 
-    ensemble.lanes.lone_blocks = counted
+        def __getattr__(self, attribute: str) -> object:
+            return getattr(kernel, attribute)
+
+        def __call__(self, *arguments: object) -> None:
+            nonlocal steps
+            steps += int(kernel(*arguments))
+
+    setattr(module, name, Counted())
     try:
         all_cases(cases)
     finally:
-        ensemble.lanes.lone_blocks = kernel
-    count = steps // lanes.LANES
+        setattr(module, name, kernel)
+    count = steps // module.LANES
 
     def smooth() -> None:
-        rows = np.zeros(lanes.ROWS * lanes.LANES)
-        for row, value in (
-            (lanes.PSI, 0.2), (lanes.ANGLE, 0.25), (lanes.KAPPA, 1e-3), (lanes.CREST, 10.0),
-        ):  # fmt: skip
-            rows[row : row + lanes.LANES] = value
-        _only_lanes(rows, count)
+        rows = np.zeros(module.ROWS * module.LANES)
+        for row, value in _STILL[kind].items():
+            rows[row : row + module.LANES] = value
+        (_only_lone if kind == "lone" else _only_stacks)(rows, count)
 
     smooth()
     ratio = min(cpu_seconds(lambda: all_cases(cases), 1) / cpu_seconds(smooth, 1) for _ in range(5))
     return ratio, steps / cases.count
 
 
-@numba.njit(nogil=True)  # type: ignore[misc]
-def _only_series(parameters: Array, states: Array, ground: Array, h: float, q: Array) -> float:
-    """Fill the series at every sample; the last column of ``states`` is the sample's number."""
-    total = 0.0
-    for k in range(len(states)):
-        s = states[k]
-        n = int(s[6])
-        series(
-            parameters, int(s[0]), int(s[1]), s[2], s[3], s[4], s[5], h, ground[n],
-            ground[n + 1] - ground[n], q,
-        )  # fmt: skip
-        total += q[TH1 + 2]
-    return total
-
-
-def _moving(body: Body, values: Array, dt: float) -> Array:
-    """Contacts, rotations, velocities and number of every sample at which the body is not at rest."""
-    response = simulate(body, values, dt)
-    last = min(len(response.time), values.size)
-    theta, omega = response.theta[:last], response.omega[:last]
-    states = np.column_stack(
-        [
-            response.state[:last],
-            theta[:, 0],
-            omega[:, 0],
-            theta[:, 1],
-            omega[:, 1],
-            np.arange(last),
-        ]
-    )
-    return np.ascontiguousarray(states[response.state[:last].any(axis=1)], dtype=float)
-
-
-def stack_limit(cases: Cases, count: int = 100) -> float:
-    """CPU time of cases over that of the series of their two rotations alone, at the same samples."""
-    chosen = list(cases.each(count, seed=3))
-    q = scratch()
-    given = [
-        (body_parameters(body, None), _moving(body, values, cases.dt), np.append(values, 0.0))
-        for _, body, values in chosen
-    ]
-
-    def smooth() -> None:
-        for p, states, ground in given:
-            _only_series(p, states, ground, cases.dt, q)
-
-    def whole(scale: float) -> None:
-        for _, body, values in chosen:
-            overturns(body, values, cases.dt, [scale], threads=1)
-
-    smooth()
-    # what calls cost that have nothing to march is taken off
-    return min(
-        (cpu_seconds(lambda: whole(1.0), 1) - cpu_seconds(lambda: whole(0.0), 1))
-        / cpu_seconds(smooth, 1)
-        for _ in range(5)
-    )
+# what a lane steps on with for ever: no event, no division by zero
+_STILL: dict[str, dict[int, float]] = {
+    "lone": {lanes.PSI: 0.2, lanes.ANGLE: 0.25, lanes.KAPPA: 1e-3, lanes.CREST: 10.0},
+    "stack": {
+        stack_lanes.TH1: 0.1, stack_lanes.TH2: 0.2, stack_lanes.M11: 3.0, stack_lanes.M22: 2.0,
+        stack_lanes.REST_OF: 1.0,
+    },
+}  # fmt: skip
 
 
 def separately(*arguments: object, cache: Path | None = None) -> float:

@@ -22,9 +22,8 @@ from measures import (
     all_cases,
     converged,
     cpu_seconds,
-    lone_limit,
+    over_limit,
     separately,
-    stack_limit,
     start_up,
     thesis_bodies,
     two_thread_ratio,
@@ -263,10 +262,7 @@ def main() -> None:
     for kind in NAMES:
         set_ = cases(kind, 500 if given.quick else 10_000)
         rows += speeds(kind, set_, given.quick)
-        if kind == "lone":
-            other["lone_limit"], other["lone_steps_per_history"] = lone_limit(set_)
-        else:
-            other["stack_limit"] = stack_limit(set_, 10 if given.quick else 100)
+        other[f"{kind}_limit"], other[f"{kind}_steps_per_history"] = over_limit(kind, set_)
         fragile = fragile_verdicts(
             set_.bodies, set_.accelerations, set_.dt, set_.scales, sample=set_.count
         )

@@ -50,27 +50,32 @@ HALF_TURN = 0.5 * math.pi
     RATE,
     ANGLE,
     KAPPA,
-    A0,
+    A0,  # A now and at the end of the sample
     A1,
+    REST_OF,  # the part of the sample that is left
     BOUND,  # the most that A can be from here on, and √(1 + bound²)
     CREST,
-    NEW_PSI,
-    NEW_RATE,
     FLAG,
+    W1,  # Taylor coefficients of ψ'
+    W2,
+    W3,
+    W4,
+    W5,
+    W6,
     PER_ANGLE,  # 1/θc and 1/(κ θc²)
     PER_SPEED,
     LOW,  # extremes of the case so far: ψ/θc, ψ', distance from balance squared
     FAST,
     NEAR,
-) = (LANES * row for row in range(16))
-ROWS = 16
+) = (LANES * row for row in range(21))
+ROWS = 21
 
 QUIET, TOUCHES, CERTAIN_FALL = 0.0, 1.0, 2.0
 
 
 @kernel
 def advance(x):
-    """Advance every lane by one sample; flag those that need a closer look.
+    """Advance every lane to the end of its sample; flag those with an event, which stay where they are.
 
     A fall is certain, whatever the ground does, in this case.  Let tan φ = ``BOUND``, the most that A can
     be in the rest of the motion.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side
@@ -79,29 +84,39 @@ def advance(x):
     """
     for i in range(LANES):
         psi = x[PSI + i]
-        w = x[RATE + i]
+        speed = x[RATE + i]
+        left = x[REST_OF + i]
         kappa = x[KAPPA + i]
+        angle = x[ANGLE + i]
         a = x[A0 + i]
+        w = speed * left
         s, c = sine_cosine(psi)
-        w1, w2, w3, w4, w5, w6 = rates(s, c, w, kappa, a, x[A1 + i] - a)
+        w1, w2, w3, w4, w5, w6 = rates(s, c, w, kappa * left * left, a, x[A1 + i] - a)
         p = psi + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
         v = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
-        x[NEW_PSI + i] = p
-        x[NEW_RATE + i] = v
-        certain = (w < 0.0) & (0.5 * w * w >= kappa * (x[CREST + i] - c + x[BOUND + i] * s))
+        x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i] = w1, w2, w3, w4, w5, w6
+        certain = (w < 0.0) & (0.5 * speed * speed >= kappa * (x[CREST + i] - c + x[BOUND + i] * s))
         grazes = (w > 0.0) & (v < 0.0)
-        touches = p >= x[ANGLE + i]
-        lies = p <= x[ANGLE + i] - HALF_TURN
+        touches = p >= angle
+        lies = p <= angle - HALF_TURN
         # leaves, and may fall back and be pulled open again before the sample is over
-        hops = (w <= 0.0) & (v < 0.0) & (psi + 0.5 * w1 >= x[ANGLE + i])
+        hops = (w <= 0.0) & (v < 0.0) & (psi + 0.5 * w1 >= angle)
         flag = TOUCHES if touches | grazes | lies | hops else QUIET
-        x[FLAG + i] = CERTAIN_FALL if certain else flag
+        flag = CERTAIN_FALL if certain else flag
+        x[FLAG + i] = flag
+        quiet = flag == QUIET
         # the turning point of a parabola lies between the samples
         turn = psi + 0.5 * w * w / min(w - v, -1e-300)
         low = (turn if (w < 0.0) & (v > 0.0) else p) * x[PER_ANGLE + i]
-        x[LOW + i] = min(x[LOW + i], low)
-        x[FAST + i] = max(x[FAST + i], 0.0 if touches else abs(v))
-        x[NEAR + i] = min(x[NEAR + i], low * low + v * v * x[PER_SPEED + i])
+        v = v / left
+        x[LOW + i] = min(x[LOW + i], low if quiet else 1.0)
+        x[FAST + i] = max(x[FAST + i], abs(v) if quiet else 0.0)
+        near = low * low + v * v * x[PER_SPEED + i]
+        x[NEAR + i] = min(x[NEAR + i], near if quiet else np.inf)
+        x[PSI + i] = p if quiet else psi
+        x[RATE + i] = v if quiet else speed
+        x[A0 + i] = x[A1 + i] if quiet else a
+        x[REST_OF + i] = 1.0 if quiet else left
 
 
 @kernel
@@ -208,88 +223,79 @@ def _dies_out(w, side, k, tau, end, factor, samples, b, o):
 
 
 @kernel
-def _sample(psi, w, side, tau, k, end, factor, samples, b, o, tally, r):
-    """Take one block from τ within sample interval k to its end, through whatever happens.
+def _event(x, i, tally, r):
+    """Time of the next impact in the lane's step, or 2; ψ and ψ' then or at the end; whether it never left.
 
-    ``side`` is the pole, 0 at rest.  Returns ψ, ψ' and the side at the end.
+    What the response reaches on the way goes into the tally.
+    """
+    psi = x[PSI + i]
+    left = x[REST_OF + i]
+    angle = x[ANGLE + i]
+    kappa = x[KAPPA + i]
+    w = x[RATE + i] * left
+    w1, w2, w3, w4, w5, w6 = (
+        x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i],
+    )  # fmt: skip
+    gap = psi - angle
+    p = psi + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
+    v = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
+    t = 2.0
+    if p >= angle:
+        t = _flight(gap, w, w1, w2, w3, w4, w5, w6, 1.0)
+        if t > 1.0:
+            return t, p, v / left, True
+    elif w > 0.0 and v < 0.0:
+        t = _graze(gap, w, w1, w2, w3, w4, w5, w6)
+    elif w <= 0.0 and v < 0.0 and min(gap, 0.0) + 0.5 * w1 >= 0.0:
+        # may fall back within the step and be pulled open again before its end
+        for part in range(1, 8):
+            if min(gap, 0.0) + travel(w, w1, w2, w3, w4, w5, w6, part / 8) >= 0.0:
+                t = _flight(gap, w, w1, w2, w3, w4, w5, w6, part / 8)
+                break
+    if t > 1.0:
+        _note(tally, r, p, v / left, angle, kappa)
+        if w < 0.0 and v > 0.0:
+            low = psi + travel(w, w1, w2, w3, w4, w5, w6, w / (w - v))
+            _note(tally, r, low, 0.0, angle, kappa)
+        return t, p, v / left, False
+    v = max(0.0, rate(w, w1, w2, w3, w4, w5, w6, t)) / left
+    if gap >= 0.0:
+        # the highest point of a flight that begins and ends in this step
+        low = psi + travel(w, w1, w2, w3, w4, w5, w6, 0.5 * t)
+        _note(tally, r, low, v, angle, kappa)
+    tally[r + SPEED] = max(tally[r + SPEED], v)
+    return t, angle, v, False
+
+
+@kernel
+def _rise(k, tau, low, high, factor, samples, highest, lowest, end):
+    """Sample and time within it at which a block at rest rises, and the side; side 0 if it stays.
+
+    It rises where the ground's acceleration over g leaves [low, high] (thesis eq. 2.1).
     """
     first = factor * samples[k]
-    ramp_all = factor * samples[k + 1] - first
-    events = 0
-    while True:
-        now = first + ramp_all * tau
-        if side == 0:
-            # thesis eq. 2.1: the ground pushes the block over the other way
-            if now > b[o + POLE + TAN]:
-                side = -1
-            elif now < -b[o + TAN]:
-                side = 1
-            elif now + ramp_all * (1.0 - tau) > b[o + POLE + TAN]:
-                side = -1
-                tau = max(tau, (b[o + POLE + TAN] - first) / ramp_all)
-            elif now + ramp_all * (1.0 - tau) < -b[o + TAN]:
-                side = 1
-                tau = max(tau, (-b[o + TAN] - first) / ramp_all)
-            else:
-                return 0.0, 0.0, 0
-            psi = b[o + _at(side) + ALPHA]
-            w = 0.0
-            now = first + ramp_all * tau
-            if tau >= 1.0:
-                return psi, w, side
-        j = _at(side)
-        angle = b[o + j + ALPHA]
-        full = b[o + j + SWING]
-        left = 1.0 - tau
-        speed = w * left
-        gap = psi - angle
-        if gap >= 0.0:
-            s, c = b[o + j + SIN], b[o + j + COS]
-        else:
-            s, c = sine_cosine(psi)
-        w1, w2, w3, w4, w5, w6 = rates(
-            s, c, speed, full * left * left, side * now, side * ramp_all * left
-        )
-        p = psi + travel(speed, w1, w2, w3, w4, w5, w6, 1.0)
-        v = rate(speed, w1, w2, w3, w4, w5, w6, 1.0)
-        t = 2.0
-        if p >= angle:
-            t = _flight(gap, speed, w1, w2, w3, w4, w5, w6, 1.0)
-            if t > 1.0:
-                # it never left the ground
-                return 0.0, 0.0, 0
-        elif speed > 0.0 and v < 0.0:
-            t = _graze(gap, speed, w1, w2, w3, w4, w5, w6)
-        elif speed <= 0.0 and v < 0.0 and min(gap, 0.0) + 0.5 * w1 >= 0.0:
-            # may fall back within the step and be pulled open again before its end
-            for part in range(1, 8):
-                if min(gap, 0.0) + travel(speed, w1, w2, w3, w4, w5, w6, part / 8) >= 0.0:
-                    t = _flight(gap, speed, w1, w2, w3, w4, w5, w6, part / 8)
-                    break
-        if t > 1.0:
-            _note(tally, r, p, v / left, angle, full)
-            if speed < 0.0 and v > 0.0:
-                turn = speed / (speed - v)
-                low = psi + travel(speed, w1, w2, w3, w4, w5, w6, turn)
-                _note(tally, r, low, 0.0, angle, full)
-            return p, v / left, side
-        v = max(0.0, rate(speed, w1, w2, w3, w4, w5, w6, t)) / left
-        if gap >= 0.0:
-            # the highest point of a flight that begins and ends in this step
-            low = psi + travel(speed, w1, w2, w3, w4, w5, w6, 0.5 * t)
-            _note(tally, r, low, v, angle, full)
-        tally[r + SPEED] = max(tally[r + SPEED], v)
-        tally[r + IMPACTS] += 1.0
-        events += 1
-        tau += t * left
-        w = -v * b[o + j + E_FROM]
-        side = -side
-        psi = b[o + _at(side) + ALPHA]
-        still = w > -1e-12 or events > MAX_IMPACTS_PER_SAMPLE
-        if still or _dies_out(-w, side, k, min(tau, 1.0), end, factor, samples, b, o):
-            side = 0
-        if tau >= 1.0:
-            return psi, w, side
+    ramp = factor * samples[k + 1] - first
+    now = first + tau * ramp
+    if low <= now <= high and low <= first + ramp <= high:
+        least, most = low / factor, high / factor
+        if factor < 0.0:
+            least, most = most, least
+        m = next_uplift(samples, highest, lowest, k + 1, end, least, most)
+        if m < 0:
+            return k, tau, 0
+        k = m - 1
+        tau = 0.0
+        first = factor * samples[k]
+        ramp = factor * samples[m] - first
+        now = first
+    # the ground pushes the block over the other way
+    if now > high:
+        return k, tau, -1
+    if now < low:
+        return k, tau, 1
+    if ramp > 0.0:
+        return k, min(max(tau, (high - first) / ramp), 1.0), -1
+    return k, min(max(tau, (low - first) / ramp), 1.0), 1
 
 
 @kernel
@@ -377,143 +383,142 @@ def lone_blocks(
     starts = np.zeros(LANES, dtype=np.int64)
     sides = np.zeros(LANES, dtype=np.int64)
     cases = np.full(LANES, -1, dtype=np.int64)
-    moves = np.zeros(LANES, dtype=np.int64)
+    impacts = np.zeros(LANES, dtype=np.int64)
+    counted = np.zeros(LANES, dtype=np.int64)
     factor = np.zeros(LANES)
     signed = np.zeros(LANES)
     bases = np.zeros(LANES, dtype=np.int64)
     return _march(
         first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
-        results, x, where, ends, starts, sides, cases, moves, factor, signed, bases,
+        results, x, where, ends, starts, sides, cases, impacts, counted, factor, signed, bases,
     )  # fmt: skip
 
 
 @kernel
 def _march(
     first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
-    results, x, where, ends, starts, sides, cases, moves, factor, signed, bases,
+    results, x, where, ends, starts, sides, cases, impacts, counted, factor, signed, bases,
 ):  # fmt: skip
     """``lone_blocks`` with its working arrays, one entry per lane in most of them."""
     n_motions, n_scales = factors.shape
     b = table
     tally = results
-    o = 0
-    r = 0
     upcoming = first
     busy = 0
     passes = 0
-    # a lane without a case stands still at a harmless place
-    for i in range(LANES):
-        x[ANGLE + i] = 1.0
-        x[CREST + i] = 10.0
     filling = True
     while filling or busy > 0:
         if not filling:
             passes += 1
-            for i in range(LANES):
-                x[A1 + i] = signed[i] * samples[where[i] + 1]
             advance(x)
         for i in range(LANES):
-            if filling:
-                if cases[i] >= 0:
-                    continue
-            elif (x[FLAG + i] == 0.0 and (moves[i] == 0 or where[i] + 1 < ends[i])) or cases[i] < 0:
-                continue
             case = cases[i]
-            side = sides[i]
+            if not filling:
+                if case < 0:
+                    continue
+                if x[FLAG + i] == QUIET:
+                    k = where[i] + 1
+                    where[i] = k
+                    if k < ends[i]:
+                        x[A1 + i] = signed[i] * samples[k + 1]
+                        continue
             k = where[i]
             end = ends[i]
-            done = False
-            if case >= 0:
-                r = RESULTS * (case - first)
-                o = bases[i]
-                psi = x[PSI + i]
-                w = x[RATE + i]
-                kappa = x[KAPPA + i]
-                if x[FLAG + i] == CERTAIN_FALL:
-                    # at the latest it passes balance at the speed that energy leaves it
-                    near = w * w / kappa + min(psi * abs(psi), 0.0) * -1.0
-                    if psi > 0.0:
-                        near -= 2.0 * (1.0 - math.cos(psi))
-                    near = math.sqrt(max(0.0, near)) / x[ANGLE + i]
-                    tally[r + CLOSEST] = min(tally[r + CLOSEST], near)
-                    done = True
+            side = sides[i]
+            o = bases[i]
+            r = RESULTS * (case - first)
+            tau = 0.0
+            psi = x[PSI + i]
+            w = x[RATE + i]
+            fell = False
+            if case >= 0 and x[FLAG + i] == CERTAIN_FALL:
+                # at the latest it passes balance at the speed that energy leaves it
+                near = w * w / x[KAPPA + i]
+                if psi > 0.0:
+                    near -= 2.0 * (1.0 - math.cos(psi))
                 else:
-                    psi, w, side = _sample(
-                        psi, w, side, 0.0, k, end, factor[i], samples, b, o, tally, r
-                    )
-                    k += 1
-                    if side != 0:
-                        done = psi <= b[o + _at(side) + ALPHA] - HALF_TURN
-                if done:
-                    tally[r + OVERTURNED] = 1.0
-                    tally[r + CERTAIN] = k - starts[i]
-            else:
-                psi = 0.0
-                w = 0.0
-            # run through what needs no lane, and through as many cases as end there
-            while True:
-                if case >= 0 and not done:
-                    if side == 0 and k < end:
-                        low = -b[o + TAN] / factor[i]
-                        high = b[o + POLE + TAN] / factor[i]
-                        if factor[i] < 0.0:
-                            low, high = high, low
-                        if samples[k] > high or samples[k] < low:
-                            m = k + 1
-                        else:
-                            m = next_uplift(samples, highest, lowest, k, end, low, high)
-                        if m < 0:
-                            done = True
-                        else:
-                            k = m - 1
-                            psi, w, side = _sample(
-                                0.0, 0.0, 0, 0.0, k, end, factor[i], samples, b, o, tally, r
-                            )
-                            k += 1
-                            continue
-                    elif k >= end:
-                        done = True
-                        if side != 0 and _left_alone(psi, w, side, b, o, tally, r):
-                            tally[r + OVERTURNED] = 1.0
-                            tally[r + CERTAIN] = k - starts[i]
-                    else:
-                        break
-                if done or case < 0:
-                    if case >= 0:
-                        if cases[i] == case:
-                            _take_over(x, i, tally, r)
-                        busy -= 1
-                        case = -1
-                        cases[i] = -1
-                    if upcoming >= last:
-                        break
-                    case = upcoming
-                    upcoming += 1
-                    busy += 1
-                    motion = (case // n_scales) % n_motions
-                    o = BODY * (case // n_scales)
-                    bases[i] = o
-                    r = RESULTS * (case - first)
-                    for n in range(RESULTS):
-                        tally[r + n] = 0.0
-                    tally[r + CLOSEST] = math.inf
-                    factor[i] = factors[motion, case % n_scales]
-                    row = rows[case // (n_scales * n_motions), motion]
-                    k = offsets[row]
-                    starts[i] = k
-                    end = lasts[row]
+                    near += psi * psi
+                near = math.sqrt(max(0.0, near)) / x[ANGLE + i]
+                tally[r + CLOSEST] = min(tally[r + CLOSEST], near)
+                fell = True
+            elif case >= 0 and x[FLAG + i] != QUIET:
+                t, psi, w, stays = _event(x, i, tally, r)
+                if stays:
                     side = 0
-                    done = factor[i] == 0.0
+                    tau = 1.0
+                elif t > 1.0:
+                    tau = 1.0
+                    fell = psi <= x[ANGLE + i] - HALF_TURN
+                else:
+                    tau = 1.0 - x[REST_OF + i] * (1.0 - t)
+                    tally[r + IMPACTS] += 1.0
+                    if counted[i] != k:
+                        counted[i] = k
+                        impacts[i] = 0
+                    impacts[i] += 1
+                    w = -w * b[o + _at(side) + E_FROM]
+                    side = -side
+                    psi = b[o + _at(side) + ALPHA]
+                    still = w > -1e-12 or impacts[i] > MAX_IMPACTS_PER_SAMPLE
+                    if still or _dies_out(-w, side, k, tau, end, factor[i], samples, b, o):
+                        side = 0
+                if tau >= 1.0 - 1e-13:
+                    k += 1
+                    tau = 0.0
+            # through rest and the ends of motions, and through as many cases as end there
+            while True:
+                if case >= 0:
+                    if not fell and side == 0 and k < end and factor[i] != 0.0:
+                        k, tau, side = _rise(
+                            k, tau, -b[o + TAN], b[o + POLE + TAN], factor[i], samples, highest, lowest, end
+                        )  # fmt: skip
+                        if side != 0:
+                            psi = b[o + _at(side) + ALPHA]
+                            w = 0.0
+                            if tau >= 1.0 - 1e-13:
+                                k += 1
+                                tau = 0.0
+                    if not fell and side != 0:
+                        if k < end:
+                            break
+                        fell = _left_alone(psi, w, side, b, o, tally, r)
+                    if fell:
+                        tally[r + OVERTURNED] = 1.0
+                        tally[r + CERTAIN] = k - starts[i]
+                    if cases[i] == case:
+                        _take_over(x, i, tally, r)
+                    busy -= 1
+                    case = -1
+                    cases[i] = -1
+                if upcoming >= last:
+                    break
+                case = upcoming
+                upcoming += 1
+                busy += 1
+                motion = (case // n_scales) % n_motions
+                o = BODY * (case // n_scales)
+                bases[i] = o
+                r = RESULTS * (case - first)
+                for n in range(RESULTS):
+                    tally[r + n] = 0.0
+                tally[r + CLOSEST] = math.inf
+                factor[i] = factors[motion, case % n_scales]
+                sampled = rows[case // (n_scales * n_motions), motion]
+                k = offsets[sampled]
+                starts[i] = k
+                end = lasts[sampled]
+                ends[i] = end
+                counted[i] = -1
+                side = 0
+                tau = 0.0
+                fell = False
             if case < 0:
-                moves[i] = 0
-                signed[i] = 0.0
-                where[i] = 0
-                x[NEW_PSI + i] = 0.0
-                x[NEW_RATE + i] = 0.0
-                x[KAPPA + i] = 0.0
+                # a lane without a case stands still at a harmless place
+                for n in range(ROWS):
+                    x[n * LANES + i] = 0.0
+                x[REST_OF + i] = 1.0
                 x[ANGLE + i] = 1.0
                 x[CREST + i] = 10.0
-                x[BOUND + i] = 0.0
                 continue
             if cases[i] != case:
                 cases[i] = case
@@ -521,15 +526,16 @@ def _march(
                 x[FAST + i] = 0.0
                 x[NEAR + i] = math.inf
             sides[i] = side
-            ends[i] = end
-            moves[i] = 1
-            # the commit below moves every lane on by one
-            where[i] = k - 1 if not filling else k
+            where[i] = k
             signed[i] = side * factor[i]
             j = _at(side)
-            x[A1 + i] = signed[i] * samples[k]
-            x[NEW_PSI + i] = psi
-            x[NEW_RATE + i] = w
+            before = signed[i] * samples[k]
+            after = signed[i] * samples[k + 1]
+            x[A0 + i] = before + tau * (after - before)
+            x[A1 + i] = after
+            x[REST_OF + i] = 1.0 - tau
+            x[PSI + i] = psi
+            x[RATE + i] = w
             x[ANGLE + i] = b[o + j + ALPHA]
             x[KAPPA + i] = b[o + j + SWING]
             x[PER_ANGLE + i] = b[o + j + PER_ALPHA]
@@ -537,13 +543,6 @@ def _march(
             bound = _bound(side, factor[i], ahead_high[k // BLOCK], ahead_low[k // BLOCK])
             x[BOUND + i] = bound
             x[CREST + i] = math.sqrt(1.0 + bound * bound)
-        for i in range(LANES):
-            x[PSI + i] = x[NEW_PSI + i]
-            x[RATE + i] = x[NEW_RATE + i]
-            x[A0 + i] = x[A1 + i]
-        if not filling:
-            for i in range(LANES):
-                where[i] += moves[i]
         filling = False
     return passes * LANES
 
