@@ -127,6 +127,7 @@ def _flight(gap, w, w1, w2, w3, w4, w5, w6, high):
     """
     low = 0.0
     last = high
+    square = w * w - 2.0 * w1 * gap
     if gap >= 0.0:
         # just left this pole: look behind the root at 0
         gap = 0.0
@@ -137,20 +138,29 @@ def _flight(gap, w, w1, w2, w3, w4, w5, w6, high):
             if low < 1e-13:
                 return 2.0
     else:
-        over = gap + travel(w, w1, w2, w3, w4, w5, w6, last)
-        guess = last - over / max(1e-300, rate(w, w1, w2, w3, w4, w5, w6, last))
+        guess = -2.0 * gap / (w + math.sqrt(square)) if square > 0.0 else 0.5 * last
     for _ in range(100):
         if not low < guess < high:
             guess = 0.5 * (low + high)
-        f = gap + travel(w, w1, w2, w3, w4, w5, w6, guess)
-        d = rate(w, w1, w2, w3, w4, w5, w6, guess)
+        # pairs of terms side by side, which is quicker than Horner's chain
+        t = guess
+        t2 = t * t
+        t4 = t2 * t2
+        f = (w + 0.5 * w1 * t) + t2 * (1 / 3 * w2 + 0.25 * w3 * t)
+        f = gap + t * (f + t4 * ((0.2 * w4 + 1 / 6 * w5 * t) + 1 / 7 * w6 * t2))
+        d = (w + w1 * t) + t2 * (w2 + w3 * t) + t4 * ((w4 + w5 * t) + w6 * t2)
         if f < 0.0:
             low = guess
         else:
             high = guess
-        step = f / d if d != 0.0 else 0.0
+        # Chebyshev's step: Newton's with the curve's bend
+        step = 0.0
+        if d != 0.0:
+            per = 1.0 / d
+            step = f * per
+            step += 0.5 * step * step * (w1 + 2.0 * w2 * t) * per
         guess -= step
-        # the error after this step is of the order of its square
+        # the error after this step is below its square
         if abs(step) <= 1e-7 or high - low <= 1e-15:
             break
     return min(max(guess, 0.0), last)

@@ -146,7 +146,7 @@ def closing_time(q, row, end):
 def crossing_time(q, row):
     """Find when a q that starts at zero or above falls through zero, given q(1) < 0.
 
-    Newton's method inside a bracket, from the root of the parabola that q begins as.  A q that dips below
+    Chebyshev's method inside a bracket, from the root of the parabola that q begins as.  A q that dips below
     zero and comes back before is for ``closing_time``.
     """
     q0 = max(0.0, q[row])
@@ -180,9 +180,14 @@ def crossing_time(q, row):
             low = tau
         else:
             high = tau
-        step = f / d if d != 0.0 else 2.0
+        # Chebyshev's step: Newton's with the curve's bend
+        step = 2.0
+        if d != 0.0:
+            per = 1.0 / d
+            step = f * per
+            step += step * step * (q2 + 3.0 * q3 * tau) * per
         tau -= step
-        # the error after this step is of the order of its square
-        if abs(step) <= 1e-8 or high - low <= 1e-15:
+        # the error after this step is below its square
+        if abs(step) <= 1e-7 or high - low <= 1e-15:
             break
     return min(max(tau, 0.0), 1.0)
