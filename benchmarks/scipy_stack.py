@@ -117,11 +117,10 @@ def landed(
         after = model.projected((new[0] or 1, new[1] or 1), new, state, theta, omega)
 
 
-def scipy_stack(body: Body, acceleration: Array, dt: float) -> bool:
+def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
     """Statue on pedestal by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as events.
 
-    Each call ends at an event or the next sample: the ground's acceleration has a kink there, and a
-    call from event to event takes four times as long because its steps across kinks fail.
+    ``by_sample`` as in ``scipy_lone``.
     """
     assert isinstance(body, Stack)
     model = FloatModel(body, G)
@@ -150,11 +149,11 @@ def scipy_stack(body: Body, acceleration: Array, dt: float) -> bool:
             th1, th2, w1, w2 = y.tolist()
             return w1, w2, *model.accelerations(state, (th1, th2), (w1, w2), ground(t))
 
-        # from an event just before a sample on to the one after; no step is longer than that
-        stop = (int(t / dt + 1e-7) + 1) * dt
+        # from an event just before a sample on to the one after
+        stop = (int(t / dt + 1e-7) + 1) * dt if by_sample else end
         run = solve_ivp(
             rates, (t, stop), np.array([*theta, *omega]), method="DOP853", rtol=1e-10, atol=1e-13,
-            first_step=stop - t, events=watches(model, state, t, ground),
+            first_step=min(dt, stop - t), max_step=dt, events=watches(model, state, t, ground),
         )  # fmt: skip
         if run.t_events[2].size:
             return True
