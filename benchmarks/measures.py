@@ -7,6 +7,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numba
@@ -18,6 +19,7 @@ from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import _stack_lanes as stack_lanes
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
+from rockfrag.rocking.simulation import simulate
 
 SEPARATE = Path(__file__).with_name("separate.py")
 Array = NDArray[np.float64]
@@ -57,6 +59,22 @@ def converged(cases: Cases) -> NDArray[np.bool_]:
         at = np.arange(8 * closed.size - 7) / 8
         dense.append(np.interp(at, np.arange(closed.size), closed))
     return overturns(cases.bodies, dense, cases.dt / 8, cases.scales, step=0.1 / 8).overturned
+
+
+def followed_share(cases: Cases, count: int) -> float:
+    """Share of ``count`` verdicts that differ from ``simulate``, which follows every impact."""
+    verdicts = all_cases(cases).overturned
+    differing = [
+        simulate(body, values, cases.dt).overturned != verdicts[at]
+        for at, body, values in cases.each(count, seed=4)
+    ]
+    return sum(differing) / count
+
+
+def nudged_share(cases: Cases, by: float = 1e-9) -> float:
+    """Share of verdicts that change when every amplitude grows by one part in a billion."""
+    nudged = replace(cases, scales=cases.scales * (1.0 + by))
+    return float((all_cases(nudged).overturned != all_cases(cases).overturned).mean())
 
 
 def two_thread_ratio(cases: Cases, repeats: int = 3) -> float:

@@ -23,6 +23,8 @@ from measures import (
     all_cases,
     converged,
     cpu_seconds,
+    followed_share,
+    nudged_share,
     over_limit,
     separately,
     start_up,
@@ -250,6 +252,17 @@ def summary(about: dict[str, Any], programs: pd.DataFrame, goals: pd.DataFrame) 
         f"| {r.bodies} | {r.what} | {r.target} | {r.measured:.4g} | {'met' if r.met else '**not met**'} |"
         for r in goals.itertuples()
     ]
+    lines += ["", "| bodies | what changes | verdicts that change |", "|---|---|---:|"]
+    changes = {
+        "fragile": "half the step",
+        "nudged": "amplitudes greater by 1e-9 of themselves",
+        "followed": "every impact followed (`simulate`)",
+    }
+    lines += [
+        f"| {name} | {words} | {100 * about['measured'][f'{kind}_{key}_share']:.2f} % |"
+        for kind, name in NAMES.items()
+        for key, words in changes.items()
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -273,6 +286,8 @@ def main() -> None:
             set_.bodies, set_.accelerations, set_.dt, set_.scales, sample=set_.count
         )
         other[f"{kind}_fragile_share"] = fragile.share
+        other[f"{kind}_nudged_share"] = nudged_share(set_)
+        other[f"{kind}_followed_share"] = followed_share(set_, 100 if given.quick else 1000)
         # enough cases that the last chunks of each thread do not matter
         speed = next(r for r in rows if r["bodies"] == NAMES[kind])["histories_per_s_core"]
         other[f"{kind}_threads"] = two_thread_ratio(more(set_, round(3 * speed / set_.count) or 1))
