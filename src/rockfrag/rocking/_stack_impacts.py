@@ -59,8 +59,8 @@ CHATTER_ERROR = 1e-7
 """Largest ω² T [rad²/s] of a chatter that is closed at once; see ``chatter_closes``."""
 FASTEST_CHATTER = 0.1
 """Speed [rad/s] above which no chatter is closed."""
-CHATTER_SAMPLES = 4
-"""Samples ahead that a chatter may last."""
+CHATTER_TIME = 0.08
+"""Time [s] over which the ground is looked at, at most, before a chatter is closed."""
 
 
 @kernel
@@ -215,20 +215,32 @@ def chatter_closes(
         longest = min(longest, 0.5 * gap / toward)
     hops = 3.0 * speed / (1.0 - left)
     back = left / e
-    least = math.inf
-    other = math.inf
-    for ahead in range(CHATTER_SAMPLES):
-        a = factor * samples[k + ahead] if k + ahead <= last else 0.0
+    # the ground's acceleration over twice the time that its present value gives, sample by sample
+    first = factor * samples[k] if k <= last else 0.0
+    after = factor * samples[k + 1] if k < last else 0.0
+    a = first + tau * (after - first)
+    least = -(here + per_here * a)
+    other = -(there + per_there * a)
+    if least <= 0.0 or other <= 0.0:
+        return False
+    span = 2.0 * hops * (1.0 / least + back / other)
+    if span > 2.0 * longest or span > CHATTER_TIME / h:
+        return False
+    n = 1
+    while True:
+        x = min(n - tau, span)
+        i = k + n
+        before = factor * samples[i - 1] if i - 1 <= last else 0.0
+        after = factor * samples[i] if i <= last else 0.0
+        a = after + (x - (n - tau)) * (after - before)
         least = min(least, -(here + per_here * a))
         other = min(other, -(there + per_there * a))
         if least <= 0.0 or other <= 0.0:
             return False
-        time = hops * (1.0 / least + back / other)
-        if time > longest:
-            return False
-        if ahead > 0 and time <= ahead - tau:
-            return True
-    return False
+        if x == span:
+            break
+        n += 1
+    return hops * (1.0 / least + back / other) <= min(longest, span)
 
 
 @kernel
