@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP
-from rockfrag.rocking.inputs import listed as listed  # accuracy and thresholds take it from here
 from rockfrag.rocking.parameters import Restitution
 from rockfrag.units import STANDARD_GRAVITY
 

@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP
+from rockfrag.rocking.inputs import STEP, listed
 from rockfrag.rocking.parameters import Restitution
-from rockfrag.rocking.scattered import listed, scattered_overturns
+from rockfrag.rocking.scattered import scattered_overturns
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
