@@ -17,6 +17,7 @@ from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.inputs import (
     COARSE_CLOSING_SPEED,
     FREE_TIME,
+    STACK_STEP,
     STEP,
     checked_scales,
     listed,
@@ -92,7 +93,7 @@ def overturns(
     restitution
         One entry per body, each as in :func:`simulate`; None conserves momentum in all.
     step
-        Largest p h of a step: smaller is more accurate and slower.
+        Largest p h of a step of a lone block, 0.35 of which a stack takes: smaller is more accurate and slower.
     threads
         Threads to use; all cores if None.  Results do not depend on it.
 
@@ -209,7 +210,7 @@ def _stacks(
     parameters = np.array(
         [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)]
     )
-    motions = _sampled(bodies, values, dts, g, step)
+    motions = _sampled(bodies, values, dts, g, STACK_STEP * step)
     slowest = np.array([slowest_frequency(body, g) for body in bodies])
     free = np.ceil(FREE_TIME / slowest[:, np.newaxis] / motions.intervals).astype(np.int64)
     shape = (len(bodies), *factors.shape)
