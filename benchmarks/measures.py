@@ -27,21 +27,20 @@ Array = NDArray[np.float64]
 
 def cpu_seconds(work: Callable[[], object], repeats: int = 3) -> float:
     """Least process CPU time of a few runs [s]."""
-    best = math.inf
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        best = min(best, time.process_time() - start)
-    return best
+    return _least_seconds(time.process_time, work, repeats)
 
 
 def wall_seconds(work: Callable[[], object], repeats: int = 3) -> float:
     """Least wall-clock time of a few runs [s]."""
+    return _least_seconds(time.perf_counter, work, repeats)
+
+
+def _least_seconds(clock: Callable[[], float], work: Callable[[], object], repeats: int) -> float:
     best = math.inf
     for _ in range(repeats):
-        start = time.perf_counter()
+        start = clock()
         work()
-        best = min(best, time.perf_counter() - start)
+        best = min(best, clock() - start)
     return best
 
 

@@ -80,6 +80,13 @@ def hold_at(p, which, c1, c2, q, tau, h, a):
 
 
 @kernel
+def between(low, at_low, high, at_high):
+    """Next point of regula falsi, kept inside the bracket so that both its ends move."""
+    tau = high - at_high * (high - low) / (at_high - at_low)
+    return min(max(tau, low + 4e-14), high - 4e-14)
+
+
+@kernel
 def _failing_time(p, which, c1, c2, q, end, h, a0, ramp):
     """Find when a closed contact's criterion first fails in [0, end]; 2.0 if it holds."""
     at_start = hold_at(p, which, c1, c2, q, 0.0, h, a0)
@@ -106,8 +113,7 @@ def _failing_time(p, which, c1, c2, q, end, h, a0, ramp):
     for _ in range(200):
         if high - low <= 1e-13:
             break
-        tau = high - at_end * (high - low) / (at_end - at_start)
-        tau = min(max(tau, low + 4e-14), high - 4e-14)
+        tau = between(low, at_start, high, at_end)
         hold = hold_at(p, which, c1, c2, q, tau, h, a0 + ramp * tau)
         if hold >= 0.0:
             low = tau
@@ -125,6 +131,48 @@ def _failing_time(p, which, c1, c2, q, end, h, a0, ramp):
 
 
 @kernel
+def ground_gap(c1, q):
+    """Fill GAP with the series of the ground's opening angle; return its value at the end of the step."""
+    end = 0.0
+    for i in range(ORDER + 1):
+        q[GAP + i] = c1 * q[TH1 + i]
+        end += q[GAP + i]
+    return end
+
+
+@kernel
+def interface_gap(c2, q):
+    """Fill GAP with the series of the interface's opening angle, likewise."""
+    end = 0.0
+    for i in range(ORDER + 1):
+        q[GAP + i] = c2 * (q[TH2 + i] - q[TH1 + i])
+        end += q[GAP + i]
+    return end
+
+
+@kernel
+def first_closing(c1, c2, q):
+    """Time in a step at which a contact closes first, 2 if none does; whether ground and interface do."""
+    when = 2.0
+    closes1 = False
+    closes2 = False
+    if c1 != 0:
+        ground_gap(c1, q)
+        when = closing_time(q, GAP, 1.0)
+        closes1 = when <= 1.0
+    if c2 != 0:
+        interface_gap(c2, q)
+        time = closing_time(q, GAP, min(1.0, when))
+        if time < when:
+            closes1 = False
+            closes2 = True
+            when = time
+        elif closes1 and value(q, GAP, when) < 1e-13:
+            closes2 = True
+    return when, closes1, closes2
+
+
+@kernel
 def next_event(p, c1, c2, q, h, a0, ramp):
     """Find the earliest event within the step of series ``q``.
 
@@ -133,24 +181,7 @@ def next_event(p, c1, c2, q, h, a0, ramp):
     Its time (2 if there is none by 1), which closed contact fails (1 ground, 2 interface, 0 none), and
     whether the ground and the interface close.
     """
-    when = 2.0
-    closes1 = False
-    closes2 = False
-    if c1 != 0:
-        for i in range(ORDER + 1):
-            q[GAP + i] = c1 * q[TH1 + i]
-        when = closing_time(q, GAP, 1.0)
-        closes1 = when <= 1.0
-    if c2 != 0:
-        for i in range(ORDER + 1):
-            q[GAP + i] = c2 * (q[TH2 + i] - q[TH1 + i])
-        time = closing_time(q, GAP, min(1.0, when))
-        if time < when:
-            closes1 = False
-            closes2 = True
-            when = time
-        elif closes1 and value(q, GAP, when) < 1e-13:
-            closes2 = True
+    when, closes1, closes2 = first_closing(c1, c2, q)
     fails = 0
     for which in (1, 2):
         if (which == 1 and (c1 != 0 or p[FIXED] > 0.0)) or (which == 2 and c2 != 0):
@@ -207,7 +238,7 @@ def strike(
         kind = CHATTER
     elif theta1 == 0.0 and theta2 == 0.0 and (n1 != 0 or n2 != 0):
         speed = max(abs(w1), abs(w2))
-        if speed < restoring[9]:
+        if speed < restoring[FASTEST]:
             before = kinetic_energy(p, c1, c2, 0.0, omega1, 0.0, omega2)
             after = kinetic_energy(p, n1, n2, 0.0, w1, 0.0, w2)
             share = math.sqrt(after / before)
@@ -224,6 +255,10 @@ def strike(
     return n1, n2, w1, w2, kind
 
 
+# Places in a restoring table after the four pairs of accelerations.
+FREQUENCY2, FASTEST = 8, 9
+
+
 @kernel
 def restoring_table(p, table, n):
     """Fill, from place ``n``, the numbers with which a chatter is closed at θ1 = θ2 = 0.
@@ -232,17 +267,17 @@ def restoring_table(p, table, n):
     a constant plus a factor times the ground acceleration; p²; and the speed above which no chatter is closed,
     0.2 D/p with the D of a still ground.
     """
-    start = n
-    for c1, c2 in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+    for i, (c1, c2) in enumerate(((0, 1), (0, -1), (1, 0), (-1, 0))):
+        at = n + 2 * i
         if c1 != 0 and p[FIXED] > 0.0:
-            table[n], table[n + 1] = math.inf, 0.0
+            table[at], table[at + 1] = math.inf, 0.0
         else:
             still = _restoring(p, c1, c2, 0.0)
-            table[n], table[n + 1] = still, _restoring(p, c1, c2, 1.0) - still
-        n += 2
+            table[at], table[at + 1] = still, _restoring(p, c1, c2, 1.0) - still
     vx, vy = first_moment2(p, 1)
-    table[n] = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, 1)
-    table[n + 1] = 0.2 * _least_restoring(table, start, 0.0) / math.sqrt(table[n])
+    frequency2 = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, 1)
+    table[n + FREQUENCY2] = frequency2
+    table[n + FASTEST] = 0.2 * _least_restoring(table, n, 0.0) / math.sqrt(frequency2)
 
 
 @kernel
@@ -275,7 +310,7 @@ def chatter_dies(
     """
     if share > 0.999:
         return False
-    frequency2 = restoring[at + 8]
+    frequency2 = restoring[at + FREQUENCY2]
     least = math.inf
     for ahead in range(33):
         i = k + ahead

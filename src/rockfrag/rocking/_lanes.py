@@ -16,11 +16,9 @@ import numpy as np
 
 from rockfrag.rocking._compile import allocating_kernel, kernel
 from rockfrag.rocking._pendulum import rate, rates, sine_cosine, travel
+from rockfrag.rocking._rest import BLOCK, uplift
 
 LANES = 32
-BLOCK = 16
-"""Samples under one entry of the tables of extremes that rest is skipped with."""
-
 # Columns of the body table, for the right pole and, POLE further on, for the left: critical angle, its
 # tangent, sine and cosine, p² dt², the ratio e of angular velocities of an impact that ends rocking on it,
 # 1/θc and 1/(p² dt² θc²).
@@ -278,37 +276,6 @@ def _event(x, i, tally, r):
 
 
 @kernel
-def _rise(k, tau, low, high, factor, samples, highest, lowest, end):
-    """Sample and time within it at which a block at rest rises, and the side; side 0 if it stays.
-
-    It rises where the ground's acceleration over g leaves [low, high] (thesis eq. 2.1).
-    """
-    first = factor * samples[k]
-    ramp = factor * samples[k + 1] - first
-    now = first + tau * ramp
-    if low <= now <= high and low <= first + ramp <= high:
-        least, most = low / factor, high / factor
-        if factor < 0.0:
-            least, most = most, least
-        m = next_uplift(samples, highest, lowest, k + 1, end, least, most)
-        if m < 0:
-            return k, tau, 0
-        k = m - 1
-        tau = 0.0
-        first = factor * samples[k]
-        ramp = factor * samples[m] - first
-        now = first
-    # the ground pushes the block over the other way
-    if now > high:
-        return k, tau, -1
-    if now < low:
-        return k, tau, 1
-    if ramp > 0.0:
-        return k, min(max(tau, (high - first) / ramp), 1.0), -1
-    return k, min(max(tau, (low - first) / ramp), 1.0), 1
-
-
-@kernel
 def _note(tally, r, psi, w, angle, kappa):
     """Keep the largest rotation and speed and the closest approach to balance."""
     tally[r + RATIO] = max(tally[r + RATIO], 1.0 - psi / angle)
@@ -346,24 +313,6 @@ def _left_alone(psi, w, side, b, o, tally, r):
             _note(tally, r, math.acos(0.5 * w * w / kappa + math.cos(psi)), 0.0, psi, kappa)
             return False
     return False
-
-
-@kernel
-def next_uplift(samples, highest, lowest, k, end, low, high):
-    """First sample after k, up to ``end``, outside [low, high]; -1 if there is none."""
-    m = k + 1
-    while m <= end:
-        if m % BLOCK == 0:
-            j = m // BLOCK
-            while m + BLOCK <= end + 1 and highest[j] <= high and lowest[j] >= low:
-                j += 1
-                m += BLOCK
-            if m > end:
-                break
-        if samples[m] > high or samples[m] < low:
-            return m
-        m += 1
-    return -1
 
 
 @allocating_kernel
@@ -479,15 +428,14 @@ def _march(
             while True:
                 if case >= 0:
                     if not fell and side == 0 and k < end and factor[i] != 0.0:
-                        k, tau, side = _rise(
+                        k, tau, now = uplift(
                             k, tau, -b[o + TAN], b[o + POLE + TAN], factor[i], samples, highest, lowest, end
                         )  # fmt: skip
-                        if side != 0:
+                        if k >= 0:
+                            # the ground pushes the block over the other way
+                            side = -1 if now > 0.0 else 1
                             psi = b[o + _at(side) + ALPHA]
                             w = 0.0
-                            if tau >= 1.0 - 1e-13:
-                                k += 1
-                                tau = 0.0
                     if not fell and side != 0:
                         if k < end:
                             break

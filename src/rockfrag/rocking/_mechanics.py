@@ -423,13 +423,15 @@ def impact(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2):
     measured restitution asks for.  Energy never grows: where a measured value would make it grow in
     this configuration, the impulse acts at the pole.
     """
-    before = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
     for measured in (True, False):
         n1, n2, w1, w2 = _strike(
             p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measured
         )
+        if p[MEASURED] == 0.0:
+            break
+        before = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
         after = kinetic_energy(p, n1, n2, theta1, w1, theta2, w2)
-        if p[MEASURED] == 0.0 or after <= before * (1.0 + 1e-9):
+        if after <= before * (1.0 + 1e-9):
             break
     return n1, n2, w1, w2
 

@@ -73,15 +73,21 @@ QUIET, CLOSES, RELEASE, NEARS = 0.0, 1.0, 2.0, 3.0
 
 
 @kernel
+def row(c1, c2):
+    """Row of a contact state."""
+    return 3 * c1 + c2 + 4
+
+
+@kernel
 def contact_table(p, hh, t, start):
     """Fill, from place ``start``, what the contact states of a body fix; ``hh``: sampling interval squared.
 
-    Row 3 c1 + c2 + 4, of COLUMNS each, is for contact state (c1, c2).
+    There are nine rows of COLUMNS each, in the order of ``row``.
     """
     g = p[GRAVITY]
     for c1 in (-1, 0, 1):
         for c2 in (-1, 0, 1):
-            o = start + COLUMNS * (3 * c1 + c2 + 4)
+            o = start + COLUMNS * row(c1, c2)
             for n in range(COLUMNS):
                 t[o + n] = 0.0
             t[o + M11 // LANES] = 1.0

@@ -7,10 +7,19 @@ state.
 import math
 
 from rockfrag.rocking._compile import kernel
-from rockfrag.rocking._events import COARSE_DROP, chatter_dies, strike
+from rockfrag.rocking._events import (
+    COARSE_DROP,
+    FASTEST,
+    between,
+    chatter_dies,
+    first_closing,
+    ground_gap,
+    interface_gap,
+    strike,
+)
 from rockfrag.rocking._mechanics import ground_hold, interface_hold, settle
 from rockfrag.rocking._pendulum import sine_cosine
-from rockfrag.rocking._series import ORDER, closing_time, crossing_time, slope, value
+from rockfrag.rocking._series import ORDER, crossing_time, slope, value
 from rockfrag.rocking._stack_advance import (
     BEFORE,
     BEFORE2,
@@ -38,6 +47,7 @@ from rockfrag.rocking._stack_advance import (
     REST_OF,
     TH1,
     TH2,
+    row,
 )
 from rockfrag.rocking._stack_impacts import (
     AFTER1,
@@ -55,14 +65,10 @@ from rockfrag.rocking._stack_impacts import (
     ground_impact,
     interface_impact,
     least_hold,
-    row,
 )
 from rockfrag.rocking._step import GAP
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
-
-FASTEST_REST = 9
-"""Place in the restoring table of the speed above which no chatter is closed [rad/s]."""
 
 
 @kernel
@@ -99,20 +105,10 @@ def closing(c1, c2, q):
     """Time of the first closing, one being sure, and whether it is the ground's and the interface's."""
     when1 = 2.0
     when2 = 2.0
-    if c1 != 0:
-        end = 0.0
-        for n in range(ORDER + 1):
-            q[GAP + n] = c1 * q[SERIES1 + n]
-            end += q[GAP + n]
-        if end < 0.0:
-            when1 = crossing_time(q, GAP)
-    if c2 != 0:
-        end = 0.0
-        for n in range(ORDER + 1):
-            q[GAP + n] = c2 * (q[SERIES2 + n] - q[SERIES1 + n])
-            end += q[GAP + n]
-        if end < 0.0:
-            when2 = crossing_time(q, GAP)
+    if c1 != 0 and ground_gap(c1, q) < 0.0:
+        when1 = crossing_time(q, GAP)
+    if c2 != 0 and interface_gap(c2, q) < 0.0:
+        when2 = crossing_time(q, GAP)
     when = min(when1, when2)
     return when, when1 <= when + 1e-13, when2 <= when + 1e-13
 
@@ -120,22 +116,7 @@ def closing(c1, c2, q):
 @kernel
 def next_event(t, o, c1, c2, q, left, now, rise, g):
     """Time of the next event in this step, 2 if there is none; the contact that fails; what closes."""
-    when = 2.0
-    closes1 = False
-    closes2 = False
-    if c1 != 0:
-        for n in range(ORDER + 1):
-            q[GAP + n] = c1 * q[SERIES1 + n]
-        when = closing_time(q, GAP, 1.0)
-        closes1 = when <= 1.0
-    if c2 != 0:
-        for n in range(ORDER + 1):
-            q[GAP + n] = c2 * (q[SERIES2 + n] - q[SERIES1 + n])
-        time = closing_time(q, GAP, min(1.0, when))
-        if time < when:
-            when = time
-            closes1 = False
-            closes2 = True
+    when, closes1, closes2 = first_closing(c1, c2, q)
     if c1 == 0 or c2 == 0:
         time = _release(t, o, q, min(1.0, when), left, now, rise, g)
         if time < when:
@@ -161,8 +142,7 @@ def _release(t, o, q, end, left, now, rise, g):
             break
         tau = high
         if count > 0:
-            tau = high - at_high * (high - low) / (at_high - at_low)
-            tau = min(max(tau, low + 4e-14), high - 4e-14)
+            tau = between(low, at_low, high, at_high)
         omega = slope(q, SERIES2, tau) / left
         hold = least_hold(t, o, value(q, SERIES2, tau), omega, now + rise * tau, g)
         if hold < 0.0:
@@ -203,7 +183,7 @@ def collide(
             if (n1 != 0 or n2 != 0) and fast1 and fast2:
                 speed = max(abs(v1), abs(v2)) / h
                 restoring = start + RESTORING_AT
-                if speed < t[restoring + FASTEST_REST] and chatter_dies(
+                if speed < t[restoring + FASTEST] and chatter_dies(
                     speed, t[products + SHARE], 1.5, t, restoring, COARSE_DROP, k, tau, h, samples, end,
                     factor,
                 ):  # fmt: skip

@@ -37,6 +37,7 @@ from rockfrag.rocking._stack_advance import (
     V2X,
     V2Y,
     contact_table,
+    row,
 )
 from rockfrag.rocking._stack_advance import E as E_ROW
 from rockfrag.rocking._stack_advance import F as F_ROW
@@ -61,12 +62,6 @@ FASTEST_CHATTER = 0.1
 """Speed [rad/s] above which no chatter is closed."""
 CHATTER_TIME = 0.08
 """Time [s] over which the ground is looked at, at most, before a chatter is closed."""
-
-
-@kernel
-def row(c1, c2):
-    """Row of a contact state."""
-    return 3 * c1 + c2 + 4
 
 
 @kernel
@@ -216,9 +211,9 @@ def chatter_closes(
     hops = 3.0 * speed / (1.0 - left)
     back = left / e
     # the ground's acceleration over twice the time that its present value gives, sample by sample
-    first = factor * samples[k] if k <= last else 0.0
-    after = factor * samples[k + 1] if k < last else 0.0
-    a = first + tau * (after - first)
+    a_left = factor * samples[k] if k <= last else 0.0
+    a_right = factor * samples[k + 1] if k < last else 0.0
+    a = a_left + tau * (a_right - a_left)
     least = -(here + per_here * a)
     other = -(there + per_there * a)
     if least <= 0.0 or other <= 0.0:
@@ -229,10 +224,7 @@ def chatter_closes(
     n = 1
     while True:
         x = min(n - tau, span)
-        i = k + n
-        before = factor * samples[i - 1] if i - 1 <= last else 0.0
-        after = factor * samples[i] if i <= last else 0.0
-        a = after + (x - (n - tau)) * (after - before)
+        a = a_right + (x - (n - tau)) * (a_right - a_left)
         least = min(least, -(here + per_here * a))
         other = min(other, -(there + per_there * a))
         if least <= 0.0 or other <= 0.0:
@@ -240,6 +232,8 @@ def chatter_closes(
         if x == span:
             break
         n += 1
+        a_left = a_right
+        a_right = factor * samples[k + n] if k + n <= last else 0.0
     return hops * (1.0 / least + back / other) <= min(longest, span)
 
 

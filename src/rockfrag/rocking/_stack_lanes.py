@@ -12,13 +12,13 @@ import numpy as np
 
 from rockfrag.rocking._compile import allocating_kernel, kernel
 from rockfrag.rocking._events import MAX_EVENTS_PER_STEP, let_go, rest_interval
-from rockfrag.rocking._lanes import next_uplift
 from rockfrag.rocking._mechanics import (
     GRAVITY,
     first_moment2,
     kinetic_energy,
     potential_energy,
 )
+from rockfrag.rocking._rest import uplift
 from rockfrag.rocking._series import slope, value
 from rockfrag.rocking._stack_advance import (
     BEFORE,
@@ -44,6 +44,7 @@ from rockfrag.rocking._stack_advance import (
     TH1,
     TH2,
     advance,
+    row,
 )
 from rockfrag.rocking._stack_events import (
     closing,
@@ -54,7 +55,7 @@ from rockfrag.rocking._stack_events import (
     rise,
     take_series,
 )
-from rockfrag.rocking._stack_impacts import STATES, TABLE, body_table, least_hold, row
+from rockfrag.rocking._stack_impacts import STATES, TABLE, body_table, least_hold
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
 from rockfrag.rocking._tally import SUMMARY, balance, barrier, scratch
@@ -114,7 +115,7 @@ def stack_cases(
         first, last, parameters, intervals, free, factors, rows, offsets, lasts, samples, highest, lowest,
         closing_speed, results,
         q, x, summary, t, bodies, intervals_of, low, high, least_energy, cases, where, starts, ends, frees, events,
-    counted, repeats, contact1, contact2, factor, impacts,
+        counted, repeats, contact1, contact2, factor, impacts,
     )  # fmt: skip
 
 
@@ -235,7 +236,7 @@ def _march(
                 if case >= 0 and fell == 0.0:
                     if c1 == 0 and c2 == 0:
                         if k < end and factor[i] != 0.0:
-                            k, tau, now = _uplift(
+                            k, tau, now = uplift(
                                 k, tau, low[i], high[i], factor[i], samples, highest, lowest, end
                             )
                             if k >= 0:
@@ -325,32 +326,6 @@ def _idle(x, i):
     x[REST_OF + i] = 1.0
     x[M11 + i] = 1.0
     x[M22 + i] = 1.0
-
-
-@kernel
-def _uplift(k, tau, low, high, factor, samples, highest, lowest, end):
-    """Sample and time within it at which a body at rest rises, and the acceleration; -1 if it stays."""
-    a0 = factor * samples[k]
-    a1 = factor * samples[k + 1]
-    now = a0 + tau * (a1 - a0)
-    if now > low and now < high and a1 >= low and a1 <= high:
-        least = low / factor
-        most = high / factor
-        if factor < 0.0:
-            least, most = most, least
-        m = next_uplift(samples, highest, lowest, k + 1, end, least, most)
-        if m < 0:
-            return -1, 0.0, 0.0
-        k = m - 1
-        tau = 0.0
-        a0 = factor * samples[k]
-        a1 = factor * samples[m]
-        now = a0
-    if now > low and now < high:
-        limit = high if a1 > high else low
-        tau = min(max(tau, (limit - a0) / (a1 - a0)), 1.0 - 1e-9)
-        now = limit
-    return k, tau, now
 
 
 @kernel

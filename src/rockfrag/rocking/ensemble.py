@@ -13,15 +13,15 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import _stack_lanes as stack_lanes
 from rockfrag.rocking._compile import compiling_alone
+from rockfrag.rocking._rest import BLOCK
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.inputs import (
     COARSE_CLOSING_SPEED,
-    FREE_TIME,
     STACK_STEP,
     STEP,
     checked_scales,
+    free_samples,
     listed,
-    slowest_frequency,
     step_count,
 )
 from rockfrag.rocking.parameters import Restitution, body_parameters, lone_restitution
@@ -171,10 +171,10 @@ def _sampled(
     number = {kind: i for i, kind in enumerate(kinds)}
     sampled = [_refined(values[m], n) for n, m in kinds]
     # whole blocks each, so that no block straddles two motions
-    padded = [np.append(v, np.zeros(-v.size % lanes.BLOCK)) for v in sampled]
+    padded = [np.append(v, np.zeros(-v.size % BLOCK)) for v in sampled]
     offsets = np.concatenate([[0], np.cumsum([v.size for v in padded])])
     samples = np.concatenate(padded)
-    blocks = samples.reshape(-1, lanes.BLOCK)
+    blocks = samples.reshape(-1, BLOCK)
     return _Motions(
         samples=samples,
         highest=blocks.max(axis=1),
@@ -211,8 +211,12 @@ def _stacks(
         [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)]
     )
     motions = _sampled(bodies, values, dts, g, STACK_STEP * step)
-    slowest = np.array([slowest_frequency(body, g) for body in bodies])
-    free = np.ceil(FREE_TIME / slowest[:, np.newaxis] / motions.intervals).astype(np.int64)
+    free = np.array(
+        [
+            [free_samples(body, h, g) for h in row]
+            for body, row in zip(bodies, motions.intervals, strict=True)
+        ]
+    )
     shape = (len(bodies), *factors.shape)
     outcome = np.empty((math.prod(shape), stack_lanes.RESULTS))
 
@@ -257,7 +261,7 @@ def _lone_blocks(
     motions = _sampled(bodies, values, dts, g, step)
     intervals = motions.intervals
     bounds = zip(motions.offsets[:-1], motions.offsets[1:], strict=True)
-    parts = [slice(i // lanes.BLOCK, j // lanes.BLOCK) for i, j in bounds]
+    parts = [slice(i // BLOCK, j // BLOCK) for i, j in bounds]
     # largest and smallest sample from the beginning of a block to the end of its motion
     ahead_high = np.concatenate(
         [np.maximum.accumulate(motions.highest[part][::-1])[::-1] for part in parts]

@@ -1,7 +1,6 @@
 """Ensembles of full histories: every sample of every case straight into a Parquet file."""
 
 import itertools
-import math
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -17,11 +16,10 @@ from rockfrag.rocking._march import march
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.inputs import (
     CLOSING_SPEED,
-    FREE_TIME,
     STEP,
     checked_scales,
+    free_samples,
     listed,
-    slowest_frequency,
     step_count,
 )
 from rockfrag.rocking.parameters import Restitution, body_parameters
@@ -105,7 +103,7 @@ def stream_histories(
         b, m, s = case
         body, values = body_list[b], motions[m]
         interval, scale = float(dts[m]), float(factors[m, s])
-        free = math.ceil(FREE_TIME / slowest_frequency(body, g) / interval)
+        free = free_samples(body, interval, g)
         rows = np.empty((values.size + free, tally.HISTORY))
         # the march of simulate() without its tables of events and energy, which take most of its time
         with compiling_alone(march):

@@ -21,7 +21,7 @@ CLOSING_SPEED = 1e-6
 """Separation speed after an impact [rad/s] below which a contact stays closed in a kept history."""
 
 COARSE_CLOSING_SPEED = 1e-4
-"""Likewise where only the verdict matters: it leaves verdicts as they are (``docs/rocking.md``)."""
+"""Likewise where only the verdict matters."""
 
 FREE_TIME = 60.0
 """Free rocking after the motion is followed for at most this long, in units of 1/p."""
@@ -146,6 +146,11 @@ def slowest_frequency(body: Body, g: float) -> float:
     """Smallest frequency parameter p of the ways in which the body rocks [1/s]."""
     blocks = (body,) if isinstance(body, Block) else (body.statue, body.glued())
     return min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
+
+
+def free_samples(body: Body, dt: float, g: float) -> int:
+    """Return the most samples of free rocking that are followed after a motion."""
+    return math.ceil(FREE_TIME / slowest_frequency(body, g) / dt)
 
 
 def step_count(body: Body, dt: float, g: float, step: float) -> int:

@@ -17,10 +17,9 @@ from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.forces import contact_forces
 from rockfrag.rocking.inputs import (
     CLOSING_SPEED,
-    FREE_TIME,
     STEP,
     checked_acceleration,
-    slowest_frequency,
+    free_samples,
     step_count,
     warn_if_weak,
 )
@@ -82,7 +81,7 @@ def simulate(
     p = body_parameters(body, restitution, linear, g)
     first, second = _initial(body, theta0, "theta0"), _initial(body, omega0, "omega0")
     initial = np.array([first[0], second[0], first[1], second[1]])
-    free = math.ceil(FREE_TIME / slowest_frequency(body, g) / dt)
+    free = free_samples(body, dt, g)
     history = np.zeros((values.size + free, tally.HISTORY))
     summary = np.zeros(tally.SUMMARY)
     capacity = 4096
