@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numba
 import numpy as np
@@ -16,7 +17,9 @@ from cases import Cases
 from numpy.typing import NDArray
 
 from rockfrag.rocking import _lanes as lanes
+from rockfrag.rocking import _one_rotation as one_rotation
 from rockfrag.rocking import _stack_lanes as stack_lanes
+from rockfrag.rocking import _two_rotations as two_rotations
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.simulation import simulate
@@ -92,15 +95,21 @@ def _only_lone(rows: Array, count: int) -> None:
 
 
 @numba.njit(nogil=True)  # type: ignore[misc]
-def _only_stacks(rows: Array, count: int) -> None:
+def _only_one(rows: Array, count: int) -> None:
     for _ in range(count):
-        stack_lanes.advance(rows, 9.81)
+        one_rotation.advance(rows, 9.81)
+
+
+@numba.njit(nogil=True)  # type: ignore[misc]
+def _only_two(rows: Array, count: int) -> None:
+    for _ in range(count):
+        two_rotations.advance(rows, 9.81)
 
 
 def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
     """CPU time of all cases over that of as many lane steps of smooth arithmetic; steps per case."""
     module, name = (lanes, "lone_blocks") if kind == "lone" else (stack_lanes, "stack_cases")
-    steps = 0
+    steps = np.zeros(len(_SMOOTH[kind]), dtype=int)
     kernel = getattr(module, name)
 
     class Counted:
@@ -111,33 +120,46 @@ def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
 
         def __call__(self, *arguments: object) -> None:
             nonlocal steps
-            steps += int(kernel(*arguments))
+            steps += np.array(kernel(*arguments))
 
     setattr(module, name, Counted())
     try:
         all_cases(cases)
     finally:
         setattr(module, name, kernel)
-    count = steps // module.LANES
 
     def smooth() -> None:
-        rows = np.zeros(module.ROWS * module.LANES)
-        for row, value in _STILL[kind].items():
-            rows[row : row + module.LANES] = value
-        (_only_lone if kind == "lone" else _only_stacks)(rows, count)
+        for (part, only, still), count in zip(_SMOOTH[kind], steps, strict=True):
+            rows = np.zeros(part.ROWS * part.LANES)
+            for row, value in still.items():
+                rows[row : row + part.LANES] = value
+            only(rows, count // part.LANES)
 
     smooth()
     ratio = min(cpu_seconds(lambda: all_cases(cases), 1) / cpu_seconds(smooth, 1) for _ in range(5))
-    return ratio, steps / cases.count
+    return ratio, steps.sum() / cases.count
 
 
-# what a lane steps on with for ever: no event, no division by zero
-_STILL: dict[str, dict[int, float]] = {
-    "lone": {lanes.PSI: 0.2, lanes.ANGLE: 0.25, lanes.KAPPA: 1e-3, lanes.CREST: 10.0},
-    "stack": {
-        stack_lanes.TH1: 0.1, stack_lanes.TH2: 0.2, stack_lanes.M11: 3.0, stack_lanes.M22: 2.0,
-        stack_lanes.REST_OF: 1.0,
-    },
+# the kernels of the lanes, and what a lane steps on with for ever: no event, no division by zero
+_SMOOTH: dict[str, list[tuple[Any, Callable[[Array, int], None], dict[int, float]]]] = {
+    "lone": [
+        (
+            lanes,
+            _only_lone,
+            {lanes.PSI: 0.2, lanes.ANGLE: 0.25, lanes.KAPPA: 1e-3, lanes.CREST: 10.0, lanes.REST_OF: 1.0},
+        )
+    ],
+    "stack": [
+        (one_rotation, _only_one, {one_rotation.THETA: 0.2, one_rotation.LEFT: 1.0}),
+        (
+            two_rotations,
+            _only_two,
+            {
+                two_rotations.TH1: 0.1, two_rotations.TH2: 0.2, two_rotations.INERTIAS[0]: 3.0,
+                two_rotations.INERTIAS[1]: 2.0, two_rotations.LEFT: 1.0, two_rotations.PART: 1.0,
+            },
+        ),
+    ],
 }  # fmt: skip
 
 

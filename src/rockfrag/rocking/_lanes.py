@@ -14,9 +14,10 @@ import math
 import numba
 import numpy as np
 
-from rockfrag.rocking._compile import allocating_kernel, kernel
+from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._pendulum import rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
+from rockfrag.rocking._take import take_next
 
 LANES = 32
 # Columns of the body table, for the right pole and, POLE further on, for the left: critical angle, its
@@ -315,54 +316,41 @@ def _left_alone(psi, w, side, b, o, tally, r):
     return False
 
 
-@allocating_kernel
-def lone_blocks(
-    first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low, results
-):  # fmt: skip
-    """March cases ``first`` ≤ n < ``last`` of bodies × motions × scales, the scale running fastest.
-
-    Parameters
-    ----------
-    table : (bodies, motions, BODY)
-    factors : (motions, scales) scale over g, for samples in m/s²
-    rows : (bodies, motions) which of the sampled motions to use
-    offsets : (sampled motions + 1,) where each begins; each ends with a sample of zero
-    samples : all sampled motions end to end [m/s²]
-    highest, lowest : extremes of each BLOCK of ``samples``
-    ahead_high, ahead_low : largest and smallest sample from here to the end of the motion
-    results : (last - first, RESULTS)
-
-    Returns
-    -------
-    Number of samples that lanes were advanced by.
-    """
-    x = np.zeros(ROWS * LANES)
-    where = np.zeros(LANES, dtype=np.int64)
-    ends = np.zeros(LANES, dtype=np.int64)
-    starts = np.zeros(LANES, dtype=np.int64)
-    sides = np.zeros(LANES, dtype=np.int64)
-    cases = np.full(LANES, -1, dtype=np.int64)
-    impacts = np.zeros(LANES, dtype=np.int64)
-    counted = np.zeros(LANES, dtype=np.int64)
-    factor = np.zeros(LANES)
-    signed = np.zeros(LANES)
-    bases = np.zeros(LANES, dtype=np.int64)
-    return _march(
-        first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
-        results, x, where, ends, starts, sides, cases, impacts, counted, factor, signed, bases,
-    )  # fmt: skip
+def working_arrays():
+    """Arrays that a thread works in: rows of the lanes, and an entry per lane in each of the others."""
+    integers = [np.full(LANES, -1, np.int64) for _ in range(8)]
+    return np.zeros(ROWS * LANES), *integers, np.zeros(LANES), np.zeros(LANES)
 
 
 @kernel
-def _march(
-    first, last, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
-    results, x, where, ends, starts, sides, cases, impacts, counted, factor, signed, bases,
+def lone_blocks(
+    counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
+    results, x, where, ends, starts, sides, cases, impacts, counted, bases, factor, signed,
 ):  # fmt: skip
-    """``lone_blocks`` with its working arrays, one entry per lane in most of them."""
+    """March cases of bodies × motions × scales, the scale running fastest, until none is left.
+
+    Parameters
+    ----------
+    counter : (1,) the next case to take, shared by all threads
+    count : number of cases
+    table : (bodies × motions × BODY,)
+    factors : (motions, scales) scale over g, for samples in m/s²
+    rows : (bodies, motions) which of the sampled motions to use
+    offsets : (sampled motions + 1,) where each begins; each ends with a sample of zero
+    lasts : (sampled motions,) its last sample
+    samples : all sampled motions end to end [m/s²]
+    highest, lowest : extremes of each BLOCK of ``samples``
+    ahead_high, ahead_low : largest and smallest sample from here to the end of the motion
+    results : (count × RESULTS,)
+    x, ..., signed : ``working_arrays``
+
+    Returns
+    -------
+    Number of steps that lanes were advanced by, alone in a tuple.
+    """
     n_motions, n_scales = factors.shape
     b = table
     tally = results
-    upcoming = first
     busy = 0
     passes = 0
     filling = True
@@ -385,7 +373,7 @@ def _march(
             end = ends[i]
             side = sides[i]
             o = bases[i]
-            r = RESULTS * (case - first)
+            r = RESULTS * case
             tau = 0.0
             psi = x[PSI + i]
             w = x[RATE + i]
@@ -448,15 +436,15 @@ def _march(
                     busy -= 1
                     case = -1
                     cases[i] = -1
-                if upcoming >= last:
+                case = take_next(counter)
+                if case >= count:
+                    case = -1
                     break
-                case = upcoming
-                upcoming += 1
                 busy += 1
                 motion = (case // n_scales) % n_motions
                 o = BODY * (case // n_scales)
                 bases[i] = o
-                r = RESULTS * (case - first)
+                r = RESULTS * case
                 for n in range(RESULTS):
                     tally[r + n] = 0.0
                 tally[r + CLOSEST] = math.inf
@@ -502,7 +490,7 @@ def _march(
             x[BOUND + i] = bound
             x[CREST + i] = math.sqrt(1.0 + bound * bound)
         filling = False
-    return passes * LANES
+    return (passes * LANES,)
 
 
 @kernel

@@ -70,3 +70,20 @@ def travel(w, w1, w2, w3, w4, w5, w6, t):
 def rate(w, w1, w2, w3, w4, w5, w6, t):
     """ψ'(t)."""
     return w + t * (w1 + t * (w2 + t * (w3 + t * (w4 + t * (w5 + t * w6)))))
+
+
+@numba.njit(inline="always", error_model="numpy")
+def hops(gap, out, out_at_end, bend):
+    """Whether a contact that opens, and still opens at the end, may have closed in between.
+
+    The cubic through rate and acceleration at the start and rate at the end, over time, is
+    out + bend τ / 2 + c τ² / 3; it must have a minimum within the step that is negative, either by half.
+    """
+    c = out_at_end - out - bend
+    return (
+        (out >= 0.0)
+        & (out_at_end > 0.0)
+        & (gap + 0.5 * bend < 0.0)
+        & (-0.5 * bend < c)
+        & (bend * bend > 3.5 * out * c)
+    )

@@ -1,60 +1,41 @@
-"""Impacts of a stack from the table of its body, with time counted in samples.
+"""Impacts of a stack by the table of its body, with time counted in samples.
 
 The general treatment is in ``_mechanics.impact`` and ``_events.strike``; here are the cases that make nearly
 all impacts of an ensemble: one contact of two closes, momentum is conserved, and both come off; and a
 landing of what rocks alone (pattern 3 or 4), whose outcome is the same for every speed but for its size.
 
-The table is one flat array ``t``: views of its rows would cost more than what is read from them.  ``o`` is
-where the row of a contact state begins.
+``t`` is the table (``_stack_table``), and ``before`` and ``after`` its rows of the contact states.
 """
 
 import math
 
 from rockfrag.rocking._compile import kernel
-from rockfrag.rocking._events import restoring_table
-from rockfrag.rocking._mechanics import (
-    I1,
-    I2,
-    M1,
-    M2,
-    MEASURED,
-    arm1,
-    arm2,
-    impact,
-    kinetic_energy,
-    reach,
-)
+from rockfrag.rocking._events import COARSE_DROP, FASTEST, chatter_dies
+from rockfrag.rocking._mechanics import settle
 from rockfrag.rocking._pendulum import sine_cosine
-from rockfrag.rocking._stack_advance import (
-    COLUMNS,
-    CORNER,
-    HOLD,
-    LANES,
+from rockfrag.rocking._stack_table import (
+    AFTER1,
+    AFTER2,
+    BOTH11,
+    BOTH12,
+    BOTH21,
+    BOTH22,
+    GROUND,
     M11,
     M22,
+    NEXT1,
+    NEXT2,
+    RESTORING_AT,
+    SHARE,
     V1X,
     V1Y,
     V2X,
     V2Y,
-    contact_table,
-    row,
+    E,
+    F,
+    impacts_of,
+    state,
 )
-from rockfrag.rocking._stack_advance import E as E_ROW
-from rockfrag.rocking._stack_advance import F as F_ROW
-from rockfrag.rocking._step import RESTORED
-
-# Rows of impacts, one per contact state before: products of the velocity fields before and after, ...
-GROUND, BOTH11, BOTH12, BOTH21, BOTH22 = range(5)
-# ... and of a landing contacts and velocities after it, at unit speed before, and √ of the energy left.
-NEXT1, NEXT2, AFTER1, AFTER2, SHARE = range(5, 10)
-PRODUCTS = 10
-
-# Places in the table of a body.
-STATES = 0
-IMPACTS = STATES + 9 * COLUMNS
-RESTORING_AT = IMPACTS + 9 * PRODUCTS
-HAS_MEASURED = RESTORING_AT + RESTORED
-TABLE = HAS_MEASURED + 1
 
 CHATTER_ERROR = 1e-7
 """Largest ω² T [rad²/s] of a chatter that is closed at once; see ``chatter_closes``."""
@@ -65,70 +46,15 @@ CHATTER_TIME = 0.08
 
 
 @kernel
-def body_table(p, h, t, start):
-    """Fill the table of a body for a sampling interval h [s] from place ``start``."""
-    contact_table(p, h * h, t, start + STATES)
-    _impact_table(p, t, start + IMPACTS)
-    restoring_table(p, t, start + RESTORING_AT)
-    t[start + HAS_MEASURED] = p[MEASURED]
-
-
-@kernel
-def _impact_table(p, t, start):
-    for c1 in (-1, 1):
-        for c2 in (-1, 1):
-            o = start + PRODUCTS * row(c1, c2)
-            ax, ay = arm1(p, c1)
-            bx, by = arm1(p, -c1)
-            dx, dy = reach(p, c1, c2)
-            ex, ey = reach(p, -c1, c2)
-            t[o + GROUND] = p[I1] + p[M1] * (ax * bx + ay * by) + p[M2] * (dx * ex + dy * ey)
-            ex, ey = reach(p, c1, -c2)
-            rx, ry = arm2(p, c2)
-            sx, sy = arm2(p, -c2)
-            t[o + BOTH11] = p[I1] + p[M1] * (ax * ax + ay * ay) + p[M2] * (dx * ex + dy * ey)
-            t[o + BOTH12] = p[M2] * (ex * rx + ey * ry)
-            t[o + BOTH21] = p[M2] * (dx * sx + dy * sy)
-            t[o + BOTH22] = p[I2] + p[M2] * (rx * sx + ry * sy)
-    for c1, c2 in ((0, 1), (0, -1), (1, 0), (-1, 0)):
-        o = start + PRODUCTS * row(c1, c2)
-        old1, old2 = -1.0 * c1, -1.0 * (c1 + c2)
-        n1, n2, w1, w2 = impact(p, c1, c2, c1 != 0, c2 != 0, 0.0, old1, 0.0, old2)
-        before = kinetic_energy(p, c1, c2, 0.0, old1, 0.0, old2)
-        after = kinetic_energy(p, n1, n2, 0.0, w1, 0.0, w2)
-        t[o + NEXT1], t[o + NEXT2], t[o + AFTER1], t[o + AFTER2] = n1, n2, w1, w2
-        t[o + SHARE] = math.sqrt(after / before)
-
-
-@kernel
-def least_hold(t, o, theta, omega, ground, g):
-    """Least contact moment of the closed contact of pattern 3 or 4; negative if it would have to pull.
-
-    ``theta`` and ``omega`` are those of what rocks, ``ground`` the acceleration of the ground.
-    """
-    s, c = sine_cosine(theta)
-    v2x, v2y = t[o + V2X // LANES], t[o + V2Y // LANES]
-    alpha = (g * (v2x * c + v2y * s) - ground * (v2y * c - v2x * s)) / t[o + M22 // LANES]
-    least = math.inf
-    for at in (o + HOLD, o + HOLD + CORNER):
-        moment = (t[at] + t[at + 1] * s + t[at + 2] * c) * alpha
-        moment += (t[at + 3] + t[at + 4] * s + t[at + 5] * c) * omega * omega
-        moment += (t[at + 6] + t[at + 7] * s + t[at + 8] * c) * ground
-        moment += t[at + 9] + t[at + 10] * s + t[at + 11] * c
-        least = min(least, moment)
-    return least
-
-
-@kernel
 def _couplings(t, o, cosine, sine):
     """M11, M12, M22, D of a contact state at cos Δ, sin Δ."""
-    e, f = t[o + E_ROW // LANES], t[o + F_ROW // LANES]
-    m11, m22 = t[o + M11 // LANES], t[o + M22 // LANES]
+    e, f = t[o + E], t[o + F]
+    m11, m22 = t[o + M11], t[o + M22]
     return m11, e * cosine + f * sine, m22, f * cosine - e * sine
 
 
 @kernel
-def ground_impact(t, before, after, products, cosine, sine, omega1, omega2):
+def _ground_impact(t, before, after, products, cosine, sine, omega1, omega2):
     """Velocities after the ground closes (thesis eq. 2.68-2.71): both momenta about the new poles."""
     _, old12, m22, _ = _couplings(t, before, cosine, sine)
     m11, m12, _, _ = _couplings(t, after, cosine, sine)
@@ -139,9 +65,9 @@ def ground_impact(t, before, after, products, cosine, sine, omega1, omega2):
 
 
 @kernel
-def interface_impact(t, after, products, omega1, omega2):
+def _interface_impact(t, after, products, omega1, omega2):
     """Velocities after the interface closes, Δ = 0: momentum of the whole and of the statue."""
-    m11, m12, m22 = t[after + M11 // LANES], t[after + E_ROW // LANES], t[after + M22 // LANES]
+    m11, m12, m22 = t[after + M11], t[after + E], t[after + M22]
     q1 = t[products + BOTH11] * omega1 + t[products + BOTH12] * omega2
     q2 = t[products + BOTH21] * omega1 + t[products + BOTH22] * omega2
     share = 1.0 / (m11 * m22 - m12 * m12)
@@ -149,14 +75,17 @@ def interface_impact(t, after, products, omega1, omega2):
 
 
 @kernel
-def _opening(t, o, ground, side, s1, k1, s2, k2, omega1, omega2, g):
+def _opening(t, o, ground, side, sine, cosine, omega1, omega2, g):
     """Acceleration that opens a contact further: at zero ground acceleration, per unit of it; inertia.
 
     The inertia is that of the opening alone, the momentum that its impacts conserve being given.
     """
+    s1, k1, s2, k2 = sine, cosine, sine, cosine
+    if ground:
+        s1, k1 = 0.0, 1.0
     m11, m12, m22, d = _couplings(t, o, k2 * k1 + s2 * s1, s2 * k1 - k2 * s1)
-    v1x, v1y = t[o + V1X // LANES], t[o + V1Y // LANES]
-    v2x, v2y = t[o + V2X // LANES], t[o + V2Y // LANES]
+    v1x, v1y = t[o + V1X], t[o + V1Y]
+    v2x, v2y = t[o + V2X], t[o + V2Y]
     f1 = d * omega2 * omega2 - g * (v1x * k1 + v1y * s1)
     f2 = -d * omega1 * omega1 - g * (v2x * k2 + v2y * s2)
     a1 = v1y * k1 - v1x * s1
@@ -172,8 +101,8 @@ def _opening(t, o, ground, side, s1, k1, s2, k2, omega1, omega2, g):
 
 
 @kernel
-def chatter_closes(
-    t, before, after, ground, old, side, theta1, omega1, theta2, omega2, toward, g, k, tau, h, samples, last,
+def _chatter_closes(
+    t, before, after, ground, old, side, sine, cosine, omega1, omega2, longest, g, k, tau, h, samples, last,
     factor,
 ):  # fmt: skip
     """Whether a contact that comes off may stay closed at once, while the other is open.
@@ -191,23 +120,19 @@ def chatter_closes(
     ground : whether it is the ground's contact
     old : relative velocity before the impact
     side : sign of the opening after it
-    toward : speed at which the other contact closes, if positive
+    sine, cosine : of the statue's rotation
+    longest : time that it may take at most [samples]
     """
     speed = abs(omega1) if ground else abs(omega2 - omega1)
     if speed > FASTEST_CHATTER * h:
         return False
-    s1, k1 = sine_cosine(theta1)
-    s2, k2 = sine_cosine(theta2)
-    here, per_here, inertia = _opening(t, after, ground, side, s1, k1, s2, k2, omega1, omega2, g)
-    there, per_there, of_old = _opening(t, before, ground, -side, s1, k1, s2, k2, omega1, omega2, g)
+    here, per_here, inertia = _opening(t, after, ground, side, sine, cosine, omega1, omega2, g)
+    there, per_there, of_old = _opening(t, before, ground, -side, sine, cosine, omega1, omega2, g)
     e = speed / abs(old)
     left = e * e * inertia / of_old
     if left > 0.98:
         return False
-    gap = abs(theta2 - theta1) if ground else abs(theta1)
-    longest = CHATTER_ERROR * h / (speed * speed)
-    if toward > 0.0:
-        longest = min(longest, 0.5 * gap / toward)
+    longest = min(longest, CHATTER_ERROR * h / (speed * speed))
     hops = 3.0 * speed / (1.0 - left)
     back = left / e
     # the ground's acceleration over twice the time that its present value gives, sample by sample
@@ -238,10 +163,68 @@ def chatter_closes(
 
 
 @kernel
-def closed(t, o, ground, cosine, sine, omega1, omega2):
+def _closed(t, o, ground, cosine, sine, omega1, omega2):
     """Velocities once the contact stays closed, with the momentum of (ω1, ω2) in this state."""
     m11, m12, m22, _ = _couplings(t, o, cosine, sine)
     if ground:
         return 0.0, omega2 + m12 * omega1 / m22
     both = ((m11 + m12) * omega1 + (m12 + m22) * omega2) / (m11 + 2.0 * m12 + m22)
     return both, both
+
+
+@kernel
+def land(p, t, start, c1, c2, omega, now, closing_speed, k, tau, h, samples, last, factor):
+    """Contacts and velocities after what rocks alone lands, and whether that was possible here."""
+    products = impacts_of(start, c1, c2)
+    n1 = int(t[products + NEXT1])
+    n2 = int(t[products + NEXT2])
+    v1 = abs(omega) * t[products + AFTER1]
+    v2 = abs(omega) * t[products + AFTER2]
+    slow = closing_speed * h
+    fast = (n1 == 0 or abs(v1) >= slow) and (n2 == 0 or abs(v2 - v1) >= slow)
+    if not fast or (n1 == 0 and n2 == 0):
+        return False, n1, n2, v1, v2
+    speed = max(abs(v1), abs(v2)) / h
+    restoring = start + RESTORING_AT
+    if speed < t[restoring + FASTEST] and chatter_dies(
+        speed, t[products + SHARE], 1.5, t, restoring, COARSE_DROP, k, tau, h, samples, last, factor
+    ):
+        n1, n2, v1, v2 = 0, 0, 0.0, 0.0
+    if n1 == 0 or n2 == 0:
+        n1, n2 = settle(p, n1, n2, 0.0, v1 / h, 0.0, v2 / h, now)
+    return True, n1, n2, v1, v2
+
+
+@kernel
+def meet(
+    t, start, ground, c1, c2, theta1, omega1, theta2, omega2, g, closing_speed, k, tau, h, samples, last, factor
+):  # fmt: skip
+    """Contacts and velocities after one of two open contacts closes, and whether that was possible here."""
+    before = state(start, c1, c2)
+    products = impacts_of(start, c1, c2)
+    sine, cosine = sine_cosine(theta2)
+    if ground:
+        n1, n2 = -c1, c2
+        after = state(start, n1, n2)
+        v1, v2 = _ground_impact(t, before, after, products, cosine, sine, omega1, omega2)
+        side, off, old = n1, v1, omega1
+        gap, toward = abs(theta2), c2 * (v1 - v2)
+    else:
+        n1, n2 = c1, -c2
+        after = state(start, n1, n2)
+        v1, v2 = _interface_impact(t, after, products, omega1, omega2)
+        side, off, old = n2, v2 - v1, omega2 - omega1
+        gap, toward = abs(theta1), -c1 * v1
+    if side * off <= closing_speed * h:
+        return False, n1, n2, v1, v2
+    # half the time in which the other contact would close
+    longest = 0.5 * gap / toward if toward > 0.0 else math.inf
+    if _chatter_closes(
+        t, before, after, ground, old, side, sine, cosine, v1, v2, longest, g, k, tau, h, samples, last, factor
+    ):  # fmt: skip
+        v1, v2 = _closed(t, after, ground, cosine, sine, v1, v2)
+        if ground:
+            n1 = 0
+        else:
+            n2 = 0
+    return True, n1, n2, v1, v2

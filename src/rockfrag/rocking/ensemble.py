@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking import _lanes as lanes
+from rockfrag.rocking import _stack_cases as columns
 from rockfrag.rocking import _stack_lanes as stack_lanes
 from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking._rest import BLOCK
@@ -28,9 +29,6 @@ from rockfrag.rocking.parameters import Restitution, body_parameters, lone_resti
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
-
-LEAST_CHUNK = 128
-"""Fewest cases that a thread takes at a time, unless fewer are left."""
 
 
 @dataclass(frozen=True)
@@ -130,22 +128,23 @@ def overturns(
     return result
 
 
-def _in_parallel(kernel: Any, count: int, workers: int, work: Callable[[int, int], None]) -> None:
-    """Call ``work(first, last)``, which calls ``kernel``, on chunks of ``count`` cases."""
+def _in_parallel(
+    kernel: Any,
+    working_arrays: Callable[[], tuple[NDArray[Any], ...]],
+    workers: int,
+    count: int,
+    *arguments: object,
+) -> None:
+    """Let threads call ``kernel``, each with working arrays of its own, until no case is left."""
     with compiling_alone(kernel):
-        work(0, 0)
+        kernel(np.array([0]), 0, *arguments, *working_arrays())
+    counter = np.array([0])
+
+    def work(_: int) -> None:
+        kernel(counter, count, *arguments, *working_arrays())
+
     with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(lambda chunk: work(*chunk), _chunks(count, workers)))
-
-
-def _chunks(count: int, workers: int) -> Iterator[tuple[int, int]]:
-    """Cut the cases into chunks: large ones first, as lanes run dry at the end of each, small ones last."""
-    first = 0
-    while first < count:
-        left = count - first
-        size = left if workers == 1 else min(left, max(LEAST_CHUNK, left // (2 * workers)))
-        yield first, first + size
-        first += size
+        list(pool.map(work, range(workers)))
 
 
 @dataclass(frozen=True)
@@ -165,7 +164,7 @@ def _sampled(
     bodies: list[Body], values: list[Array], dts: Array, g: float, step: float
 ) -> _Motions:
     # a body that needs shorter steps than the samples gets the motion sampled more densely
-    times = np.array([[step_count(body, d, g, step) for d in dts] for body in bodies])
+    times = np.array([step_count(body, dts, g, step) for body in bodies])
     times = 2 ** np.ceil(np.log2(times)).astype(int)
     kinds = sorted({(int(n), m) for m in range(len(values)) for n in times[:, m]})
     number = {kind: i for i, kind in enumerate(kinds)}
@@ -212,37 +211,32 @@ def _stacks(
     )
     motions = _sampled(bodies, values, dts, g, STACK_STEP * step)
     free = np.array(
-        [
-            [free_samples(body, h, g) for h in row]
-            for body, row in zip(bodies, motions.intervals, strict=True)
-        ]
+        [free_samples(body, h, g) for body, h in zip(bodies, motions.intervals, strict=True)]
     )
     shape = (len(bodies), *factors.shape)
-    outcome = np.empty((math.prod(shape), stack_lanes.RESULTS))
+    parts = np.ones(motions.intervals.shape)
+    outcome = np.empty((math.prod(shape), columns.RESULTS))
 
-    def work(first: int, last: int) -> None:
-        stack_lanes.stack_cases(
-            first, last, parameters, motions.intervals, free, factors, motions.rows, motions.offsets,
-            motions.lasts, motions.samples, motions.highest, motions.lowest, COARSE_CLOSING_SPEED,
-            outcome[first:last],
-        )  # fmt: skip
-
-    _in_parallel(stack_lanes.stack_cases, len(outcome), workers, work)
-    outcome = outcome.reshape(*shape, stack_lanes.RESULTS)
-    fallen = outcome[..., stack_lanes.FALLEN]
+    _in_parallel(
+        stack_lanes.stack_cases, stack_lanes.working_arrays, workers, len(outcome), parameters,
+        motions.intervals, parts, free, factors, motions.rows, motions.offsets, motions.lasts, motions.samples,
+        motions.highest, motions.lowest, COARSE_CLOSING_SPEED, outcome,
+    )  # fmt: skip
+    outcome = outcome.reshape(*shape, columns.RESULTS)
+    fallen = outcome[..., columns.R_FALLEN]
     interval = motions.intervals[:, :, np.newaxis]
     result.overturned[rows] = fallen > 0
     result.overturned_body[rows] = fallen
     result.overturning_time[rows] = np.where(
-        fallen > 0, outcome[..., stack_lanes.CERTAIN] * interval, np.nan
+        fallen > 0, outcome[..., columns.R_CERTAIN] * interval, np.nan
     )
-    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, outcome[..., stack_lanes.PEAK2])
+    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, outcome[..., columns.R_PEAK2])
     result.peak_rotation_pedestal[rows] = np.where(
-        fallen == 1, np.inf, outcome[..., stack_lanes.PEAK1]
+        fallen == 1, np.inf, outcome[..., columns.R_PEAK1]
     )
-    result.peak_velocity[rows] = outcome[..., stack_lanes.SPEED] / interval
-    result.impacts[rows] = outcome[..., stack_lanes.IMPACTS]
-    result.closest_approach[rows] = outcome[..., stack_lanes.CLOSEST]
+    result.peak_velocity[rows] = outcome[..., columns.R_SPEED] / interval
+    result.impacts[rows] = outcome[..., columns.R_IMPACTS]
+    result.closest_approach[rows] = outcome[..., columns.R_CLOSEST]
 
 
 def _lone_blocks(
@@ -279,14 +273,11 @@ def _lone_blocks(
     per_g = factors / g
     outcome = np.empty((math.prod(shape), lanes.RESULTS))
 
-    def work(first: int, last: int) -> None:
-        lanes.lone_blocks(
-            first, last, table.ravel(), per_g, motions.rows, motions.offsets, motions.lasts,
-            motions.samples, motions.highest, motions.lowest, ahead_high, ahead_low,
-            outcome[first:last].reshape(-1),
-        )  # fmt: skip
-
-    _in_parallel(lanes.lone_blocks, len(outcome), workers, work)
+    _in_parallel(
+        lanes.lone_blocks, lanes.working_arrays, workers, len(outcome), table.ravel(), per_g, motions.rows,
+        motions.offsets, motions.lasts, motions.samples, motions.highest, motions.lowest, ahead_high,
+        ahead_low, outcome.reshape(-1),
+    )  # fmt: skip
     outcome = outcome.reshape(*shape, lanes.RESULTS)
     fallen = outcome[..., lanes.OVERTURNED] > 0
     interval = intervals[:, :, np.newaxis]

@@ -96,19 +96,19 @@ def stream_histories(
     parameters = [body_parameters(b, e, g=g) for b, e in zip(body_list, per_body, strict=True)]
     for body in body_list:
         # refused here and not in the middle of the file: the longest interval needs most steps
-        step_count(body, float(dts.max(initial=0.0)), g, step)
+        step_count(body, dts, g, step)
     total = len(body_list) * factors.size
 
     def history(case: Case) -> pa.Table:
         b, m, s = case
         body, values = body_list[b], motions[m]
         interval, scale = float(dts[m]), float(factors[m, s])
-        free = free_samples(body, interval, g)
+        free = int(free_samples(body, interval, g))
         rows = np.empty((values.size + free, tally.HISTORY))
         # the march of simulate() without its tables of events and energy, which take most of its time
         with compiling_alone(march):
             done = march(
-                parameters[b], values, interval, scale, step_count(body, interval, g, step), free,
+                parameters[b], values, interval, scale, int(step_count(body, interval, g, step)), free,
                 np.zeros(4), CLOSING_SPEED, rows, np.empty((0, tally.EVENT)), tally.scratch(),
                 np.empty(tally.SUMMARY),
             )  # fmt: skip

@@ -148,24 +148,25 @@ def slowest_frequency(body: Body, g: float) -> float:
     return min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
 
 
-def free_samples(body: Body, dt: float, g: float) -> int:
-    """Return the most samples of free rocking that are followed after a motion."""
-    return math.ceil(FREE_TIME / slowest_frequency(body, g) / dt)
+def free_samples(body: Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
+    """Return the most samples of free rocking that are followed after a motion, for every interval."""
+    return np.ceil(FREE_TIME / slowest_frequency(body, g) / np.asarray(dt)).astype(np.int64)
 
 
-def step_count(body: Body, dt: float, g: float, step: float) -> int:
-    """Steps per sample so that p h does not exceed ``step``.
+def step_count(body: Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.int64]:
+    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval.
 
     Raises
     ------
     InputError
-        If ``step`` is not positive, or ``dt`` is far too long for the body.
+        If ``step`` is not positive, or an interval is far too long for the body.
     """
     if not (math.isfinite(step) and step > 0):
         raise InputError(f"step: expected a positive number, got {step}.")
-    steps = math.ceil(fastest_frequency(body, g) * dt / step - 1e-9)
-    if steps > 10_000:
+    frequency = fastest_frequency(body, g)
+    steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
+    if steps.max(initial=0) > 10_000:
         raise InputError(
-            f"dt: {dt} s is too long for a block of p = {fastest_frequency(body, g):.3g} 1/s."
+            f"dt: {np.max(dt)} s is too long for a block of p = {frequency:.3g} 1/s."
         )
-    return max(1, steps)
+    return np.maximum(1, steps).astype(np.int64)

@@ -81,7 +81,7 @@ def simulate(
     p = body_parameters(body, restitution, linear, g)
     first, second = _initial(body, theta0, "theta0"), _initial(body, omega0, "omega0")
     initial = np.array([first[0], second[0], first[1], second[1]])
-    free = free_samples(body, dt, g)
+    free = int(free_samples(body, dt, g))
     history = np.zeros((values.size + free, tally.HISTORY))
     summary = np.zeros(tally.SUMMARY)
     capacity = 4096
@@ -89,7 +89,7 @@ def simulate(
         events = np.zeros((capacity, tally.EVENT))
         with compiling_alone(march):
             done = march(
-                p, values, float(dt), 1.0, step_count(body, dt, g, STEP), free, initial,
+                p, values, float(dt), 1.0, int(step_count(body, dt, g, STEP)), free, initial,
                 CLOSING_SPEED, history, events, tally.scratch(), summary,
             )  # fmt: skip
         count = int(summary[tally.N_EVENTS])

@@ -1,0 +1,16 @@
+"""One counter that threads share."""
+
+from numba import types
+from numba.extending import intrinsic
+
+
+@intrinsic
+def take_next(typing_context, counter):  # type: ignore[no-untyped-def]
+    """Return the first entry of an integer array and add 1 to it, in one step that no thread can interrupt."""
+
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        array = context.make_array(signature.args[0])(context, builder, arguments[0])
+        one = context.get_constant(types.int64, 1)
+        return builder.atomic_rmw("add", array.data, one, "monotonic")
+
+    return types.int64(counter), generate
