@@ -37,6 +37,15 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     return _compiled(function, _nrt=False)
 
 
+def inlined_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Compile ``function`` as :func:`kernel` does, into every kernel that calls it.
+
+    Arrays are handed on entry by entry (seven numbers each), which for functions called at every event costs
+    more than they do.
+    """
+    return _compiled(function, _nrt=False, forceinline=True)
+
+
 def allocating_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile ``function`` as :func:`kernel` does, and let it allocate arrays."""
     return _compiled(function)

@@ -10,7 +10,7 @@ import numba
 import numpy as np
 
 from rockfrag.rocking import _stack_table as table
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import between
 from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._series import ORDER, closing_time, crossing_time, slope, value
@@ -121,7 +121,7 @@ def advance(x, g):
         x[LEFT + i] = 1.0 if quiet else left
 
 
-@kernel
+@inlined_kernel
 def take_series(x, i, q):
     """Copy the series of a lane's step into the scratch array of the events, and of the gap too."""
     q[SERIES] = x[THETA + i]
@@ -148,7 +148,7 @@ def go_back(x, i, g):
     x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i] = w1, w2, w3, w4, w5, w6
 
 
-@kernel
+@inlined_kernel
 def next_event(t, o, x, i, q, g):
     """Time in the lane's step of its next event, 2 if there is none; whether the closed contact lets go."""
     left, now = x[LEFT + i], x[GROUND + i]
@@ -166,7 +166,7 @@ def next_event(t, o, x, i, q, g):
     return when, False
 
 
-@kernel
+@inlined_kernel
 def least_hold(t, o, theta, omega, ground, g):
     """Least contact moment of the closed contact; negative if it would have to pull."""
     s, c = sine_cosine(theta)
@@ -216,7 +216,7 @@ def _release(t, o, q, end, left, now, ramp, g):
     return high
 
 
-@kernel
+@inlined_kernel
 def nearest(t, o, x, i, theta, omega):
     """Largest θ/θcritical, |θ'| and least distance from balance squared, up to an event at θ, θ'."""
     ratio = t[o + table.PER_ANGLE] * theta

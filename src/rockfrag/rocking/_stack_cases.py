@@ -8,7 +8,7 @@ import math
 
 from rockfrag.rocking import _one_rotation as one
 from rockfrag.rocking import _two_rotations as two
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import COARSE_DROP, MAX_EVENTS_PER_STEP, let_go, rest_interval, strike
 from rockfrag.rocking._mechanics import (
     first_moment2,
@@ -77,7 +77,7 @@ R_FALLEN, R_CERTAIN, R_PEAK1, R_PEAK2, R_SPEED, R_IMPACTS, R_CLOSEST = range(7)
 RESULTS = 7
 
 
-@kernel
+@inlined_kernel
 def kind_of(n, j):
     """Which lanes the case of slot j needs: 0 for those of one rotation, 1 for those of two; -1 for none."""
     if n[CASE + j] < 0:
@@ -85,7 +85,7 @@ def kind_of(n, j):
     return 1 if n[C1 + j] != 0 and n[C2 + j] != 0 else 0
 
 
-@kernel
+@inlined_kernel
 def goes_on(n, j):
     """Whether the case of slot j rocks on within its motion."""
     return n[FELL + j] == 0 and n[K + j] < n[END + j] and (n[C1 + j] != 0 or n[C2 + j] != 0)
@@ -183,7 +183,7 @@ def _safe(p, s, n, j):
     return True
 
 
-@kernel
+@inlined_kernel
 def _crowded(n, j):
     """Count an event of slot j; whether its sample has had so many that contacts must stay closed."""
     if n[CROWDED + j] != n[K + j]:
@@ -193,7 +193,7 @@ def _crowded(n, j):
     return n[CROWD + j] > MAX_EVENTS_PER_STEP
 
 
-@kernel
+@inlined_kernel
 def _put(s, n, j, c1, c2, t1, w1, t2, w2, tau):
     """Put the state after an event, or at the end of the step, into slot j."""
     stuck = n[CROWDED + j] == n[K + j] and n[CROWD + j] > MAX_EVENTS_PER_STEP + 20
@@ -222,7 +222,7 @@ def _strike(
     return n1, n2, v1 * h, v2 * h
 
 
-@kernel
+@inlined_kernel
 def event_of_one(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, summary):
     """Take the case of slot j, in lane i of those of one rotation, through its event or to the step's end."""
     if x[one.FLAG + i] == one.RELEASE and x[one.BEFORE + i] == 1.0:
@@ -266,7 +266,7 @@ def event_of_one(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
     _put(s, n, j, c1, c2, t1, w1, t2, w2, tau)
 
 
-@kernel
+@inlined_kernel
 def event_of_two(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, summary):
     """Take the case of slot j, in lane i of those of two rotations, through its event or to the step's end."""
     two.take_series(x, i, q)
@@ -304,13 +304,13 @@ def event_of_two(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
     _put(s, n, j, c1, c2, t1, w1, t2, w2, tau)
 
 
-@kernel
+@inlined_kernel
 def _peak(c2):
     """Where a slot keeps the largest rotation of what rotates alone."""
     return PEAK1 if c2 == 0 else PEAK2
 
 
-@kernel
+@inlined_kernel
 def place_one(i, j, x, s, n, t, samples):
     """Place the case of slot j into lane i of those of one rotation."""
     c1, c2 = n[C1 + j], n[C2 + j]
@@ -325,7 +325,7 @@ def place_one(i, j, x, s, n, t, samples):
     x[one.RATIO + i], x[one.FAST + i], x[one.NEAR + i] = s[_peak(c2) + j], s[FAST + j], s[NEAR + j]
 
 
-@kernel
+@inlined_kernel
 def place_two(i, j, x, s, n, t, samples):
     """Place the case of slot j into lane i of those of two rotations."""
     c1, c2 = n[C1 + j], n[C2 + j]
@@ -341,7 +341,7 @@ def place_two(i, j, x, s, n, t, samples):
     x[two.FAST + i], x[two.NEAR + i] = s[FAST + j], s[NEAR + j]
 
 
-@kernel
+@inlined_kernel
 def _ground(s, n, j, samples):
     """Acceleration of the ground at the time of slot j and at the end of its sample."""
     k, end, factor = n[K + j], n[END + j], s[FACTOR + j]
@@ -350,7 +350,7 @@ def _ground(s, n, j, samples):
     return before + s[TAU + j] * (after - before), after
 
 
-@kernel
+@inlined_kernel
 def store_one(i, j, x, s, n):
     """Store what lane i of those of one rotation has reached at the end of a sample in slot j."""
     alone = n[C2 + j] != 0
@@ -360,7 +360,7 @@ def store_one(i, j, x, s, n):
     s[TAU + j] = 0.0
 
 
-@kernel
+@inlined_kernel
 def store_two(i, j, x, s):
     """Likewise of those of two rotations."""
     s[TH1 + j], s[RATE1 + j] = x[two.TH1 + i], x[two.RATE1 + i]

@@ -9,7 +9,7 @@ landing of what rocks alone (pattern 3 or 4), whose outcome is the same for ever
 
 import math
 
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import COARSE_DROP, FASTEST, chatter_dies
 from rockfrag.rocking._mechanics import settle
 from rockfrag.rocking._pendulum import sine_cosine
@@ -45,7 +45,7 @@ CHATTER_TIME = 0.08
 """Time [s] over which the ground is looked at, at most, before a chatter is closed."""
 
 
-@kernel
+@inlined_kernel
 def _couplings(t, o, cosine, sine):
     """M11, M12, M22, D of a contact state at cos Δ, sin Δ."""
     e, f = t[o + E], t[o + F]
@@ -53,7 +53,7 @@ def _couplings(t, o, cosine, sine):
     return m11, e * cosine + f * sine, m22, f * cosine - e * sine
 
 
-@kernel
+@inlined_kernel
 def _ground_impact(t, before, after, products, cosine, sine, omega1, omega2):
     """Velocities after the ground closes (thesis eq. 2.68-2.71): both momenta about the new poles."""
     _, old12, m22, _ = _couplings(t, before, cosine, sine)
@@ -64,7 +64,7 @@ def _ground_impact(t, before, after, products, cosine, sine, omega1, omega2):
     return (m22 * q1 - m12 * q2) * share, (m11 * q2 - m12 * q1) * share
 
 
-@kernel
+@inlined_kernel
 def _interface_impact(t, after, products, omega1, omega2):
     """Velocities after the interface closes, Δ = 0: momentum of the whole and of the statue."""
     m11, m12, m22 = t[after + M11], t[after + E], t[after + M22]
@@ -74,7 +74,7 @@ def _interface_impact(t, after, products, omega1, omega2):
     return (m22 * q1 - m12 * q2) * share, (m11 * q2 - m12 * q1) * share
 
 
-@kernel
+@inlined_kernel
 def _opening(t, o, ground, side, sine, cosine, omega1, omega2, g):
     """Acceleration that opens a contact further: at zero ground acceleration, per unit of it; inertia.
 
@@ -100,7 +100,7 @@ def _opening(t, o, ground, side, sine, cosine, omega1, omega2, g):
     return scale * (by1 * f1 + by2 * f2), scale * (by1 * a1 + by2 * a2), inertia
 
 
-@kernel
+@inlined_kernel
 def _chatter_closes(
     t, before, after, ground, old, side, sine, cosine, omega1, omega2, longest, g, k, tau, h, samples, last,
     factor,
@@ -162,7 +162,7 @@ def _chatter_closes(
     return hops * (1.0 / least + back / other) <= min(longest, span)
 
 
-@kernel
+@inlined_kernel
 def _closed(t, o, ground, cosine, sine, omega1, omega2):
     """Velocities once the contact stays closed, with the momentum of (ω1, ω2) in this state."""
     m11, m12, m22, _ = _couplings(t, o, cosine, sine)
@@ -172,7 +172,7 @@ def _closed(t, o, ground, cosine, sine, omega1, omega2):
     return both, both
 
 
-@kernel
+@inlined_kernel
 def land(p, t, start, c1, c2, omega, now, closing_speed, k, tau, h, samples, last, factor):
     """Contacts and velocities after what rocks alone lands, and whether that was possible here."""
     products = impacts_of(start, c1, c2)
@@ -195,7 +195,7 @@ def land(p, t, start, c1, c2, omega, now, closing_speed, k, tau, h, samples, las
     return True, n1, n2, v1, v2
 
 
-@kernel
+@inlined_kernel
 def meet(
     t, start, ground, c1, c2, theta1, omega1, theta2, omega2, g, closing_speed, k, tau, h, samples, last, factor
 ):  # fmt: skip

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from rockfrag.rocking import _stack_table as table
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import first_closing, ground_gap, interface_gap
 from rockfrag.rocking._pendulum import hops, rate, sine_cosine, travel
 from rockfrag.rocking._series import crossing_time
@@ -145,13 +145,13 @@ def advance(x, g):
         x[LEFT + i] = left - span if flag == WITHIN else (1.0 if quiet else left)
 
 
-@kernel
+@inlined_kernel
 def span_of(x, i):
     """Length of a lane's step."""
     return x[LEFT + i] if x[LEFT + i] <= x[PART + i] + REMNANT else x[PART + i]
 
 
-@kernel
+@inlined_kernel
 def take_series(x, i, q):
     """Copy the series of a lane's step into the scratch array of the events."""
     span = span_of(x, i)
@@ -162,7 +162,7 @@ def take_series(x, i, q):
         q[SERIES2 + 2 + n] = x[Q1 + n * LANES + i] * (1.0 / (n + 2))
 
 
-@kernel
+@inlined_kernel
 def next_event(c1, c2, x, i, q):
     """Time in the lane's step of its first closing, 2 if there is none; whether ground and interface close."""
     if x[FLAG + i] != CLOSES:
@@ -177,7 +177,7 @@ def next_event(c1, c2, x, i, q):
     return when, when1 <= when + 1e-13, when2 <= when + 1e-13
 
 
-@kernel
+@inlined_kernel
 def nearest(t, o, x, i, theta1, omega1, theta2, omega2):
     """Largest θ/θcritical of both, |θ2'|, least distance from balance squared, up to an event at θ, θ'."""
     ratio1 = t[o + table.PER_ANGLE1] * theta1

@@ -209,12 +209,16 @@ def _stacks(
     parameters = np.array(
         [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)]
     )
-    motions = _sampled(bodies, values, dts, g, STACK_STEP * step)
+    motions = _sampled(bodies, values, dts, g, step)
     free = np.array(
         [free_samples(body, h, g) for body, h in zip(bodies, motions.intervals, strict=True)]
     )
     shape = (len(bodies), *factors.shape)
-    parts = np.ones(motions.intervals.shape)
+    shares = [
+        step_count(body, h, g, STACK_STEP * step)
+        for body, h in zip(bodies, motions.intervals, strict=True)
+    ]
+    parts = 1.0 / np.array(shares)
     outcome = np.empty((math.prod(shape), columns.RESULTS))
 
     _in_parallel(
