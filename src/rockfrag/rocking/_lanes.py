@@ -17,7 +17,7 @@ import numpy as np
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._pendulum import rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
-from rockfrag.rocking._take import take_next
+from rockfrag.rocking._intrinsics import take_next
 
 LANES = 32
 # Columns of the body table, for the right pole and, POLE further on, for the left: critical angle, its

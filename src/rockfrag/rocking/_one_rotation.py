@@ -23,29 +23,37 @@ LANES = 16
 # Rows of the lanes after those of the table's columns.
 (
     SIGN,  # side that the rocking contact opens to
-    THETA,
-    OMEGA,
-    GROUND,  # acceleration now and at the end of the sample
-    GROUND_END,
-    LEFT,  # the part of the sample that is left
     FACTOR,
+    GROUND_END,  # acceleration of the ground at the end of the sample
+    THETA,  # the state; the acceleration of the ground; the part of the sample that is left
+    OMEGA,
+    GROUND,
+    LEFT,
+    RATIO,  # extremes so far: of θ/θcritical, |θ'|, and distance from balance squared
+    FAST,
+    NEAR,
     FLAG,
-    BEFORE_THETA,  # where the step before began, if it had no event
+    WAS_THETA,  # these where the step began ...
+    WAS_OMEGA,
+    WAS_GROUND,
+    WAS_LEFT,
+    WAS_RATIO,
+    WAS_FAST,
+    WAS_NEAR,
+    BEFORE_THETA,  # ... and where the step before that began, if BEFORE
     BEFORE_OMEGA,
     BEFORE_GROUND,
     BEFORE_LEFT,
     BEFORE,
+    STEPS,
     W1,  # Taylor coefficients of θ'
     W2,
     W3,
     W4,
     W5,
     W6,
-    RATIO,  # extremes since the last event: of θ/θcritical, |θ'|, and distance from balance squared
-    FAST,
-    NEAR,
-) = (LANES * row for row in range(ONE_COLUMNS, ONE_COLUMNS + 22))
-ROWS = ONE_COLUMNS + 22
+) = (LANES * row for row in range(ONE_COLUMNS, ONE_COLUMNS + 30))
+ROWS = ONE_COLUMNS + 30
 
 # The table's columns as rows of the lanes.
 _GX, _GY, _PER_ANGLE, _PER_SPEED = (
@@ -69,24 +77,27 @@ def _moment(x, o, stride, s, c, alpha, square, a):
 
 @kernel
 def advance(x, g):
-    """Advance every lane to the end of its sample; flag those with an event, which stay where they are."""
+    """Advance every lane to the end of its sample, and flag those with an event in between.
+
+    Everything is stored in every lane: conditional stores cost many times as much.
+    """
     for i in range(LANES):
         left = x[LEFT + i]
         theta = x[THETA + i]
         omega = x[OMEGA + i]
         a = x[GROUND + i]
+        a_end = x[GROUND_END + i]
         per = 1.0 / left
         w = omega * left
         s, c = sine_cosine(theta)
         gx, gy = x[_GX + i], x[_GY + i]
         down = -1.0 / g
         w1, w2, w3, w4, w5, w6 = rates(
-            gx * c + gy * s, gy * c - gx * s, w, left * left, a * down,
-            (x[GROUND_END + i] - a) * down,
-        )  # fmt: skip
+            gx * c + gy * s, gy * c - gx * s, w, left * left, a * down, (a_end - a) * down
+        )
+        x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i] = w1, w2, w3, w4, w5, w6
         n = theta + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
         z = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
-        x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i] = w1, w2, w3, w4, w5, w6
         # the contact closes, nearly closes, or may close and open again
         sign = x[SIGN + i]
         gap = sign * theta
@@ -100,32 +111,36 @@ def advance(x, g):
         alpha = w1 * per * per
         right = _moment(x, _RIGHT + i, LANES, s, c, alpha, square, a)
         other = _moment(x, _LEFT + i, LANES, s, c, alpha, square, a)
-        flag = RELEASE if min(right, other) < 0.0 else flag
-        x[FLAG + i] = flag
-        # without an event the lane is at the end of the sample
-        quiet = flag == QUIET
+        x[FLAG + i] = RELEASE if (right < 0.0) | (other < 0.0) else flag
+        x[BEFORE_THETA + i] = x[WAS_THETA + i]
+        x[BEFORE_OMEGA + i] = x[WAS_OMEGA + i]
+        x[BEFORE_GROUND + i] = x[WAS_GROUND + i]
+        x[BEFORE_LEFT + i] = x[WAS_LEFT + i]
+        x[BEFORE + i] = x[STEPS + i]
+        x[STEPS + i] = 1.0
+        x[WAS_THETA + i] = theta
+        x[WAS_OMEGA + i] = omega
+        x[WAS_GROUND + i] = a
+        x[WAS_LEFT + i] = left
+        x[THETA + i] = n
         z = z * per
+        x[OMEGA + i] = z
+        x[GROUND + i] = a_end
+        x[LEFT + i] = 1.0
+        was_ratio, was_fast, was_near = x[RATIO + i], x[FAST + i], x[NEAR + i]
+        x[WAS_RATIO + i], x[WAS_FAST + i], x[WAS_NEAR + i] = was_ratio, was_fast, was_near
         ratio = x[_PER_ANGLE + i] * n
         near = (1.0 - ratio) * (1.0 - ratio) + x[_PER_SPEED + i] * z * z
-        x[RATIO + i] = max(x[RATIO + i], ratio if quiet else 0.0)
-        x[FAST + i] = max(x[FAST + i], abs(z) if quiet else 0.0)
-        x[NEAR + i] = min(x[NEAR + i], near if quiet else np.inf)
-        x[BEFORE_THETA + i] = theta if quiet else x[BEFORE_THETA + i]
-        x[BEFORE_OMEGA + i] = omega if quiet else x[BEFORE_OMEGA + i]
-        x[BEFORE_GROUND + i] = a if quiet else x[BEFORE_GROUND + i]
-        x[BEFORE_LEFT + i] = left if quiet else x[BEFORE_LEFT + i]
-        x[BEFORE + i] = 1.0 if quiet else x[BEFORE + i]
-        x[THETA + i] = n if quiet else theta
-        x[OMEGA + i] = z if quiet else omega
-        x[GROUND + i] = x[GROUND_END + i] if quiet else a
-        x[LEFT + i] = 1.0 if quiet else left
+        x[RATIO + i] = max(was_ratio, ratio)
+        x[FAST + i] = max(was_fast, abs(z))
+        x[NEAR + i] = min(was_near, near)
 
 
 @inlined_kernel
 def take_series(x, i, q):
     """Copy the series of a lane's step into the scratch array of the events, and of the gap too."""
-    q[SERIES] = x[THETA + i]
-    q[SERIES + 1] = x[OMEGA + i] * x[LEFT + i]
+    q[SERIES] = x[WAS_THETA + i]
+    q[SERIES + 1] = x[WAS_OMEGA + i] * x[WAS_LEFT + i]
     for n in range(6):
         q[SERIES + 2 + n] = x[W1 + n * LANES + i] * (1.0 / (n + 2))
     for n in range(ORDER + 1):
@@ -136,9 +151,9 @@ def take_series(x, i, q):
 def go_back(x, i, g):
     """Put a lane back to where its last step began, and work its series out again."""
     theta, omega, left = x[BEFORE_THETA + i], x[BEFORE_OMEGA + i], x[BEFORE_LEFT + i]
-    end, a = x[GROUND + i], x[BEFORE_GROUND + i]
-    x[THETA + i], x[OMEGA + i], x[LEFT + i] = theta, omega, left
-    x[GROUND_END + i], x[GROUND + i] = end, a
+    end, a = x[WAS_GROUND + i], x[BEFORE_GROUND + i]
+    x[WAS_THETA + i], x[WAS_OMEGA + i], x[WAS_LEFT + i] = theta, omega, left
+    x[GROUND_END + i], x[WAS_GROUND + i] = end, a
     s, c = sine_cosine(theta)
     gx, gy = x[_GX + i], x[_GY + i]
     down = -1.0 / g
@@ -151,7 +166,7 @@ def go_back(x, i, g):
 @inlined_kernel
 def next_event(t, o, x, i, q, g):
     """Time in the lane's step of its next event, 2 if there is none; whether the closed contact lets go."""
-    left, now = x[LEFT + i], x[GROUND + i]
+    left, now = x[WAS_LEFT + i], x[WAS_GROUND + i]
     ramp = x[GROUND_END + i] - now
     if x[FLAG + i] == CLOSES:
         when = crossing_time(q, GAP)
@@ -221,4 +236,4 @@ def nearest(t, o, x, i, theta, omega):
     """Largest θ/θcritical, |θ'| and least distance from balance squared, up to an event at θ, θ'."""
     ratio = t[o + table.PER_ANGLE] * theta
     near = (1.0 - ratio) * (1.0 - ratio) + t[o + table.PER_SPEED] * omega * omega
-    return max(x[RATIO + i], ratio), max(x[FAST + i], abs(omega)), min(x[NEAR + i], near)
+    return max(x[WAS_RATIO + i], ratio), max(x[WAS_FAST + i], abs(omega)), min(x[WAS_NEAR + i], near)

@@ -32,7 +32,7 @@ from rockfrag.rocking._stack_table import (
 )
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
-from rockfrag.rocking._take import take_next
+from rockfrag.rocking._intrinsics import take_next
 from rockfrag.rocking._tally import balance, barrier
 
 SLOTS = one.LANES + two.LANES
@@ -232,7 +232,7 @@ def event_of_one(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
     one.take_series(x, i, q)
     c1, c2 = n[C1 + j], n[C2 + j]
     o = state(TABLE * j, c1, c2)
-    left = x[one.LEFT + i]
+    left = x[one.WAS_LEFT + i]
     when, fails = one.next_event(t, o, x, i, q, g)
     at = min(1.0, when)
     theta, omega = value(q, SERIES1, at), slope(q, SERIES1, at) / left
@@ -242,7 +242,7 @@ def event_of_one(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
     tau = 1.0
     if when <= 1.0:
         tau -= left * (1.0 - at)
-        now = x[one.GROUND + i] + (x[one.GROUND_END + i] - x[one.GROUND + i]) * at
+        now = x[one.WAS_GROUND + i] + (x[one.GROUND_END + i] - x[one.WAS_GROUND + i]) * at
         p = parameters[n[BODY + j]]
         h = s[INTERVAL + j]
         forced = _crowded(n, j)
@@ -271,7 +271,7 @@ def event_of_two(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
     """Take the case of slot j, in lane i of those of two rotations, through its event or to the step's end."""
     two.take_series(x, i, q)
     c1, c2 = n[C1 + j], n[C2 + j]
-    left, span = x[two.LEFT + i], two.span_of(x, i)
+    left, span = x[two.WAS_LEFT + i], two.span_of(x, i)
     when, closes1, closes2 = two.next_event(c1, c2, x, i, q)
     at = min(1.0, when)
     t1, w1 = value(q, SERIES1, at), slope(q, SERIES1, at) / span
@@ -281,7 +281,7 @@ def event_of_two(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
     )
     tau = 1.0 - left + span * at
     if when <= 1.0:
-        now = x[two.GROUND + i] + (x[two.GROUND_END + i] - x[two.GROUND + i]) * (at * span / left)
+        now = x[two.WAS_GROUND + i] + (x[two.GROUND_END + i] - x[two.WAS_GROUND + i]) * (at * span / left)
         forced = _crowded(n, j)
         if closes1:
             t1 = 0.0
@@ -321,7 +321,7 @@ def place_one(i, j, x, s, n, t, samples):
     x[one.THETA + i], x[one.OMEGA + i] = s[TH2 + j], s[RATE2 + j]
     x[one.FACTOR + i], x[one.LEFT + i] = s[FACTOR + j], 1.0 - s[TAU + j]
     x[one.GROUND + i], x[one.GROUND_END + i] = _ground(s, n, j, samples)
-    x[one.BEFORE + i] = 0.0
+    x[one.STEPS + i] = 0.0
     x[one.RATIO + i], x[one.FAST + i], x[one.NEAR + i] = s[_peak(c2) + j], s[FAST + j], s[NEAR + j]
 
 

@@ -26,16 +26,30 @@ LANES = 16
 (
     SIGN1,  # sides that ground and interface open to
     SIGN2,
-    TH1,
+    FACTOR,
+    PART,  # the largest part of a sample that a step may take
+    GROUND_END,  # acceleration of the ground at the end of the sample
+    TH1,  # the state; the acceleration of the ground; the part of the sample that is left
     RATE1,
     TH2,
     RATE2,
-    GROUND,  # acceleration now and at the end of the sample
-    GROUND_END,
-    LEFT,  # the part of the sample that is left
-    PART,  # the largest part that a step may take
-    FACTOR,
+    GROUND,
+    LEFT,
+    RATIO1,  # extremes so far: of θ/θcritical, |θ2'|, and distance from balance squared
+    RATIO2,
+    FAST,
+    NEAR,
     FLAG,
+    WAS_TH1,  # these where the step began
+    WAS_RATE1,
+    WAS_TH2,
+    WAS_RATE2,
+    WAS_GROUND,
+    WAS_LEFT,
+    WAS_RATIO1,
+    WAS_RATIO2,
+    WAS_FAST,
+    WAS_NEAR,
     P1,  # Taylor coefficients of both rates
     P2,
     P3,
@@ -48,12 +62,8 @@ LANES = 16
     Q4,
     Q5,
     Q6,
-    RATIO1,  # extremes since the last event: of θ/θcritical, |θ2'|, and distance from balance squared
-    RATIO2,
-    FAST,
-    NEAR,
-) = (LANES * row for row in range(TWO_COLUMNS, TWO_COLUMNS + 28))
-ROWS = TWO_COLUMNS + 28
+) = (LANES * row for row in range(TWO_COLUMNS, TWO_COLUMNS + 38))
+ROWS = TWO_COLUMNS + 38
 
 # The table's columns as rows of the lanes.
 _V1X, _V1Y, _V2X, _V2Y, _M11, _M22, _E, _F, _PER_ANGLE1, _PER_ANGLE2, _PER_SPEED1, _PER_SPEED2 = (
@@ -69,9 +79,10 @@ REMNANT = 1e-12
 
 @kernel
 def advance(x, g):
-    """Advance every lane by a step; flag those with an event, which stay where they are.
+    """Advance every lane by a step, and flag those with an event in it.
 
     A lane is QUIET at the end of its sample, and WITHIN it after a step that does not reach that end.
+    Everything is stored in every lane: conditional stores cost many times as much.
     """
     for i in range(LANES):
         left = x[LEFT + i]
@@ -80,10 +91,13 @@ def advance(x, g):
         scale = span * span
         t1 = x[TH1 + i]
         t2 = x[TH2 + i]
-        w1 = x[RATE1 + i] * span
-        w2 = x[RATE2 + i] * span
+        rate1 = x[RATE1 + i]
+        rate2 = x[RATE2 + i]
+        w1 = rate1 * span
+        w2 = rate2 * span
         a = x[GROUND + i]
-        rise = (x[GROUND_END + i] - a) * (span / left)
+        a_end = x[GROUND_END + i]
+        rise = (a_end - a) * (span / left)
         s1, c1 = sine_cosine(t1)
         s2, c2 = sine_cosine(t2)
         sd = s2 * c1 - c2 * s1
@@ -124,39 +138,47 @@ def advance(x, g):
         flag = CLOSES if closes else flag
         flag = NEARS if dips | hop | lies else flag
         x[FLAG + i] = flag
-        # without an event the lane is at the end of the step
-        quiet = flag < CLOSES
+        x[WAS_TH1 + i] = t1
+        x[WAS_RATE1 + i] = rate1
+        x[WAS_TH2 + i] = t2
+        x[WAS_RATE2 + i] = rate2
+        x[WAS_GROUND + i] = a
+        x[WAS_LEFT + i] = left
         per = 1.0 / span
         z1 = z1 * per
         z2 = z2 * per
+        x[TH1 + i] = n1
+        x[RATE1 + i] = z1
+        x[TH2 + i] = n2
+        x[RATE2 + i] = z2
+        x[GROUND + i] = a + rise if span < left else a_end
+        x[LEFT + i] = left - span if span < left else 1.0
+        was_ratio1, was_ratio2 = x[RATIO1 + i], x[RATIO2 + i]
+        was_fast, was_near = x[FAST + i], x[NEAR + i]
+        x[WAS_RATIO1 + i], x[WAS_RATIO2 + i] = was_ratio1, was_ratio2
+        x[WAS_FAST + i], x[WAS_NEAR + i] = was_fast, was_near
         ratio1 = x[_PER_ANGLE1 + i] * n1
         ratio2 = x[_PER_ANGLE2 + i] * n2
         away1 = (1.0 - ratio1) * (1.0 - ratio1) + x[_PER_SPEED1 + i] * z1 * z1
         away2 = (1.0 - ratio2) * (1.0 - ratio2) + x[_PER_SPEED2 + i] * z2 * z2
-        x[RATIO1 + i] = max(x[RATIO1 + i], ratio1 if quiet else 0.0)
-        x[RATIO2 + i] = max(x[RATIO2 + i], ratio2 if quiet else 0.0)
-        x[FAST + i] = max(x[FAST + i], abs(z2) if quiet else 0.0)
-        x[NEAR + i] = min(x[NEAR + i], min(away1, away2) if quiet else np.inf)
-        x[TH1 + i] = n1 if quiet else t1
-        x[TH2 + i] = n2 if quiet else t2
-        x[RATE1 + i] = z1 if quiet else x[RATE1 + i]
-        x[RATE2 + i] = z2 if quiet else x[RATE2 + i]
-        x[GROUND + i] = a + rise if flag == WITHIN else (x[GROUND_END + i] if quiet else a)
-        x[LEFT + i] = left - span if flag == WITHIN else (1.0 if quiet else left)
+        x[RATIO1 + i] = max(was_ratio1, ratio1)
+        x[RATIO2 + i] = max(was_ratio2, ratio2)
+        x[FAST + i] = max(was_fast, abs(z2))
+        x[NEAR + i] = min(was_near, min(away1, away2))
 
 
 @inlined_kernel
 def span_of(x, i):
     """Length of a lane's step."""
-    return x[LEFT + i] if x[LEFT + i] <= x[PART + i] + REMNANT else x[PART + i]
+    return x[WAS_LEFT + i] if x[WAS_LEFT + i] <= x[PART + i] + REMNANT else x[PART + i]
 
 
 @inlined_kernel
 def take_series(x, i, q):
     """Copy the series of a lane's step into the scratch array of the events."""
     span = span_of(x, i)
-    q[SERIES1], q[SERIES1 + 1] = x[TH1 + i], x[RATE1 + i] * span
-    q[SERIES2], q[SERIES2 + 1] = x[TH2 + i], x[RATE2 + i] * span
+    q[SERIES1], q[SERIES1 + 1] = x[WAS_TH1 + i], x[WAS_RATE1 + i] * span
+    q[SERIES2], q[SERIES2 + 1] = x[WAS_TH2 + i], x[WAS_RATE2 + i] * span
     for n in range(6):
         q[SERIES1 + 2 + n] = x[P1 + n * LANES + i] * (1.0 / (n + 2))
         q[SERIES2 + 2 + n] = x[Q1 + n * LANES + i] * (1.0 / (n + 2))
@@ -185,8 +207,8 @@ def nearest(t, o, x, i, theta1, omega1, theta2, omega2):
     away1 = (1.0 - ratio1) * (1.0 - ratio1) + t[o + table.PER_SPEED1] * omega1 * omega1
     away2 = (1.0 - ratio2) * (1.0 - ratio2) + t[o + table.PER_SPEED2] * omega2 * omega2
     return (
-        max(x[RATIO1 + i], ratio1),
-        max(x[RATIO2 + i], ratio2),
-        max(x[FAST + i], abs(omega2)),
-        min(x[NEAR + i], min(away1, away2)),
+        max(x[WAS_RATIO1 + i], ratio1),
+        max(x[WAS_RATIO2 + i], ratio2),
+        max(x[WAS_FAST + i], abs(omega2)),
+        min(x[WAS_NEAR + i], min(away1, away2)),
     )

@@ -1,4 +1,4 @@
-"""One counter that threads share."""
+"""Operations that the processor has and the compiler does not offer."""
 
 from numba import types
 from numba.extending import intrinsic
@@ -14,3 +14,13 @@ def take_next(typing_context, counter):  # type: ignore[no-untyped-def]
         return builder.atomic_rmw("add", array.data, one, "monotonic")
 
     return types.int64(counter), generate
+
+
+@intrinsic
+def fma(typing_context, a, b, c):  # type: ignore[no-untyped-def]
+    """Return a b + c, rounded once: everywhere the same, unlike multiply-adds that a compiler chooses."""
+
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        return builder.fma(*arguments)
+
+    return types.float64(types.float64, types.float64, types.float64), generate
