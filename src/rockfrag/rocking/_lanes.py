@@ -45,13 +45,22 @@ HALF_TURN = 0.5 * math.pi
 
 # Rows of the lanes, in one flat array so that the compiler sees that rows do not overlap.
 (
-    PSI,
+    PSI,  # the state
     RATE,
-    ANGLE,
-    KAPPA,
     A0,  # A now and at the end of the sample
     A1,
     REST_OF,  # the part of the sample that is left
+    LOW,  # extremes of the case so far: ψ/θc, ψ', distance from balance squared
+    FAST,
+    NEAR,
+    WAS_PSI,  # these where the step began
+    WAS_RATE,
+    WAS_REST_OF,
+    WAS_LOW,
+    WAS_FAST,
+    WAS_NEAR,
+    ANGLE,
+    KAPPA,
     BOUND,  # the most that A can be from here on, and √(1 + bound²)
     CREST,
     FLAG,
@@ -63,18 +72,17 @@ HALF_TURN = 0.5 * math.pi
     W6,
     PER_ANGLE,  # 1/θc and 1/(κ θc²)
     PER_SPEED,
-    LOW,  # extremes of the case so far: ψ/θc, ψ', distance from balance squared
-    FAST,
-    NEAR,
-) = (LANES * row for row in range(21))
-ROWS = 21
+) = (LANES * row for row in range(27))
+ROWS = 27
 
 QUIET, TOUCHES, CERTAIN_FALL = 0.0, 1.0, 2.0
 
 
 @kernel
 def advance(x):
-    """Advance every lane to the end of its sample; flag those with an event, which stay where they are.
+    """Advance every lane to the end of its sample, and flag those with an event in between.
+
+    Everything is stored in every lane: conditional stores cost many times as much.
 
     A fall is certain, whatever the ground does, in this case.  Let tan φ = ``BOUND``, the most that A can
     be in the rest of the motion.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side
@@ -88,9 +96,10 @@ def advance(x):
         kappa = x[KAPPA + i]
         angle = x[ANGLE + i]
         a = x[A0 + i]
+        a_end = x[A1 + i]
         w = speed * left
         s, c = sine_cosine(psi)
-        w1, w2, w3, w4, w5, w6 = rates(s, c, w, kappa * left * left, a, x[A1 + i] - a)
+        w1, w2, w3, w4, w5, w6 = rates(s, c, w, kappa * left * left, a, a_end - a)
         p = psi + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
         v = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
         x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i] = w1, w2, w3, w4, w5, w6
@@ -103,19 +112,21 @@ def advance(x):
         flag = TOUCHES if touches | grazes | lies | hops else QUIET
         flag = CERTAIN_FALL if certain else flag
         x[FLAG + i] = flag
-        quiet = flag == QUIET
         # the turning point of a parabola lies between the samples
         turn = psi + 0.5 * w * w / min(w - v, -1e-300)
         low = (turn if (w < 0.0) & (v > 0.0) else p) * x[PER_ANGLE + i]
         v = v / left
-        x[LOW + i] = min(x[LOW + i], low if quiet else 1.0)
-        x[FAST + i] = max(x[FAST + i], abs(v) if quiet else 0.0)
         near = low * low + v * v * x[PER_SPEED + i]
-        x[NEAR + i] = min(x[NEAR + i], near if quiet else np.inf)
-        x[PSI + i] = p if quiet else psi
-        x[RATE + i] = v if quiet else speed
-        x[A0 + i] = x[A1 + i] if quiet else a
-        x[REST_OF + i] = 1.0 if quiet else left
+        was_low, was_fast, was_near = x[LOW + i], x[FAST + i], x[NEAR + i]
+        x[WAS_LOW + i], x[WAS_FAST + i], x[WAS_NEAR + i] = was_low, was_fast, was_near
+        x[LOW + i] = min(was_low, low)
+        x[FAST + i] = max(was_fast, abs(v))
+        x[NEAR + i] = min(was_near, near)
+        x[WAS_PSI + i], x[WAS_RATE + i], x[WAS_REST_OF + i] = psi, speed, left
+        x[PSI + i] = p
+        x[RATE + i] = v
+        x[A0 + i] = a_end
+        x[REST_OF + i] = 1.0
 
 
 @kernel
@@ -237,11 +248,11 @@ def _event(x, i, tally, r):
 
     What the response reaches on the way goes into the tally.
     """
-    psi = x[PSI + i]
-    left = x[REST_OF + i]
+    psi = x[WAS_PSI + i]
+    left = x[WAS_REST_OF + i]
     angle = x[ANGLE + i]
     kappa = x[KAPPA + i]
-    w = x[RATE + i] * left
+    w = x[WAS_RATE + i] * left
     w1, w2, w3, w4, w5, w6 = (
         x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i],
     )  # fmt: skip
@@ -378,8 +389,11 @@ def lone_blocks(
             psi = x[PSI + i]
             w = x[RATE + i]
             fell = False
+            if case >= 0 and x[FLAG + i] != QUIET:
+                x[LOW + i], x[FAST + i], x[NEAR + i] = x[WAS_LOW + i], x[WAS_FAST + i], x[WAS_NEAR + i]
             if case >= 0 and x[FLAG + i] == CERTAIN_FALL:
                 # at the latest it passes balance at the speed that energy leaves it
+                psi, w = x[WAS_PSI + i], x[WAS_RATE + i]
                 near = w * w / x[KAPPA + i]
                 if psi > 0.0:
                     near -= 2.0 * (1.0 - math.cos(psi))
@@ -397,7 +411,7 @@ def lone_blocks(
                     tau = 1.0
                     fell = psi <= x[ANGLE + i] - HALF_TURN
                 else:
-                    tau = 1.0 - x[REST_OF + i] * (1.0 - t)
+                    tau = 1.0 - x[WAS_REST_OF + i] * (1.0 - t)
                     tally[r + IMPACTS] += 1.0
                     if counted[i] != k:
                         counted[i] = k
