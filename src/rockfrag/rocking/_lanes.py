@@ -14,8 +14,8 @@ import math
 import numba
 import numpy as np
 
-from rockfrag.rocking._compile import kernel
-from rockfrag.rocking._pendulum import rate, rates, sine_cosine, travel
+from rockfrag.rocking._compile import inlined_kernel, kernel
+from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
 from rockfrag.rocking._intrinsics import take_next
 
@@ -108,8 +108,8 @@ def advance(x):
         touches = p >= angle
         lies = p <= angle - HALF_TURN
         # leaves, and may fall back and be pulled open again before the sample is over
-        hops = (w <= 0.0) & (v < 0.0) & (psi + 0.5 * w1 >= angle)
-        flag = TOUCHES if touches | grazes | lies | hops else QUIET
+        falls_back = hops(angle - psi, -w, -v, -w1)
+        flag = TOUCHES if touches | grazes | lies | falls_back else QUIET
         flag = CERTAIN_FALL if certain else flag
         x[FLAG + i] = flag
         # the turning point of a parabola lies between the samples
@@ -129,7 +129,7 @@ def advance(x):
         x[REST_OF + i] = 1.0
 
 
-@kernel
+@inlined_kernel
 def _flight(gap, w, w1, w2, w3, w4, w5, w6, high):
     """Time at which ψ reaches the angle of impact, ``gap`` below it; 2 if it never left it.
 
@@ -200,7 +200,7 @@ def _graze(gap, w, w1, w2, w3, w4, w5, w6):
     return high
 
 
-@kernel
+@inlined_kernel
 def _dies_out(w, side, k, tau, end, factor, samples, b, o):
     """Whether the impacts after a launch at speed ``w`` end before anything else can happen.
 
@@ -242,7 +242,7 @@ def _dies_out(w, side, k, tau, end, factor, samples, b, o):
     return False
 
 
-@kernel
+@inlined_kernel
 def _event(x, i, tally, r):
     """Time of the next impact in the lane's step, or 2; ψ and ψ' then or at the end; whether it never left.
 
@@ -257,13 +257,12 @@ def _event(x, i, tally, r):
         x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i],
     )  # fmt: skip
     gap = psi - angle
-    p = psi + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
-    v = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
+    p, v = x[PSI + i], x[RATE + i]
     t = 2.0
     if p >= angle:
         t = _flight(gap, w, w1, w2, w3, w4, w5, w6, 1.0)
         if t > 1.0:
-            return t, p, v / left, True
+            return t, p, v, True
     elif w > 0.0 and v < 0.0:
         t = _graze(gap, w, w1, w2, w3, w4, w5, w6)
     elif w <= 0.0 and v < 0.0 and min(gap, 0.0) + 0.5 * w1 >= 0.0:
@@ -273,11 +272,11 @@ def _event(x, i, tally, r):
                 t = _flight(gap, w, w1, w2, w3, w4, w5, w6, part / 8)
                 break
     if t > 1.0:
-        _note(tally, r, p, v / left, angle, kappa)
+        _note(tally, r, p, v, angle, kappa)
         if w < 0.0 and v > 0.0:
-            low = psi + travel(w, w1, w2, w3, w4, w5, w6, w / (w - v))
+            low = psi + travel(w, w1, w2, w3, w4, w5, w6, w / (w - v * left))
             _note(tally, r, low, 0.0, angle, kappa)
-        return t, p, v / left, False
+        return t, p, v, False
     v = max(0.0, rate(w, w1, w2, w3, w4, w5, w6, t)) / left
     if gap >= 0.0:
         # the highest point of a flight that begins and ends in this step
@@ -287,7 +286,7 @@ def _event(x, i, tally, r):
     return t, angle, v, False
 
 
-@kernel
+@inlined_kernel
 def _note(tally, r, psi, w, angle, kappa):
     """Keep the largest rotation and speed and the closest approach to balance."""
     tally[r + RATIO] = max(tally[r + RATIO], 1.0 - psi / angle)
@@ -507,13 +506,13 @@ def lone_blocks(
     return (passes * LANES,)
 
 
-@kernel
+@inlined_kernel
 def _bound(side, factor, most, least):
     """Largest A that can still push a block on this pole back down."""
     return max(0.0, factor * most * side, factor * least * side)
 
 
-@kernel
+@inlined_kernel
 def _take_over(x, i, tally, r):
     """Take a lane's extremes over into the tally of its case."""
     tally[r + RATIO] = max(tally[r + RATIO], 1.0 - x[LOW + i])
