@@ -17,7 +17,7 @@ import numpy as np
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
-from rockfrag.rocking._intrinsics import take_next
+from rockfrag.rocking._intrinsics import lowest_bit, take_next
 
 LANES = 32
 # Columns of the body table, for the right pole and, POLE further on, for the left: critical angle, its
@@ -72,8 +72,25 @@ HALF_TURN = 0.5 * math.pi
     W6,
     PER_ANGLE,  # 1/θc and 1/(κ θc²)
     PER_SPEED,
-) = (LANES * row for row in range(27))
-ROWS = 27
+    FACTOR,  # scale of the motion over g, and that times the side of the pole
+    SIGNED,
+    TAU,  # time since sample K, between events
+) = (LANES * row for row in range(30))
+ROWS = 30
+
+# Rows of the lanes' integers.
+(
+    CASE,  # -1 for none
+    K,  # the sample it has reached, its motion's last one and first
+    END,
+    START,
+    SIDE,  # 1 on the right pole, -1 on the left, 0 at rest
+    BASE,  # place of its body in the table
+    FELL,
+    CROWDED,  # the sample of the last impact, and how many it has had
+    CROWD,
+) = (LANES * row for row in range(9))
+INTEGERS = 9
 
 QUIET, TOUCHES, CERTAIN_FALL = 0.0, 1.0, 2.0
 
@@ -327,15 +344,14 @@ def _left_alone(psi, w, side, b, o, tally, r):
 
 
 def working_arrays():
-    """Arrays that a thread works in: rows of the lanes, and an entry per lane in each of the others."""
-    integers = [np.full(LANES, -1, np.int64) for _ in range(8)]
-    return np.zeros(ROWS * LANES), *integers, np.zeros(LANES), np.zeros(LANES)
+    """Arrays that a thread works in: rows of the lanes, of numbers and of integers."""
+    return np.zeros(ROWS * LANES), np.zeros(INTEGERS * LANES, np.int64)
 
 
 @kernel
 def lone_blocks(
     counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
-    results, x, where, ends, starts, sides, cases, impacts, counted, bases, factor, signed,
+    results, x, n,
 ):  # fmt: skip
     """March cases of bodies × motions × scales, the scale running fastest, until none is left.
 
@@ -352,158 +368,194 @@ def lone_blocks(
     highest, lowest : extremes of each BLOCK of ``samples``
     ahead_high, ahead_low : largest and smallest sample from here to the end of the motion
     results : (count × RESULTS,)
-    x, ..., signed : ``working_arrays``
+    x, n : ``working_arrays``
 
     Returns
     -------
     Number of steps that lanes were advanced by, alone in a tuple.
     """
-    n_motions, n_scales = factors.shape
-    b = table
-    tally = results
     busy = 0
+    for i in range(LANES):
+        n[CASE + i] = -1
+        _carry_on(
+            i, x, n, counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest, results
+        )
+        _place(i, x, n, table, samples, ahead_high, ahead_low)
+        if n[CASE + i] >= 0:
+            busy += 1
     passes = 0
-    filling = True
-    while filling or busy > 0:
-        if not filling:
-            passes += 1
-            advance(x)
-        for i in range(LANES):
-            case = cases[i]
-            if not filling:
-                if case < 0:
-                    continue
-                if x[FLAG + i] == QUIET:
-                    k = where[i] + 1
-                    where[i] = k
-                    if k < ends[i]:
-                        x[A1 + i] = signed[i] * samples[k + 1]
-                        continue
-            k = where[i]
-            end = ends[i]
-            side = sides[i]
-            o = bases[i]
-            r = RESULTS * case
-            tau = 0.0
-            psi = x[PSI + i]
-            w = x[RATE + i]
-            fell = False
-            if case >= 0 and x[FLAG + i] != QUIET:
-                x[LOW + i], x[FAST + i], x[NEAR + i] = x[WAS_LOW + i], x[WAS_FAST + i], x[WAS_NEAR + i]
-            if case >= 0 and x[FLAG + i] == CERTAIN_FALL:
-                # at the latest it passes balance at the speed that energy leaves it
-                psi, w = x[WAS_PSI + i], x[WAS_RATE + i]
-                near = w * w / x[KAPPA + i]
-                if psi > 0.0:
-                    near -= 2.0 * (1.0 - math.cos(psi))
-                else:
-                    near += psi * psi
-                near = math.sqrt(max(0.0, near)) / x[ANGLE + i]
-                tally[r + CLOSEST] = min(tally[r + CLOSEST], near)
-                fell = True
-            elif case >= 0 and x[FLAG + i] != QUIET:
-                t, psi, w, stays = _event(x, i, tally, r)
-                if stays:
-                    side = 0
-                    tau = 1.0
-                elif t > 1.0:
-                    tau = 1.0
-                    fell = psi <= x[ANGLE + i] - HALF_TURN
-                else:
-                    tau = 1.0 - x[WAS_REST_OF + i] * (1.0 - t)
-                    tally[r + IMPACTS] += 1.0
-                    if counted[i] != k:
-                        counted[i] = k
-                        impacts[i] = 0
-                    impacts[i] += 1
-                    w = -w * b[o + _at(side) + E_FROM]
-                    side = -side
-                    psi = b[o + _at(side) + ALPHA]
-                    still = w > -1e-12 or impacts[i] > MAX_IMPACTS_PER_SAMPLE
-                    if still or _dies_out(-w, side, k, tau, end, factor[i], samples, b, o):
-                        side = 0
-                if tau >= 1.0 - 1e-13:
-                    k += 1
-                    tau = 0.0
-            # through rest and the ends of motions, and through as many cases as end there
-            while True:
-                if case >= 0:
-                    if not fell and side == 0 and k < end and factor[i] != 0.0:
-                        k, tau, now = uplift(
-                            k, tau, -b[o + TAN], b[o + POLE + TAN], factor[i], samples, highest, lowest, end
-                        )  # fmt: skip
-                        if k >= 0:
-                            # the ground pushes the block over the other way
-                            side = -1 if now > 0.0 else 1
-                            psi = b[o + _at(side) + ALPHA]
-                            w = 0.0
-                    if not fell and side != 0:
-                        if k < end:
-                            break
-                        fell = _left_alone(psi, w, side, b, o, tally, r)
-                    if fell:
-                        tally[r + OVERTURNED] = 1.0
-                        tally[r + CERTAIN] = k - starts[i]
-                    if cases[i] == case:
-                        _take_over(x, i, tally, r)
-                    busy -= 1
-                    case = -1
-                    cases[i] = -1
-                case = take_next(counter)
-                if case >= count:
-                    case = -1
-                    break
-                busy += 1
-                motion = (case // n_scales) % n_motions
-                o = BODY * (case // n_scales)
-                bases[i] = o
-                r = RESULTS * case
-                for n in range(RESULTS):
-                    tally[r + n] = 0.0
-                tally[r + CLOSEST] = math.inf
-                factor[i] = factors[motion, case % n_scales]
-                sampled = rows[case // (n_scales * n_motions), motion]
-                k = offsets[sampled]
-                starts[i] = k
-                end = lasts[sampled]
-                ends[i] = end
-                counted[i] = -1
-                side = 0
-                tau = 0.0
-                fell = False
-            if case < 0:
-                # a lane without a case stands still at a harmless place
-                for n in range(ROWS):
-                    x[n * LANES + i] = 0.0
-                x[REST_OF + i] = 1.0
-                x[ANGLE + i] = 1.0
-                x[CREST + i] = 10.0
+    while busy > 0:
+        passes += 1
+        advance(x)
+        stops = _next_sample(x, n, samples)
+        while stops != 0:
+            i = lowest_bit(stops)
+            stops &= stops - 1
+            if n[CASE + i] < 0:
                 continue
-            if cases[i] != case:
-                cases[i] = case
-                x[LOW + i] = 1.0
-                x[FAST + i] = 0.0
-                x[NEAR + i] = math.inf
-            sides[i] = side
-            where[i] = k
-            signed[i] = side * factor[i]
-            j = _at(side)
-            before = signed[i] * samples[k]
-            after = signed[i] * samples[k + 1]
-            x[A0 + i] = before + tau * (after - before)
-            x[A1 + i] = after
-            x[REST_OF + i] = 1.0 - tau
-            x[PSI + i] = psi
-            x[RATE + i] = w
-            x[ANGLE + i] = b[o + j + ALPHA]
-            x[KAPPA + i] = b[o + j + SWING]
-            x[PER_ANGLE + i] = b[o + j + PER_ALPHA]
-            x[PER_SPEED + i] = b[o + j + PER_SWING]
-            bound = _bound(side, factor[i], ahead_high[k // BLOCK], ahead_low[k // BLOCK])
-            x[BOUND + i] = bound
-            x[CREST + i] = math.sqrt(1.0 + bound * bound)
-        filling = False
+            if x[FLAG + i] == CERTAIN_FALL:
+                _fall(i, x, n, results)
+            elif x[FLAG + i] != QUIET:
+                _take_event(i, x, n, table, samples, results)
+            else:
+                x[TAU + i] = 0.0
+            if n[FELL + i] != 0 or n[SIDE + i] == 0 or n[K + i] >= n[END + i]:
+                _carry_on(
+                    i, x, n, counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest,
+                    results,
+                )  # fmt: skip
+                if n[CASE + i] < 0:
+                    busy -= 1
+            _place(i, x, n, table, samples, ahead_high, ahead_low)
     return (passes * LANES,)
+
+
+@inlined_kernel
+def _next_sample(x, n, samples):
+    """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop."""
+    stops = 0
+    for i in range(LANES):
+        k = n[K + i] + (1 if x[FLAG + i] == QUIET else 0)
+        n[K + i] = k
+        stops |= (1 << i) if (x[FLAG + i] != QUIET) | (k >= n[END + i]) else 0
+    for i in range(LANES):
+        x[A1 + i] = x[SIGNED + i] * samples[min(n[K + i] + 1, n[END + i])]
+    return stops
+
+
+@inlined_kernel
+def _fall(i, x, n, tally):
+    """Take note of a lane's certain fall, which passes balance at the speed that energy leaves it at the latest."""
+    r = RESULTS * n[CASE + i]
+    _restore_extremes(i, x)
+    psi, w = x[WAS_PSI + i], x[WAS_RATE + i]
+    near = w * w / x[KAPPA + i]
+    if psi > 0.0:
+        near -= 2.0 * (1.0 - math.cos(psi))
+    else:
+        near += psi * psi
+    near = math.sqrt(max(0.0, near)) / x[ANGLE + i]
+    tally[r + CLOSEST] = min(tally[r + CLOSEST], near)
+    n[FELL + i] = 1
+
+
+@inlined_kernel
+def _restore_extremes(i, x):
+    """Forget what the step of a lane would have reached without its event."""
+    x[LOW + i], x[FAST + i], x[NEAR + i] = x[WAS_LOW + i], x[WAS_FAST + i], x[WAS_NEAR + i]
+
+
+@inlined_kernel
+def _take_event(i, x, n, b, samples, tally):
+    """Take a lane through the impact in its step, or to the step's end if there is none."""
+    r = RESULTS * n[CASE + i]
+    o, k, side = n[BASE + i], n[K + i], n[SIDE + i]
+    _restore_extremes(i, x)
+    t, psi, w, stays = _event(x, i, tally, r)
+    tau = 1.0
+    if stays:
+        side = 0
+    elif t > 1.0:
+        if psi <= x[ANGLE + i] - HALF_TURN:
+            n[FELL + i] = 1
+    else:
+        tau -= x[WAS_REST_OF + i] * (1.0 - t)
+        tally[r + IMPACTS] += 1.0
+        if n[CROWDED + i] != k:
+            n[CROWDED + i] = k
+            n[CROWD + i] = 0
+        n[CROWD + i] += 1
+        w = -w * b[o + _at(side) + E_FROM]
+        side = -side
+        psi = b[o + _at(side) + ALPHA]
+        still = w > -1e-12 or n[CROWD + i] > MAX_IMPACTS_PER_SAMPLE
+        if still or _dies_out(-w, side, k, tau, n[END + i], x[FACTOR + i], samples, b, o):
+            side = 0
+    if tau >= 1.0 - 1e-13:
+        n[K + i] = k + 1
+        tau = 0.0
+    n[SIDE + i] = side
+    x[PSI + i], x[RATE + i], x[TAU + i] = psi, w, tau
+
+
+@kernel
+def _carry_on(
+    i, x, n, counter, count, b, factors, rows, offsets, lasts, samples, highest, lowest, tally
+):  # fmt: skip
+    """Take a lane through rest and the ends of motions, and through as many cases as end there."""
+    n_motions, n_scales = factors.shape
+    while True:
+        case, o = n[CASE + i], n[BASE + i]
+        if case >= 0:
+            r = RESULTS * case
+            k, end, factor = n[K + i], n[END + i], x[FACTOR + i]
+            if n[FELL + i] == 0 and n[SIDE + i] == 0 and k < end and factor != 0.0:
+                k, tau, now = uplift(
+                    k, x[TAU + i], -b[o + TAN], b[o + POLE + TAN], factor, samples, highest, lowest, end
+                )
+                if k >= 0:
+                    # the ground pushes the block over the other way
+                    side = -1 if now > 0.0 else 1
+                    n[K + i], x[TAU + i], n[SIDE + i] = k, tau, side
+                    x[PSI + i], x[RATE + i] = b[o + _at(side) + ALPHA], 0.0
+            if n[FELL + i] == 0 and n[SIDE + i] != 0:
+                if n[K + i] < end:
+                    return
+                if _left_alone(x[PSI + i], x[RATE + i], n[SIDE + i], b, o, tally, r):
+                    n[FELL + i] = 1
+            if n[FELL + i] != 0:
+                tally[r + OVERTURNED] = 1.0
+                tally[r + CERTAIN] = n[K + i] - n[START + i]
+            _take_over(x, i, tally, r)
+        case = take_next(counter)
+        if case >= count:
+            n[CASE + i] = -1
+            return
+        motion = (case // n_scales) % n_motions
+        n[CASE + i] = case
+        n[BASE + i] = BODY * (case // n_scales)
+        r = RESULTS * case
+        for m in range(RESULTS):
+            tally[r + m] = 0.0
+        tally[r + CLOSEST] = math.inf
+        x[LOW + i], x[FAST + i], x[NEAR + i] = 1.0, 0.0, math.inf
+        x[FACTOR + i] = factors[motion, case % n_scales]
+        x[TAU + i] = 0.0
+        sampled = rows[case // (n_scales * n_motions), motion]
+        n[START + i] = offsets[sampled]
+        n[K + i] = offsets[sampled]
+        n[END + i] = lasts[sampled]
+        n[SIDE + i], n[FELL + i], n[CROWDED + i] = 0, 0, -1
+
+
+@inlined_kernel
+def _place(i, x, n, b, samples, ahead_high, ahead_low):
+    """Place what a lane rocks on with; a lane without a case stands still at a harmless place."""
+    if n[CASE + i] < 0:
+        for m in range(ROWS):
+            x[m * LANES + i] = 0.0
+        for m in range(1, INTEGERS):
+            n[m * LANES + i] = 0
+        x[REST_OF + i] = 1.0
+        x[ANGLE + i] = 1.0
+        x[CREST + i] = 10.0
+        return
+    k, side, factor, tau = n[K + i], n[SIDE + i], x[FACTOR + i], x[TAU + i]
+    signed = side * factor
+    x[SIGNED + i] = signed
+    before = signed * samples[k]
+    after = signed * samples[k + 1]
+    x[A0 + i] = before + tau * (after - before)
+    x[A1 + i] = after
+    x[REST_OF + i] = 1.0 - tau
+    j = n[BASE + i] + _at(side)
+    x[ANGLE + i] = b[j + ALPHA]
+    x[KAPPA + i] = b[j + SWING]
+    x[PER_ANGLE + i] = b[j + PER_ALPHA]
+    x[PER_SPEED + i] = b[j + PER_SWING]
+    bound = _bound(side, factor, ahead_high[k // BLOCK], ahead_low[k // BLOCK])
+    x[BOUND + i] = bound
+    x[CREST + i] = math.sqrt(1.0 + bound * bound)
 
 
 @inlined_kernel
