@@ -17,6 +17,7 @@ import numpy as np
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
+from rockfrag.rocking._series import crossing
 from rockfrag.rocking._intrinsics import lowest_bit, take_next
 
 LANES = 32
@@ -147,50 +148,12 @@ def advance(x):
 
 
 @inlined_kernel
-def _flight(gap, w, w1, w2, w3, w4, w5, w6, high):
-    """Time at which ψ reaches the angle of impact, ``gap`` below it; 2 if it never left it.
-
-    The angle is passed by the time ``high``.
-    """
-    low = 0.0
-    last = high
-    square = w * w - 2.0 * w1 * gap
-    if gap >= 0.0:
-        # just left this pole: look behind the root at 0
-        gap = 0.0
-        guess = -2.0 * w / w1 if w1 > 0.0 else 0.5 * last
-        low = min(1e-3 * last, 0.5 * guess)
-        while travel(w, w1, w2, w3, w4, w5, w6, low) >= 0.0:
-            low *= 0.1
-            if low < 1e-13:
-                return 2.0
-    else:
-        guess = -2.0 * gap / (w + math.sqrt(square)) if square > 0.0 else 0.5 * last
-    for _ in range(100):
-        if not low < guess < high:
-            guess = 0.5 * (low + high)
-        # pairs of terms side by side, which is quicker than Horner's chain
-        t = guess
-        t2 = t * t
-        t4 = t2 * t2
-        f = (w + 0.5 * w1 * t) + t2 * (1 / 3 * w2 + 0.25 * w3 * t)
-        f = gap + t * (f + t4 * ((0.2 * w4 + 1 / 6 * w5 * t) + 1 / 7 * w6 * t2))
-        d = (w + w1 * t) + t2 * (w2 + w3 * t) + t4 * ((w4 + w5 * t) + w6 * t2)
-        if f < 0.0:
-            low = guess
-        else:
-            high = guess
-        # Chebyshev's step: Newton's with the curve's bend
-        step = 0.0
-        if d != 0.0:
-            per = 1.0 / d
-            step = f * per
-            step += 0.5 * step * step * (w1 + 2.0 * w2 * t) * per
-        guess -= step
-        # the error after this step is below its square
-        if abs(step) <= 1e-7 or high - low <= 1e-15:
-            break
-    return min(max(guess, 0.0), last)
+def _flight(gap, w, w1, w2, w3, w4, w5, w6, end):
+    """Time at which ψ reaches the angle of impact, ``gap`` below it and passed by the time ``end``; 2 if it never left."""
+    t = crossing(
+        -gap, -w, -0.5 * w1, -1 / 3 * w2, -0.25 * w3, -0.2 * w4, -1 / 6 * w5, -1 / 7 * w6, end
+    )
+    return 2.0 if gap >= 0.0 and t == 0.0 else t
 
 
 @kernel

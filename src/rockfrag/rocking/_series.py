@@ -8,7 +8,8 @@ follows exactly from those before it (the Taylor series method: Moore 1966; Jorb
 
 import math
 
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import inlined_kernel, kernel
+from rockfrag.rocking._intrinsics import fma
 
 ORDER = 7
 """Order of the series: with p h ≤ 0.1 the remainder is below 1e-13 rad."""
@@ -142,52 +143,64 @@ def closing_time(q, row, end):
     return 2.0
 
 
-@kernel
+@inlined_kernel
 def crossing_time(q, row):
-    """Find when a q that starts at zero or above falls through zero, given q(1) < 0.
+    """Find when the q at ``row``, which starts at zero or above and ends below, falls through zero."""
+    return crossing(
+        q[row], q[row + 1], q[row + 2], q[row + 3], q[row + 4], q[row + 5], q[row + 6], q[row + 7], 1.0
+    )
 
-    Chebyshev's method inside a bracket, from the root of the parabola that q begins as.  A q that dips below
-    zero and comes back before is for ``closing_time``.
+
+@inlined_kernel
+def crossing(q0, q1, q2, q3, q4, q5, q6, q7, end):
+    """Find when Σ qₖ τᵏ falls through zero, given that it is negative at ``end``; 0 if it never was positive.
+
+    It starts at zero or above.  Chebyshev's method from the root of the parabola that it begins as.  A q that dips
+    below zero and comes back before is for ``closing_time``.
     """
-    q0 = max(0.0, q[row])
-    q1, q2, q3, q4 = q[row + 1], q[row + 2], q[row + 3], q[row + 4]
-    q5, q6, q7 = q[row + 5], q[row + 6], q[row + 7]
+    if q0 <= 0.0:
+        # it leaves zero this instant: divide the root at τ = 0 out, and once more if it leaves without speed
+        q0, q1, q2, q3, q4, q5, q6, q7 = q1, q2, q3, q4, q5, q6, q7, 0.0
+        if q0 == 0.0:
+            q0, q1, q2, q3, q4, q5, q6 = q1, q2, q3, q4, q5, q6, 0.0
+        if q0 <= 0.0:
+            return 0.0
     square = q1 * q1 - 4.0 * q2 * q0
-    tau = 0.5
-    low = 0.0
-    high = 1.0
-    if q0 == 0.0:
-        if q2 < 0.0 and 0.0 < -q1 / q2 < 1.0:
-            tau = -q1 / q2
-        # look behind the root at zero
-        low = 1e-3 * tau
-        while value(q, row, low) <= 0.0:
-            low *= 0.1
-            if low < 1e-13:
-                return 0.0
-    elif square > 0.0:
-        tau = 2.0 * q0 / (math.sqrt(square) - q1)
-    for _ in range(100):
-        if not low < tau < high:
-            tau = 0.5 * (low + high)
+    tau = 2.0 * q0 / (math.sqrt(square) - q1) if square > 0.0 else 0.5 * end
+    d2, d3, d4, d5, d6, d7 = 2.0 * q2, 3.0 * q3, 4.0 * q4, 5.0 * q5, 6.0 * q6, 7.0 * q7
+    for _ in range(6):
         # pairs of terms side by side, which is quicker than Horner's chain
         t2 = tau * tau
         t4 = t2 * t2
-        f = (q0 + q1 * tau) + t2 * (q2 + q3 * tau) + t4 * ((q4 + q5 * tau) + t2 * (q6 + q7 * tau))
-        d = (q1 + 2.0 * q2 * tau) + t2 * (3.0 * q3 + 4.0 * q4 * tau)
-        d += t4 * ((5.0 * q5 + 6.0 * q6 * tau) + 7.0 * q7 * t2)
+        f = fma(t2, fma(q3, tau, q2), fma(q1, tau, q0))
+        f = fma(t4, fma(t2, fma(q7, tau, q6), fma(q5, tau, q4)), f)
+        d = fma(t2, fma(d4, tau, d3), fma(d2, tau, q1))
+        d = fma(t4, fma(t2, d7, fma(d6, tau, d5)), d)
+        # Chebyshev's step: Newton's with the curve's bend
+        per = 1.0 / d
+        step = f * per
+        step = fma(step * step * per, fma(d3, tau, q2), step)
+        tau -= step
+        # the error after this step is below its square
+        if abs(step) <= 1e-7:
+            break
+    if 0.0 < tau <= end and abs(step) <= 1e-7:
+        return tau
+    return _bisected(q0, q1, q2, q3, q4, q5, q6, q7, end)
+
+
+@kernel
+def _bisected(q0, q1, q2, q3, q4, q5, q6, q7, end):
+    """Find a root of Σ qₖ τᵏ, which is positive at 0 and negative at ``end``, by halving."""
+    low = 0.0
+    high = end
+    for _ in range(60):
+        tau = 0.5 * (low + high)
+        f = q7
+        for q in (q6, q5, q4, q3, q2, q1, q0):
+            f = f * tau + q
         if f > 0.0:
             low = tau
         else:
             high = tau
-        # Chebyshev's step: Newton's with the curve's bend
-        step = 2.0
-        if d != 0.0:
-            per = 1.0 / d
-            step = f * per
-            step += step * step * (q2 + 3.0 * q3 * tau) * per
-        tau -= step
-        # the error after this step is below its square
-        if abs(step) <= 1e-7 or high - low <= 1e-15:
-            break
-    return min(max(tau, 0.0), 1.0)
+    return high
