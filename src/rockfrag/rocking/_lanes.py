@@ -14,7 +14,7 @@ import math
 import numba
 import numpy as np
 
-from rockfrag.rocking._compile import inlined_kernel, kernel
+from rockfrag.rocking._compile import entry_kernel, inlined_kernel, kernel
 from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
 from rockfrag.rocking._series import crossing
@@ -311,7 +311,7 @@ def working_arrays():
     return np.zeros(ROWS * LANES), np.zeros(INTEGERS * LANES, np.int64)
 
 
-@kernel
+@entry_kernel
 def lone_blocks(
     counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
     results, x, n,

@@ -6,7 +6,7 @@ march goes on.  Every step size, root and decision depends on this one case alon
 
 import math
 
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import entry_kernel, kernel
 from rockfrag.rocking._events import (
     FINE_DROP,
     MAX_EVENTS_PER_STEP,
@@ -42,7 +42,7 @@ from rockfrag.rocking._tally import (
 HALF_TURN = 0.5 * math.pi
 
 
-@kernel
+@entry_kernel
 def march(
     p, acceleration, dt, scale, substeps, free_samples, initial, closing_speed,
     history, events, q, summary,

@@ -14,11 +14,18 @@ from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import between
 from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._series import ORDER, closing_time, crossing_time, slope, value
-from rockfrag.rocking._stack_table import CORNER, HOLD, ONE_COLUMNS
+from rockfrag.rocking._stack_table import (
+    CLOSES,
+    CORNER,
+    HOLD,
+    LANES,
+    NEARS,
+    ONE_COLUMNS,
+    QUIET,
+    RELEASE,
+)
 from rockfrag.rocking._step import GAP
 from rockfrag.rocking._step import TH1 as SERIES
-
-LANES = 16
 
 # Rows of the lanes after those of the table's columns.
 (
@@ -62,7 +69,6 @@ _GX, _GY, _PER_ANGLE, _PER_SPEED = (
 _RIGHT = LANES * HOLD
 _LEFT = LANES * (HOLD + CORNER)
 
-QUIET, CLOSES, RELEASE, NEARS = 0.0, 1.0, 2.0, 3.0
 HALF_TURN = 0.5 * math.pi
 
 

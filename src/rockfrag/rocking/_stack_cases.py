@@ -23,7 +23,9 @@ from rockfrag.rocking._series import slope, value
 from rockfrag.rocking._stack_impacts import land, meet
 from rockfrag.rocking._stack_table import (
     HAS_MEASURED,
+    LANES,
     ONE_COLUMNS,
+    RELEASE,
     RESTORING_AT,
     TABLE,
     TWO_COLUMNS,
@@ -35,7 +37,7 @@ from rockfrag.rocking._step import TH2 as SERIES2
 from rockfrag.rocking._intrinsics import take_next
 from rockfrag.rocking._tally import balance, barrier
 
-SLOTS = one.LANES + two.LANES
+SLOTS = 2 * LANES
 
 (
     TH1,  # the state, rates per sample
@@ -110,7 +112,7 @@ def carry_on(
                     )
                     if k >= 0:
                         n[K + j], s[TAU + j] = k, tau
-                        n[C1 + j], n[C2 + j] = _rise(p, now)
+                        n[C1 + j], n[C2 + j] = _rise(p, n[C1 + j], n[C2 + j], now)
                         s[TH1 + j], s[RATE1 + j], s[TH2 + j], s[RATE2 + j] = 0.0, 0.0, 0.0, 0.0
                         return
             elif k < end or (k < n[FREE_END + j] and not _safe(p, s, n, j)):
@@ -149,13 +151,13 @@ def carry_on(
 
 
 @kernel
-def _rise(p, a):
-    """Contact state that a body at rest takes at or beyond the threshold ``a``."""
-    c1, c2 = settle(p, 0, 0, 0.0, 0.0, 0.0, 0.0, a)
+def _rise(p, c1, c2, a):
+    """Contact state that a body at rest, c1 = c2 = 0, takes at or beyond the threshold ``a``."""
+    c1, c2 = settle(p, c1, c2, 0.0, 0.0, 0.0, 0.0, a)
     if c1 == 0 and c2 == 0:
         # rounding at the threshold: open the contact with the least hold
-        hold1, corner1 = ground_hold(p, 0, 0.0, 0.0, 0.0, a, 0.0)
-        hold2, corner2 = interface_hold(p, 0, 0.0, 0.0, 0.0, 0.0, a, 0.0)
+        hold1, corner1 = ground_hold(p, c2, 0.0, 0.0, 0.0, a, 0.0)
+        hold2, corner2 = interface_hold(p, c1, 0.0, 0.0, 0.0, 0.0, a, 0.0)
         if hold1 <= hold2:
             return corner1, 0
         return 0, corner2
@@ -225,7 +227,7 @@ def _strike(
 @inlined_kernel
 def event_of_one(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, summary):
     """Take the case of slot j, in lane i of those of one rotation, through its event or to the step's end."""
-    if x[one.FLAG + i] == one.RELEASE and x[one.BEFORE + i] == 1.0:
+    if x[one.FLAG + i] == RELEASE and x[one.BEFORE + i] == 1.0:
         # it let go in the sample before
         one.go_back(x, i, g)
         n[K + j] -= 1
@@ -316,7 +318,7 @@ def place_one(i, j, x, s, n, t, samples):
     c1, c2 = n[C1 + j], n[C2 + j]
     o = state(TABLE * j, c1, c2)
     for m in range(ONE_COLUMNS):
-        x[m * one.LANES + i] = t[o + m]
+        x[m * LANES + i] = t[o + m]
     x[one.SIGN + i] = c1 + c2
     x[one.THETA + i], x[one.OMEGA + i] = s[TH2 + j], s[RATE2 + j]
     x[one.FACTOR + i], x[one.LEFT + i] = s[FACTOR + j], 1.0 - s[TAU + j]
@@ -331,7 +333,7 @@ def place_two(i, j, x, s, n, t, samples):
     c1, c2 = n[C1 + j], n[C2 + j]
     o = state(TABLE * j, c1, c2)
     for m in range(TWO_COLUMNS):
-        x[m * two.LANES + i] = t[o + m]
+        x[m * LANES + i] = t[o + m]
     x[two.SIGN1 + i], x[two.SIGN2 + i] = c1, c2
     x[two.TH1 + i], x[two.RATE1 + i] = s[TH1 + j], s[RATE1 + j]
     x[two.TH2 + i], x[two.RATE2 + i] = s[TH2 + j], s[RATE2 + j]

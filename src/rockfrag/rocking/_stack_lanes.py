@@ -14,11 +14,9 @@ import numpy as np
 
 from rockfrag.rocking import _one_rotation as one
 from rockfrag.rocking import _two_rotations as two
-from rockfrag.rocking._compile import kernel
+from rockfrag.rocking._compile import entry_kernel
 from rockfrag.rocking._mechanics import GRAVITY
 from rockfrag.rocking._stack_cases import (
-    BODY,
-    CASE,
     END,
     FLOATS,
     INTEGERS,
@@ -34,31 +32,31 @@ from rockfrag.rocking._stack_cases import (
     store_one,
     store_two,
 )
-from rockfrag.rocking._stack_table import TABLE
+from rockfrag.rocking._stack_table import LANES, QUIET, TABLE, WITHIN
 from rockfrag.rocking._step import SCRATCH
 from rockfrag.rocking._tally import SUMMARY
 
 # Rows of the lanes' integers: slot of the case, -1 for none; sample it has reached; last sample of its motion.
-SLOT1, K1, END1 = (one.LANES * row for row in range(3))
-SLOT2, K2, END2 = (two.LANES * row for row in range(3))
+SLOT, AT, LAST = (LANES * row for row in range(3))
 
 
 def working_arrays():
-    """Arrays that a thread works in: lanes and slots, waiting slots, tables, scratch and summary."""
+    """Arrays that a thread works in: lanes of both kinds, slots, waiting slots, tables, scratch and summary."""
     integers = np.int64
     return (
-        np.zeros(one.ROWS * one.LANES), np.full(3 * one.LANES, -1, integers),
-        np.zeros(two.ROWS * two.LANES), np.full(3 * two.LANES, -1, integers),
+        np.zeros(one.ROWS * LANES), np.full(3 * LANES, -1, integers),
+        np.zeros(two.ROWS * LANES), np.full(3 * LANES, -1, integers),
         np.zeros(FLOATS), np.full(INTEGERS, -1, integers),
-        np.zeros(2 * SLOTS, integers), np.zeros(SLOTS * TABLE), np.zeros(SCRATCH), np.zeros(SUMMARY),
+        np.zeros(2 * SLOTS, integers), np.zeros(2, integers), np.zeros(2, integers),
+        np.zeros(SLOTS * TABLE), np.zeros(SCRATCH), np.zeros(SUMMARY),
     )  # fmt: skip
 
 
-@kernel
+@entry_kernel
 def stack_cases(
     counter, count, parameters, intervals, parts, free, factors, rows, offsets, lasts, samples, highest, lowest,
     closing_speed, results,
-    x1, lanes1, x2, lanes2, s, n, waiting, t, q, summary,
+    x1, lanes1, x2, lanes2, s, n, waiting, waits, busy, t, q, summary,
 ):  # fmt: skip
     """March cases of bodies × motions × scales, the scale running fastest, until none is left.
 
@@ -84,135 +82,78 @@ def stack_cases(
     Numbers of steps that lanes of one rotation and of two were advanced by.
     """
     g = parameters[0, GRAVITY]
-    waiting1, waiting2, busy1, busy2 = 0, 0, 0, 0
     for j in range(SLOTS):
         carry_on(
             j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets, lasts,
             samples, highest, lowest, results,
         )  # fmt: skip
-        if kind_of(n, j) == 0:
-            waiting[waiting1] = j
-            waiting1 += 1
-        elif kind_of(n, j) == 1:
-            waiting[SLOTS + waiting2] = j
-            waiting2 += 1
-    for i in range(one.LANES):
-        _idle_one(i, x1)
-    for i in range(two.LANES):
-        _idle_two(i, x2)
+        kind = kind_of(n, j)
+        if kind >= 0:
+            waiting[SLOTS * kind + waits[kind]] = j
+            waits[kind] += 1
     steps1, steps2 = 0, 0
-    while busy1 + waiting1 + busy2 + waiting2 > 0:
-        if busy1 + waiting1 >= min(one.LANES, busy2 + waiting2):
-            if busy1 < one.LANES:
-                for i in range(one.LANES):
-                    if lanes1[SLOT1 + i] < 0 and waiting1 > 0:
-                        waiting1 -= 1
-                        busy1 += 1
-                        j = waiting[waiting1]
-                        lanes1[SLOT1 + i], lanes1[K1 + i], lanes1[END1 + i] = j, n[K + j], n[END + j]
-                        place_one(i, j, x1, s, n, t, samples)
-            one.advance(x1, g)
-            steps1 += one.LANES
-            for i in range(one.LANES):
-                j = lanes1[SLOT1 + i]
-                if j < 0:
-                    continue
-                if x1[one.FLAG + i] == one.QUIET:
-                    k = lanes1[K1 + i] + 1
-                    lanes1[K1 + i] = k
-                    if k < lanes1[END1 + i]:
-                        x1[one.GROUND_END + i] = x1[one.FACTOR + i] * samples[k + 1]
-                        continue
-                    n[K + j] = k
-                    store_one(i, j, x1, s, n)
-                else:
-                    n[K + j] = lanes1[K1 + i]
-                    event_of_one(
-                        i, j, x1, s, n, t, q, parameters, samples, g, closing_speed, summary
-                    )
-                if not goes_on(n, j):
-                    carry_on(
-                        j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets,
-                        lasts, samples, highest, lowest, results,
-                    )  # fmt: skip
-                kind = kind_of(n, j)
-                if kind != 0:
-                    if kind == 1:
-                        waiting[SLOTS + waiting2] = j
-                        waiting2 += 1
-                    if waiting1 == 0:
-                        lanes1[SLOT1 + i] = -1
-                        busy1 -= 1
-                        _idle_one(i, x1)
-                        continue
-                    waiting1 -= 1
-                    j = waiting[waiting1]
-                lanes1[SLOT1 + i], lanes1[K1 + i], lanes1[END1 + i] = j, n[K + j], n[END + j]
-                place_one(i, j, x1, s, n, t, samples)
+    while busy[0] + waits[0] + busy[1] + waits[1] > 0:
+        if busy[0] + waits[0] >= min(LANES, busy[1] + waits[1]):
+            kind, x, lanes, flag, factor, ground_end = (
+                0, x1, lanes1, one.FLAG, one.FACTOR, one.GROUND_END,
+            )  # fmt: skip
+            steps1 += LANES
+            one.advance(x, g)
         else:
-            if busy2 < two.LANES:
-                for i in range(two.LANES):
-                    if lanes2[SLOT2 + i] < 0 and waiting2 > 0:
-                        waiting2 -= 1
-                        busy2 += 1
-                        j = waiting[SLOTS + waiting2]
-                        lanes2[SLOT2 + i], lanes2[K2 + i], lanes2[END2 + i] = j, n[K + j], n[END + j]
-                        place_two(i, j, x2, s, n, t, samples)
-            two.advance(x2, g)
-            steps2 += two.LANES
-            for i in range(two.LANES):
-                j = lanes2[SLOT2 + i]
-                if j < 0 or x2[two.FLAG + i] == two.WITHIN:
+            kind, x, lanes, flag, factor, ground_end = (
+                1, x2, lanes2, two.FLAG, two.FACTOR, two.GROUND_END,
+            )  # fmt: skip
+            steps2 += LANES
+            two.advance(x, g)
+        for i in range(LANES):
+            j = lanes[SLOT + i]
+            if j >= 0:
+                if x[flag + i] == WITHIN:
                     continue
-                if x2[two.FLAG + i] == two.QUIET:
-                    k = lanes2[K2 + i] + 1
-                    lanes2[K2 + i] = k
-                    if k < lanes2[END2 + i]:
-                        x2[two.GROUND_END + i] = x2[two.FACTOR + i] * samples[k + 1]
+                k = lanes[AT + i]
+                if x[flag + i] == QUIET:
+                    k += 1
+                    lanes[AT + i] = k
+                    if k < lanes[LAST + i]:
+                        x[ground_end + i] = x[factor + i] * samples[k + 1]
                         continue
-                    n[K + j] = k
-                    store_two(i, j, x2, s)
+                n[K + j] = k
+                if kind == 0:
+                    if x[flag + i] == QUIET:
+                        store_one(i, j, x, s, n)
+                    else:
+                        event_of_one(
+                            i, j, x, s, n, t, q, parameters, samples, g, closing_speed, summary
+                        )
+                elif x[flag + i] == QUIET:
+                    store_two(i, j, x, s)
                 else:
-                    n[K + j] = lanes2[K2 + i]
                     event_of_two(
-                        i, j, x2, s, n, t, q, parameters, samples, g, closing_speed, summary
+                        i, j, x, s, n, t, q, parameters, samples, g, closing_speed, summary
                     )
                 if not goes_on(n, j):
                     carry_on(
                         j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets,
                         lasts, samples, highest, lowest, results,
                     )  # fmt: skip
-                kind = kind_of(n, j)
-                if kind != 1:
-                    if kind == 0:
-                        waiting[waiting1] = j
-                        waiting1 += 1
-                    if waiting2 == 0:
-                        lanes2[SLOT2 + i] = -1
-                        busy2 -= 1
-                        _idle_two(i, x2)
-                        continue
-                    waiting2 -= 1
-                    j = waiting[SLOTS + waiting2]
-                lanes2[SLOT2 + i], lanes2[K2 + i], lanes2[END2 + i] = j, n[K + j], n[END + j]
-                place_two(i, j, x2, s, n, t, samples)
+                now = kind_of(n, j)
+                if now != kind:
+                    if now >= 0:
+                        waiting[SLOTS * now + waits[now]] = j
+                        waits[now] += 1
+                    j = -1
+                    busy[kind] -= 1
+            if j < 0:
+                if waits[kind] == 0:
+                    # what the lane computes from here on, nobody looks at
+                    lanes[SLOT + i] = -1
+                    continue
+                waits[kind] -= 1
+                busy[kind] += 1
+                j = waiting[SLOTS * kind + waits[kind]]
+            lanes[SLOT + i], lanes[AT + i], lanes[LAST + i] = j, n[K + j], n[END + j]
+            if kind == 0:
+                place_one(i, j, x, s, n, t, samples)
+            else:
+                place_two(i, j, x, s, n, t, samples)
     return steps1, steps2
-
-
-@kernel
-def _idle_one(i, x):
-    """Let a lane without a case stand still at a harmless place."""
-    for m in range(one.ROWS):
-        x[m * one.LANES + i] = 0.0
-    x[one.LEFT + i] = 1.0
-
-
-@kernel
-def _idle_two(i, x):
-    """Likewise one of two rotations."""
-    for m in range(two.ROWS):
-        x[m * two.LANES + i] = 0.0
-    x[two.LEFT + i] = 1.0
-    x[two.PART + i] = 1.0
-    for inertia in two.INERTIAS:
-        x[inertia + i] = 1.0

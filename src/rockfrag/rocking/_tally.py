@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from rockfrag.rocking._compile import allocating_kernel, kernel
+from rockfrag.rocking._compile import entry_kernel, kernel
 from rockfrag.rocking._mechanics import (
     FIXED,
     GRAVITY,
@@ -16,6 +16,7 @@ from rockfrag.rocking._mechanics import (
     inertia1,
     inertia2,
     kinetic_energy,
+    potential_energy,
 )
 from rockfrag.rocking._series import slope, value
 from rockfrag.rocking._step import CRITICAL, FREQUENCY2, SCRATCH, TH1, TH2
@@ -186,7 +187,16 @@ def keep_event(
     summary[REST_TIME] = clock if c1 == 0 and c2 == 0 else math.nan
 
 
-@allocating_kernel
+@entry_kernel
+def fill_energies(p, history, kinetic, potential):
+    """Fill the kinetic and potential energy [J] of each row of a history."""
+    for i in range(history.shape[0]):
+        row = history[i]
+        c1, c2 = int(row[4]), int(row[5])
+        kinetic[i] = kinetic_energy(p, c1, c2, row[0], row[1], row[2], row[3])
+        potential[i] = potential_energy(p, c1, c2, row[0], row[2])
+
+
 def scratch():
     """Scratch array of a march."""
     return np.zeros(SCRATCH)

@@ -14,13 +14,11 @@ from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import first_closing, ground_gap, interface_gap
 from rockfrag.rocking._pendulum import hops, rate, sine_cosine, travel
 from rockfrag.rocking._series import crossing_time
-from rockfrag.rocking._stack_table import TWO_COLUMNS
+from rockfrag.rocking._stack_table import CLOSES, LANES, NEARS, QUIET, TWO_COLUMNS, WITHIN
 from rockfrag.rocking._step import GAP
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
 from rockfrag.rocking._two_pendulums import rates_of_two
-
-LANES = 16
 
 # Rows of the lanes after those of the table's columns.
 (
@@ -71,7 +69,6 @@ _V1X, _V1Y, _V2X, _V2Y, _M11, _M22, _E, _F, _PER_ANGLE1, _PER_ANGLE2, _PER_SPEED
 )
 INERTIAS = _M11, _M22
 
-QUIET, WITHIN, CLOSES, NEARS = 0.0, 1.0, 2.0, 3.0
 HALF_TURN = 0.5 * math.pi
 REMNANT = 1e-12
 """Part of a sample that is not worth a step of its own."""

@@ -9,7 +9,6 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import _mechanics as km
 from rockfrag.rocking import _tally as tally
 from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking._march import march
@@ -174,10 +173,7 @@ def _energy_table(
     """Ledger of energy by cause over time [J]."""
     kinetic = np.empty(len(history))
     potential = np.empty(len(history))
-    for i, row in enumerate(history):
-        c1, c2 = int(row[4]), int(row[5])
-        kinetic[i] = km.kinetic_energy(p, c1, c2, row[0], row[1], row[2], row[3])
-        potential[i] = km.potential_energy(p, c1, c2, row[0], row[2])
+    tally.fill_energies(p, history, kinetic, potential)
     # an impact closes the ground if the pedestal's contact changed, the interface otherwise
     by_ground = (events[:, 2] != 0) & (events[:, 2] != events[:, 4])
     loss = np.where(events[:, 1] == tally.OPENING, 0.0, events[:, 12] - events[:, 13])
