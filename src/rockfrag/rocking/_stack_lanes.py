@@ -11,6 +11,7 @@ change a bit of them.
 """
 
 import numpy as np
+from numba import types
 
 from rockfrag.rocking import _one_rotation as one
 from rockfrag.rocking import _two_rotations as two
@@ -50,6 +51,22 @@ def working_arrays():
         np.zeros(2 * SLOTS, integers), np.zeros(2, integers), np.zeros(2, integers),
         np.zeros(SLOTS * TABLE), np.zeros(SCRATCH), np.zeros(SUMMARY),
     )  # fmt: skip
+
+
+def compile_last_first():
+    """Compile what ``stack_cases`` calls, the last first."""
+    number, integer = types.float64, types.int64
+    numbers, integers, table = types.float64[::1], types.int64[::1], types.float64[:, ::1]
+    event = (
+        integer, integer, numbers, numbers, integers, numbers, numbers, table, numbers, number, number, numbers,
+    )  # fmt: skip
+    place = (integer, integer, numbers, numbers, integers, numbers, numbers)
+    place_two.compile(place)
+    place_one.compile(place)
+    event_of_two.compile(event)
+    event_of_one.compile(event)
+    two.advance.compile((numbers, number))
+    one.advance.compile((numbers, number))
 
 
 @entry_kernel
