@@ -72,14 +72,15 @@ def _compiled(function: Callable[..., Any], **more: bool) -> Callable[..., Any]:
 
 
 @contextmanager
-def compiling_alone(compiled: Any, last_first: Callable[[], None] | None = None) -> Iterator[None]:
+def compiling_alone(
+    compiled: Any, halves: tuple[Callable[[], None], Callable[[], None]] | None = None
+) -> Iterator[None]:
     """Hold other processes off while this one calls a kernel for the first time.
 
     The first of several processes that start together compiles; the others wait and read its cache.
-    ``last_first`` compiles what the kernel calls, the last first: a process of its own does so meanwhile, and
-    the two meet in the middle.
+    ``halves`` compile what the kernel calls: the first here, the second in another process meanwhile.
     """
-    cached = getattr(compiled, "_cache", None)
+    cached: Any = getattr(compiled, "_cache", None)
     folder = getattr(cached, "cache_path", None)
     if folder is None or compiled.signatures:
         yield
@@ -96,33 +97,38 @@ def compiling_alone(compiled: Any, last_first: Callable[[], None] | None = None)
         if cached._cache_file._load_index():
             yield
             return
-        helper = _in_another_process(last_first) if last_first is not None else None
-        collects = gc.isenabled()
         # the collector finds nothing in what a compiler builds, and takes a tenth of its time
+        collects = gc.isenabled()
         gc.disable()
         try:
+            if halves is not None and (os.cpu_count() or 1) > 1:
+                here, elsewhere = halves
+                with _in_another_process(elsewhere):
+                    here()
             yield
         finally:
             if collects:
                 gc.enable()
-            if helper is not None:
-                helper.terminate()
-                helper.wait()
 
 
-def _in_another_process(function: Callable[[], None]) -> "subprocess.Popen[bytes] | None":
-    """Call a function of a module in a process of its own, which may fail; None if there can be none."""
-    if not sys.executable or (os.cpu_count() or 1) < 2:
-        return None
-    call = f"import gc; gc.disable(); from {function.__module__} import {function.__name__} as f; f()"
+@contextmanager
+def _in_another_process(function: Callable[[], None]) -> Iterator[None]:
+    """Call a function of a module in a process of its own meanwhile; whether it succeeds does not matter."""
+    call = (
+        f"import gc; gc.disable(); from {function.__module__} import {function.__name__} as f; f()"
+    )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    quiet = subprocess.DEVNULL
     try:
-        return subprocess.Popen(
-            [sys.executable, "-c", call],
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
+        other = subprocess.Popen(
+            [sys.executable, "-c", call], env=environment, stdin=quiet, stdout=quiet, stderr=quiet
         )
     except OSError:
-        return None
+        yield
+        return
+    try:
+        yield
+        other.wait()
+    finally:
+        other.kill()
+        other.wait()

@@ -15,10 +15,10 @@ import numba
 import numpy as np
 
 from rockfrag.rocking._compile import entry_kernel, inlined_kernel, kernel
+from rockfrag.rocking._intrinsics import lowest_bit, take_next
 from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
 from rockfrag.rocking._series import crossing
-from rockfrag.rocking._intrinsics import lowest_bit, take_next
 
 LANES = 32
 # Columns of the body table, for the right pole and, POLE further on, for the left: critical angle, its
@@ -149,7 +149,7 @@ def advance(x):
 
 @inlined_kernel
 def _flight(gap, w, w1, w2, w3, w4, w5, w6, end):
-    """Time at which ψ reaches the angle of impact, ``gap`` below it and passed by the time ``end``; 2 if it never left."""
+    """Time at which ψ reaches the angle of impact, ``gap`` below it, passed by the time ``end``; 2 if it stays."""
     t = crossing(
         -gap, -w, -0.5 * w1, -1 / 3 * w2, -0.25 * w3, -0.2 * w4, -1 / 6 * w5, -1 / 7 * w6, end
     )
@@ -341,7 +341,20 @@ def lone_blocks(
     for i in range(LANES):
         n[CASE + i] = -1
         _carry_on(
-            i, x, n, counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest, results
+            i,
+            x,
+            n,
+            counter,
+            count,
+            table,
+            factors,
+            rows,
+            offsets,
+            lasts,
+            samples,
+            highest,
+            lowest,
+            results,
         )
         _place(i, x, n, table, samples, ahead_high, ahead_low)
         if n[CASE + i] >= 0:
@@ -388,7 +401,7 @@ def _next_sample(x, n, samples):
 
 @inlined_kernel
 def _fall(i, x, n, tally):
-    """Take note of a lane's certain fall, which passes balance at the speed that energy leaves it at the latest."""
+    """Take note of a certain fall, which passes balance at the latest at the speed that energy leaves it."""
     r = RESULTS * n[CASE + i]
     _restore_extremes(i, x)
     psi, w = x[WAS_PSI + i], x[WAS_RATE + i]
@@ -454,7 +467,15 @@ def _carry_on(
             k, end, factor = n[K + i], n[END + i], x[FACTOR + i]
             if n[FELL + i] == 0 and n[SIDE + i] == 0 and k < end and factor != 0.0:
                 k, tau, now = uplift(
-                    k, x[TAU + i], -b[o + TAN], b[o + POLE + TAN], factor, samples, highest, lowest, end
+                    k,
+                    x[TAU + i],
+                    -b[o + TAN],
+                    b[o + POLE + TAN],
+                    factor,
+                    samples,
+                    highest,
+                    lowest,
+                    end,
                 )
                 if k >= 0:
                     # the ground pushes the block over the other way

@@ -7,7 +7,6 @@ samples; ``t`` is the table of a body (``_stack_table``) and ``o`` its row of th
 import math
 
 import numba
-import numpy as np
 
 from rockfrag.rocking import _stack_table as table
 from rockfrag.rocking._compile import inlined_kernel, kernel
@@ -242,4 +241,8 @@ def nearest(t, o, x, i, theta, omega):
     """Largest θ/θcritical, |θ'| and least distance from balance squared, up to an event at θ, θ'."""
     ratio = t[o + table.PER_ANGLE] * theta
     near = (1.0 - ratio) * (1.0 - ratio) + t[o + table.PER_SPEED] * omega * omega
-    return max(x[WAS_RATIO + i], ratio), max(x[WAS_FAST + i], abs(omega)), min(x[WAS_NEAR + i], near)
+    return (
+        max(x[WAS_RATIO + i], ratio),
+        max(x[WAS_FAST + i], abs(omega)),
+        min(x[WAS_NEAR + i], near),
+    )

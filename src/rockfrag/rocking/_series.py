@@ -147,7 +147,15 @@ def closing_time(q, row, end):
 def crossing_time(q, row):
     """Find when the q at ``row``, which starts at zero or above and ends below, falls through zero."""
     return crossing(
-        q[row], q[row + 1], q[row + 2], q[row + 3], q[row + 4], q[row + 5], q[row + 6], q[row + 7], 1.0
+        q[row],
+        q[row + 1],
+        q[row + 2],
+        q[row + 3],
+        q[row + 4],
+        q[row + 5],
+        q[row + 6],
+        q[row + 7],
+        1.0,
     )
 
 

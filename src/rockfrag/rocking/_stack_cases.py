@@ -10,6 +10,7 @@ from rockfrag.rocking import _one_rotation as one
 from rockfrag.rocking import _two_rotations as two
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import COARSE_DROP, MAX_EVENTS_PER_STEP, let_go, rest_interval, strike
+from rockfrag.rocking._intrinsics import take_next
 from rockfrag.rocking._mechanics import (
     first_moment2,
     ground_hold,
@@ -34,7 +35,6 @@ from rockfrag.rocking._stack_table import (
 )
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
-from rockfrag.rocking._intrinsics import take_next
 from rockfrag.rocking._tally import balance, barrier
 
 SLOTS = 2 * LANES
@@ -95,8 +95,8 @@ def goes_on(n, j):
 
 @kernel
 def carry_on(
-    j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets, lasts, samples, highest,
-    lowest, results,
+    j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets, lasts, samples,
+    highest, lowest, results,
 ):  # fmt: skip
     """Take slot j through rest and the ends of motions, and through as many cases as end there."""
     n_motions, n_scales = factors.shape
@@ -108,7 +108,15 @@ def carry_on(
             if n[C1 + j] == 0 and n[C2 + j] == 0:
                 if k < end and factor != 0.0:
                     k, tau, now = uplift(
-                        k, s[TAU + j], s[LOW + j], s[HIGH + j], factor, samples, highest, lowest, end
+                        k,
+                        s[TAU + j],
+                        s[LOW + j],
+                        s[HIGH + j],
+                        factor,
+                        samples,
+                        highest,
+                        lowest,
+                        end,
                     )
                     if k >= 0:
                         n[K + j], s[TAU + j] = k, tau
@@ -211,7 +219,7 @@ def _put(s, n, j, c1, c2, t1, w1, t2, w2, tau):
 
 
 @kernel
-def _strike(
+def strike_case(
     s, n, j, t, p, closes1, closes2, c1, c2, t1, w1, t2, w2, now, closing_speed, forced, k, tau, samples,
     summary,
 ):  # fmt: skip
@@ -249,9 +257,7 @@ def event_of_one(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
         h = s[INTERVAL + j]
         forced = _crowded(n, j)
         if fails:
-            c1, c2 = let_go(
-                p, 1 if c1 == 0 else 2, at == 0.0, c1, c2, t1, w1 / h, t2, w2 / h, now
-            )
+            c1, c2 = let_go(p, 1 if c1 == 0 else 2, at == 0.0, c1, c2, t1, w1 / h, t2, w2 / h, now)
         else:
             s[HITS + j] += 1.0
             k = n[K + j]
@@ -260,7 +266,7 @@ def event_of_one(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
                 s[FACTOR + j],
             )  # fmt: skip
             if forced or not done:
-                n1, n2, v1, v2 = _strike(
+                n1, n2, v1, v2 = strike_case(
                     s, n, j, t, p, c1 != 0, c2 != 0, c1, c2, 0.0, w1, 0.0, w2, now, closing_speed, forced,
                     k, tau, samples, summary,
                 )  # fmt: skip
@@ -283,7 +289,9 @@ def event_of_two(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
     )
     tau = 1.0 - left + span * at
     if when <= 1.0:
-        now = x[two.WAS_GROUND + i] + (x[two.GROUND_END + i] - x[two.WAS_GROUND + i]) * (at * span / left)
+        now = x[two.WAS_GROUND + i] + (x[two.GROUND_END + i] - x[two.WAS_GROUND + i]) * (
+            at * span / left
+        )
         forced = _crowded(n, j)
         if closes1:
             t1 = 0.0
@@ -298,7 +306,7 @@ def event_of_two(i, j, x, s, n, t, q, parameters, samples, g, closing_speed, sum
                 samples, n[END + j], s[FACTOR + j],
             )  # fmt: skip
         if not done:
-            n1, n2, v1, v2 = _strike(
+            n1, n2, v1, v2 = strike_case(
                 s, n, j, t, parameters[n[BODY + j]], closes1, closes2, c1, c2, t1, w1, t2, w2, now,
                 closing_speed, forced, k, tau, samples, summary,
             )  # fmt: skip
@@ -337,7 +345,11 @@ def place_two(i, j, x, s, n, t, samples):
     x[two.SIGN1 + i], x[two.SIGN2 + i] = c1, c2
     x[two.TH1 + i], x[two.RATE1 + i] = s[TH1 + j], s[RATE1 + j]
     x[two.TH2 + i], x[two.RATE2 + i] = s[TH2 + j], s[RATE2 + j]
-    x[two.FACTOR + i], x[two.LEFT + i], x[two.PART + i] = s[FACTOR + j], 1.0 - s[TAU + j], s[PART + j]
+    x[two.FACTOR + i], x[two.LEFT + i], x[two.PART + i] = (
+        s[FACTOR + j],
+        1.0 - s[TAU + j],
+        s[PART + j],
+    )
     x[two.GROUND + i], x[two.GROUND_END + i] = _ground(s, n, j, samples)
     x[two.RATIO1 + i], x[two.RATIO2 + i] = s[PEAK1 + j], s[PEAK2 + j]
     x[two.FAST + i], x[two.NEAR + i] = s[FAST + j], s[NEAR + j]
@@ -358,7 +370,11 @@ def store_one(i, j, x, s, n):
     alone = n[C2 + j] != 0
     s[TH2 + j], s[RATE2 + j] = x[one.THETA + i], x[one.OMEGA + i]
     s[TH1 + j], s[RATE1 + j] = (0.0, 0.0) if alone else (x[one.THETA + i], x[one.OMEGA + i])
-    s[_peak(n[C2 + j]) + j], s[FAST + j], s[NEAR + j] = x[one.RATIO + i], x[one.FAST + i], x[one.NEAR + i]
+    s[_peak(n[C2 + j]) + j], s[FAST + j], s[NEAR + j] = (
+        x[one.RATIO + i],
+        x[one.FAST + i],
+        x[one.NEAR + i],
+    )
     s[TAU + j] = 0.0
 
 

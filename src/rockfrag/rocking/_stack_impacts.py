@@ -9,7 +9,7 @@ landing of what rocks alone (pattern 3 or 4), whose outcome is the same for ever
 
 import math
 
-from rockfrag.rocking._compile import inlined_kernel, kernel
+from rockfrag.rocking._compile import inlined_kernel
 from rockfrag.rocking._events import COARSE_DROP, FASTEST, chatter_dies
 from rockfrag.rocking._mechanics import settle
 from rockfrag.rocking._pendulum import sine_cosine

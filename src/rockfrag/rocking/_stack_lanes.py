@@ -32,6 +32,7 @@ from rockfrag.rocking._stack_cases import (
     place_two,
     store_one,
     store_two,
+    strike_case,
 )
 from rockfrag.rocking._stack_table import LANES, QUIET, TABLE, WITHIN
 from rockfrag.rocking._step import SCRATCH
@@ -53,20 +54,36 @@ def working_arrays():
     )  # fmt: skip
 
 
-def compile_last_first():
-    """Compile what ``stack_cases`` calls, the last first."""
-    number, integer = types.float64, types.int64
-    numbers, integers, table = types.float64[::1], types.int64[::1], types.float64[:, ::1]
-    event = (
-        integer, integer, numbers, numbers, integers, numbers, numbers, table, numbers, number, number, numbers,
-    )  # fmt: skip
-    place = (integer, integer, numbers, numbers, integers, numbers, numbers)
-    place_two.compile(place)
-    place_one.compile(place)
+_N, _I, _B = types.float64, types.int64, types.boolean
+_NS, _IS = types.float64[::1], types.int64[::1]
+_TABLE, _IS_TABLE = types.float64[:, ::1], types.int64[:, ::1]
+
+
+def compile_events():
+    """Compile what takes cases through events, a half of the work."""
+    event = (_I, _I, _NS, _NS, _IS, _NS, _NS, _TABLE, _NS, _N, _N, _NS)
+    strike_case.compile(
+        (_NS, _IS, _I, _NS, _NS, _B, _B, _I, _I, _N, _N, _N, _N, _N, _N, _B, _I, _N, _NS, _NS)
+    )
     event_of_two.compile(event)
     event_of_one.compile(event)
-    two.advance.compile((numbers, number))
-    one.advance.compile((numbers, number))
+
+
+def compile_others():
+    """Compile the other half."""
+    two.advance.compile((_NS, _N))
+    one.advance.compile((_NS, _N))
+    place = (_I, _I, _NS, _NS, _IS, _NS, _NS)
+    place_two.compile(place)
+    place_one.compile(place)
+    store_two.compile((_I, _I, _NS, _NS))
+    store_one.compile((_I, _I, _NS, _NS, _IS))
+    carry_on.compile(
+        (
+            _I, _NS, _IS, _NS, _IS, _I, _TABLE, _TABLE, _TABLE, _IS_TABLE, _TABLE, _IS_TABLE, _IS, _IS, _NS, _NS,
+            _NS, _TABLE,
+        )
+    )  # fmt: skip
 
 
 @entry_kernel

@@ -7,8 +7,6 @@ the contact state.
 
 import math
 
-import numpy as np
-
 from rockfrag.rocking import _stack_table as table
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import first_closing, ground_gap, interface_gap

@@ -134,10 +134,10 @@ def _in_parallel(
     workers: int,
     count: int,
     *arguments: object,
-    last_first: Callable[[], None] | None = None,
+    halves: tuple[Callable[[], None], Callable[[], None]] | None = None,
 ) -> None:
     """Let threads call ``kernel``, each with working arrays of its own, until no case is left."""
-    with compiling_alone(kernel, last_first):
+    with compiling_alone(kernel, halves):
         kernel(np.array([0]), 0, *arguments, *working_arrays())
     counter = np.array([0])
 
@@ -226,7 +226,7 @@ def _stacks(
         stack_lanes.stack_cases, stack_lanes.working_arrays, workers, len(outcome), parameters,
         motions.intervals, parts, free, factors, motions.rows, motions.offsets, motions.lasts, motions.samples,
         motions.highest, motions.lowest, COARSE_CLOSING_SPEED, outcome,
-        last_first=stack_lanes.compile_last_first,
+        halves=(stack_lanes.compile_events, stack_lanes.compile_others),
     )  # fmt: skip
     outcome = outcome.reshape(*shape, columns.RESULTS)
     fallen = outcome[..., columns.R_FALLEN]

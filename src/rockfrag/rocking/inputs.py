@@ -122,7 +122,8 @@ def checked_scales(scales: ArrayLike, n_motions: int) -> NDArray[np.float64]:
             f"scales: expected finite numbers of shape (scales,) or ({n_motions}, scales), "
             f"got shape {np.shape(scales)}."
         )
-    return np.ascontiguousarray(factors)
+    # a copy: kernels would be compiled anew for a view that cannot be written to
+    return np.array(factors)
 
 
 def warn_if_weak(values: NDArray[np.float64]) -> None:
@@ -166,7 +167,5 @@ def step_count(body: Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.i
     frequency = fastest_frequency(body, g)
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
     if steps.max(initial=0) > 10_000:
-        raise InputError(
-            f"dt: {np.max(dt)} s is too long for a block of p = {frequency:.3g} 1/s."
-        )
+        raise InputError(f"dt: {np.max(dt)} s is too long for a block of p = {frequency:.3g} 1/s.")
     return np.maximum(1, steps).astype(np.int64)

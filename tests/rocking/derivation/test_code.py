@@ -2,6 +2,7 @@
 
 import itertools
 
+import numba
 import numpy as np
 import pytest
 
@@ -17,6 +18,17 @@ POLES = list(itertools.product((1, -1), (1, -1)))
 STATES = [s for s in itertools.product((1, 0, -1), (1, 0, -1)) if s != (0, 0)]
 S = random_systems()
 N = len(S.b1)
+
+
+# kernels can be called by kernels only
+@numba.njit
+def kernel_equations(*arguments):
+    return fast.equations(*arguments)
+
+
+@numba.njit
+def kernel_impact(*arguments):
+    return fast.impact(*arguments)
 
 
 def stack(s: System, k: int) -> Stack:
@@ -53,7 +65,7 @@ def test_equations_of_motion(poles: tuple[int, int]) -> None:
 
     def kernel(k: int) -> tuple[float, float]:
         p = body_parameters(STACKS[k], g=S.g[k])
-        terms = fast.equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
+        terms = kernel_equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     assert error(each(reference), true).max() < 1e-12
@@ -71,7 +83,7 @@ def test_linearised_equations_of_motion(poles: tuple[int, int]) -> None:
 
     def kernel(k: int) -> tuple[float, float]:
         p = body_parameters(STACKS[k], linear=True, g=S.g[k])
-        terms = fast.equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
+        terms = kernel_equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     assert error(each(reference), true).max() < 1e-12
@@ -205,7 +217,7 @@ def test_the_fast_kernel_finds_the_same_outcome(
         theta, omega = state(s, k)
         new, after = Model(STACKS[k], S.g[k]).impact(old, closing, theta, omega)
         p = body_parameters(STACKS[k], g=S.g[k])
-        n1, n2, w1, w2 = fast.impact(
+        n1, n2, w1, w2 = kernel_impact(
             p, *old, closing[0] != 0, closing[1] != 0, theta[0], omega[0], theta[1], omega[1]
         )
         assert (n1, n2) == new
