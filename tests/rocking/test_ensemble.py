@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import ensemble
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.simulation import simulate
@@ -59,18 +58,15 @@ def test_the_cases_hold_falls_and_survivals_of_blocks_and_stacks(whole):
     assert (whole.impacts > 20).any()
 
 
-def test_two_threads_give_the_bits_of_one(whole, monkeypatch):
-    monkeypatch.setattr(ensemble, "LEAST_CHUNK", 3)
-    same(whole, overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=2))
+@pytest.mark.parametrize("threads", [2, 3, 16])
+def test_threads_do_not_change_a_bit(whole, threads):
+    same(whole, overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=threads))
 
 
-@pytest.mark.parametrize("chunk", [1, 7, 40])
-def test_chunks_do_not_change_a_bit(whole, monkeypatch, chunk):
-    def equal(count, workers):
-        return [(first, min(first + chunk, count)) for first in range(0, count, chunk)]
-
-    monkeypatch.setattr(ensemble, "_chunks", equal)
-    same(whole, overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=1))
+def test_parts_give_the_bits_of_the_whole(whole):
+    for k in range(SCALES.shape[1]):
+        part = overturns(BODIES, MOTIONS, CASES.DT, SCALES[:, k : k + 1], threads=1)
+        same(picked(whole, slice(None), slice(None), slice(k, k + 1)), part)
 
 
 def test_order_does_not_change_a_bit(whole):
@@ -151,13 +147,6 @@ def test_single_simulations_of_stacks_agree_in_verdicts_and_peaks():
                 )
                 checked += 1
     assert checked > 10
-
-
-@pytest.mark.parametrize("count", [0, 1, 127, 128, 129, 5000])
-@pytest.mark.parametrize("workers", [1, 2, 7])
-def test_chunks_hold_every_case_once(count, workers):
-    chunks = list(ensemble._chunks(count, workers))
-    assert [n for first, last in chunks for n in range(first, last)] == list(range(count))
 
 
 def test_nothing_happens_below_the_static_threshold():
