@@ -294,7 +294,7 @@ def main() -> None:
         costs += scaling(kind, 10**3 if given.quick else 10**6, speed)
         other[f"{kind}_cold_s"], other[f"{kind}_warm_s"] = start_up(kind)
         # what takes memory is their number; two blocks take longer to march
-        count = memory_histories // (1 if kind == "lone" else 10)
+        count = memory_histories
         other[f"{kind}_memory_histories"] = count
         other[f"{kind}_memory_tenth_MiB"] = separately("memory", kind, count // 10)
         other[f"{kind}_memory_MiB"] = separately("memory", kind, count)

@@ -395,7 +395,9 @@ def _next_sample(x, n, samples):
         n[K + i] = k
         stops |= (1 << i) if (x[FLAG + i] != QUIET) | (k >= n[END + i]) else 0
     for i in range(LANES):
-        x[A1 + i] = x[SIGNED + i] * samples[min(n[K + i] + 1, n[END + i])]
+        # unsigned, as an index that may be negative is looked at before it is used
+        following = np.uint64(min(n[K + i] + 1, n[END + i]))
+        x[A1 + i] = x[SIGNED + i] * samples[following]
     return stops
 
 

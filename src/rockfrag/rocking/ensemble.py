@@ -167,9 +167,8 @@ def _sampled(
     # a body that needs shorter steps than the samples gets the motion sampled more densely
     times = np.array([step_count(body, dts, g, step) for body in bodies])
     times = 2 ** np.ceil(np.log2(times)).astype(int)
-    kinds = sorted({(int(n), m) for m in range(len(values)) for n in times[:, m]})
-    number = {kind: i for i, kind in enumerate(kinds)}
-    sampled = [_refined(values[m], n) for n, m in kinds]
+    kinds, number = np.unique(times * len(values) + np.arange(len(values)), return_inverse=True)
+    sampled = [_refined(values[kind % len(values)], kind // len(values)) for kind in kinds.tolist()]
     # whole blocks each, so that no block straddles two motions
     padded = [np.append(v, np.zeros(-v.size % BLOCK)) for v in sampled]
     offsets = np.concatenate([[0], np.cumsum([v.size for v in padded])])
@@ -181,7 +180,7 @@ def _sampled(
         lowest=blocks.min(axis=1),
         offsets=offsets,
         lasts=offsets[:-1] + np.array([v.size for v in sampled]) - 1,
-        rows=np.array([[number[int(n), m] for m, n in enumerate(row)] for row in times]),
+        rows=number.reshape(times.shape),
         intervals=dts[np.newaxis, :] / times,
     )
 
