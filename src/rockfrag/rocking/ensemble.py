@@ -91,7 +91,8 @@ def overturns(
     restitution
         One entry per body, each as in :func:`simulate`; None conserves momentum in all.
     step
-        Largest p h of a step of a lone block, 0.35 of which a stack takes: smaller is more accurate and slower.
+        Largest p h of a step, of which a stack takes 0.35 while both its blocks rotate: smaller is more accurate
+        and slower.
     threads
         Threads to use; all cores if None.  Results do not depend on it.
 

@@ -15,7 +15,8 @@ STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""
 
 STACK_STEP = 0.35
-"""Share of that step that an ensemble of stacks takes: they are chaotic, and keep the memory of smaller errors."""
+"""Share of that step that stacks of an ensemble take while both blocks rotate: they are chaotic, and keep the
+memory of smaller errors."""
 
 CLOSING_SPEED = 1e-6
 """Separation speed after an impact [rad/s] below which a contact stays closed in a kept history."""
