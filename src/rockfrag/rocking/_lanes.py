@@ -307,14 +307,14 @@ def _left_alone(psi, w, side, b, o, tally, r):
 
 
 def working_arrays():
-    """Arrays that a thread works in: rows of the lanes, of numbers and of integers."""
-    return np.zeros(ROWS * LANES), np.zeros(INTEGERS * LANES, np.int64)
+    """Arrays that a thread works in: rows of the lanes, of numbers and of integers, and results of their cases."""
+    return np.zeros(ROWS * LANES), np.zeros(INTEGERS * LANES, np.int64), np.zeros(RESULTS * LANES)
 
 
 @entry_kernel
 def lone_blocks(
     counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest, ahead_high, ahead_low,
-    results, x, n,
+    results, x, n, tally,
 ):  # fmt: skip
     """March cases of bodies × motions × scales, the scale running fastest, until none is left.
 
@@ -331,7 +331,7 @@ def lone_blocks(
     highest, lowest : extremes of each BLOCK of ``samples``
     ahead_high, ahead_low : largest and smallest sample from here to the end of the motion
     results : (count × RESULTS,)
-    x, n : ``working_arrays``
+    x, n, tally : ``working_arrays``; what two threads wrote side by side would cost them time
 
     Returns
     -------
@@ -341,21 +341,9 @@ def lone_blocks(
     for i in range(LANES):
         n[CASE + i] = -1
         _carry_on(
-            i,
-            x,
-            n,
-            counter,
-            count,
-            table,
-            factors,
-            rows,
-            offsets,
-            lasts,
-            samples,
-            highest,
-            lowest,
+            i, x, n, counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest, tally,
             results,
-        )
+        )  # fmt: skip
         _place(i, x, n, table, samples, ahead_high, ahead_low)
         if n[CASE + i] >= 0:
             busy += 1
@@ -370,15 +358,15 @@ def lone_blocks(
             if n[CASE + i] < 0:
                 continue
             if x[FLAG + i] == CERTAIN_FALL:
-                _fall(i, x, n, results)
+                _fall(i, x, n, tally)
             elif x[FLAG + i] != QUIET:
-                _take_event(i, x, n, table, samples, results)
+                _take_event(i, x, n, table, samples, tally)
             else:
                 x[TAU + i] = 0.0
             if n[FELL + i] != 0 or n[SIDE + i] == 0 or n[K + i] >= n[END + i]:
                 _carry_on(
                     i, x, n, counter, count, table, factors, rows, offsets, lasts, samples, highest, lowest,
-                    results,
+                    tally, results,
                 )  # fmt: skip
                 if n[CASE + i] < 0:
                     busy -= 1
@@ -404,7 +392,7 @@ def _next_sample(x, n, samples):
 @inlined_kernel
 def _fall(i, x, n, tally):
     """Take note of a certain fall, which passes balance at the latest at the speed that energy leaves it."""
-    r = RESULTS * n[CASE + i]
+    r = RESULTS * i
     _restore_extremes(i, x)
     psi, w = x[WAS_PSI + i], x[WAS_RATE + i]
     near = w * w / x[KAPPA + i]
@@ -426,7 +414,7 @@ def _restore_extremes(i, x):
 @inlined_kernel
 def _take_event(i, x, n, b, samples, tally):
     """Take a lane through the impact in its step, or to the step's end if there is none."""
-    r = RESULTS * n[CASE + i]
+    r = RESULTS * i
     o, k, side = n[BASE + i], n[K + i], n[SIDE + i]
     _restore_extremes(i, x)
     t, psi, w, stays = _event(x, i, tally, r)
@@ -458,27 +446,19 @@ def _take_event(i, x, n, b, samples, tally):
 
 @kernel
 def _carry_on(
-    i, x, n, counter, count, b, factors, rows, offsets, lasts, samples, highest, lowest, tally
+    i, x, n, counter, count, b, factors, rows, offsets, lasts, samples, highest, lowest, tally, results
 ):  # fmt: skip
     """Take a lane through rest and the ends of motions, and through as many cases as end there."""
     n_motions, n_scales = factors.shape
+    r = RESULTS * i
     while True:
         case, o = n[CASE + i], n[BASE + i]
         if case >= 0:
-            r = RESULTS * case
             k, end, factor = n[K + i], n[END + i], x[FACTOR + i]
             if n[FELL + i] == 0 and n[SIDE + i] == 0 and k < end and factor != 0.0:
                 k, tau, now = uplift(
-                    k,
-                    x[TAU + i],
-                    -b[o + TAN],
-                    b[o + POLE + TAN],
-                    factor,
-                    samples,
-                    highest,
-                    lowest,
-                    end,
-                )
+                    k, x[TAU + i], -b[o + TAN], b[o + POLE + TAN], factor, samples, highest, lowest, end
+                )  # fmt: skip
                 if k >= 0:
                     # the ground pushes the block over the other way
                     side = -1 if now > 0.0 else 1
@@ -493,6 +473,8 @@ def _carry_on(
                 tally[r + OVERTURNED] = 1.0
                 tally[r + CERTAIN] = n[K + i] - n[START + i]
             _take_over(x, i, tally, r)
+            for m in range(RESULTS):
+                results[RESULTS * case + m] = tally[r + m]
         case = take_next(counter)
         if case >= count:
             n[CASE + i] = -1
@@ -500,7 +482,6 @@ def _carry_on(
         motion = (case // n_scales) % n_motions
         n[CASE + i] = case
         n[BASE + i] = BODY * (case // n_scales)
-        r = RESULTS * case
         for m in range(RESULTS):
             tally[r + m] = 0.0
         tally[r + CLOSEST] = math.inf

@@ -186,7 +186,7 @@ def next_event(t, o, x, i, q, g):
     return when, False
 
 
-@inlined_kernel
+@kernel
 def least_hold(t, o, theta, omega, ground, g):
     """Least contact moment of the closed contact; negative if it would have to pull."""
     s, c = sine_cosine(theta)

@@ -143,7 +143,7 @@ def closing_time(q, row, end):
     return 2.0
 
 
-@inlined_kernel
+@kernel
 def crossing_time(q, row):
     """Find when the q at ``row``, which starts at zero or above and ends below, falls through zero."""
     return crossing(

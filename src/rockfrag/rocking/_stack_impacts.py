@@ -9,7 +9,7 @@ landing of what rocks alone (pattern 3 or 4), whose outcome is the same for ever
 
 import math
 
-from rockfrag.rocking._compile import inlined_kernel
+from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import COARSE_DROP, FASTEST, chatter_dies
 from rockfrag.rocking._mechanics import settle
 from rockfrag.rocking._pendulum import sine_cosine
@@ -74,7 +74,7 @@ def _interface_impact(t, after, products, omega1, omega2):
     return (m22 * q1 - m12 * q2) * share, (m11 * q2 - m12 * q1) * share
 
 
-@inlined_kernel
+@kernel
 def _opening(t, o, ground, side, sine, cosine, omega1, omega2, g):
     """Acceleration that opens a contact further: at zero ground acceleration, per unit of it; inertia.
 
