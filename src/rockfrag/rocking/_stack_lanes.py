@@ -71,6 +71,7 @@ def compile_events():
 
 def compile_others():
     """Compile the other half."""
+    one.go_back.compile((_NS, _I, _N))
     two.advance.compile((_NS, _N))
     one.advance.compile((_NS, _N))
     place = (_I, _I, _NS, _NS, _IS, _NS, _NS)
