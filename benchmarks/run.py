@@ -1,6 +1,6 @@
 """Speed and accuracy of the rocking kernels against other programs, in one process on this machine.
 
-``python benchmarks/run.py`` takes up to ten minutes; ``--quick`` a minute, with too few cases to
+``python benchmarks/run.py`` takes a quarter of an hour; ``--quick`` a minute, with too few cases to
 quote; ``--wide`` adds a study of 2.4 million histories.  Everything goes to ``results/bench``.
 """
 
@@ -127,10 +127,10 @@ def more(base: Cases, times: int) -> Cases:
 
 
 def scaling(kind: str, largest: int, speed: float) -> list[dict[str, object]]:
-    """Cost against the number of cases, as far as a minute goes."""
+    """Cost against the number of cases, as far as three minutes go."""
     rows = []
     for count in (10**n for n in range(2, 7)):
-        if count > min(largest, 60 * speed):
+        if count > min(largest, 180 * speed):
             break
         base = cases(kind, min(count, 10_000))
         set_ = more(base, max(1, count // base.count))
