@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
@@ -148,6 +148,7 @@ ANYTHING = st.recursive(
     ),
     value=ANYTHING,
 )
+@example(key="motions", value={"\n": None})
 def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(
     study_folder: Path, key: str, value: object
 ):

@@ -38,10 +38,16 @@ def check_schema(content: Mapping[str, Any], schema: Mapping[str, Any], where: s
     """
     for key, value in _leaves(content):
         if isinstance(value, float) and not math.isfinite(value):
-            raise InputError(f"{where}: key {key}: expected a finite number, found {value}.")
+            sentence = f"key {key}: expected a finite number, found {value}."
+            raise InputError(f"{where}: {_printable(sentence)}")
     found = sorted(Draft202012Validator(schema).iter_errors(content), key=_importance)
     if found:
-        raise InputError(f"{where}: {_sentence(_deepest(found[0]))}")
+        raise InputError(f"{where}: {_printable(_sentence(_deepest(found[0])))}")
+
+
+def _printable(text: str) -> str:
+    """Escape what would break the line, such as a key that holds a line feed."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def _leaves(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
