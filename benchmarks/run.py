@@ -288,16 +288,15 @@ def main() -> None:
         other[f"{kind}_fragile_share"] = fragile.share
         other[f"{kind}_nudged_share"] = nudged_share(set_)
         other[f"{kind}_followed_share"] = followed_share(set_, 100 if given.quick else 1000)
-        # enough cases that the last chunks of each thread do not matter
+        # enough cases that the lanes that run dry at the end do not matter
         speed = next(r for r in rows if r["bodies"] == NAMES[kind])["histories_per_s_core"]
         other[f"{kind}_threads"] = two_thread_ratio(more(set_, round(3 * speed / set_.count) or 1))
         costs += scaling(kind, 10**3 if given.quick else 10**6, speed)
         other[f"{kind}_cold_s"], other[f"{kind}_warm_s"] = start_up(kind)
-        # what takes memory is their number; two blocks take longer to march
-        count = memory_histories
-        other[f"{kind}_memory_histories"] = count
-        other[f"{kind}_memory_tenth_MiB"] = separately("memory", kind, count // 10)
-        other[f"{kind}_memory_MiB"] = separately("memory", kind, count)
+        tenth = memory_histories // 10
+        other[f"{kind}_memory_histories"] = memory_histories
+        other[f"{kind}_memory_tenth_MiB"] = separately("memory", kind, tenth)
+        other[f"{kind}_memory_MiB"] = separately("memory", kind, memory_histories)
     other["thesis_study_s"], same = thesis_study()
     if given.wide:
         other["wide_study_s"] = wide_study(folder)

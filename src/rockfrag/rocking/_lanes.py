@@ -16,7 +16,7 @@ import numpy as np
 
 from rockfrag.rocking._compile import entry_kernel, inlined_kernel, kernel
 from rockfrag.rocking._intrinsics import lowest_bit, take_next
-from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
+from rockfrag.rocking._pendulum import HALF_TURN, hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
 from rockfrag.rocking._series import crossing
 
@@ -41,7 +41,6 @@ OVERTURNED, CERTAIN, RATIO, SPEED, IMPACTS, CLOSEST = range(6)
 RESULTS = 6
 
 MAX_IMPACTS_PER_SAMPLE = 400
-HALF_TURN = 0.5 * math.pi
 
 
 # Rows of the lanes, in one flat array so that the compiler sees that rows do not overlap.

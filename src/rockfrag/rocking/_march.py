@@ -19,6 +19,7 @@ from rockfrag.rocking._mechanics import (
     FIXED,
     settle,
 )
+from rockfrag.rocking._pendulum import HALF_TURN
 from rockfrag.rocking._series import slope, value
 from rockfrag.rocking._step import RESTORING, TH1, TH2, series
 from rockfrag.rocking._tally import (
@@ -38,8 +39,6 @@ from rockfrag.rocking._tally import (
     ways_to_balance,
     work,
 )
-
-HALF_TURN = 0.5 * math.pi
 
 
 @entry_kernel

@@ -4,14 +4,12 @@ One pass advances every lane from where it is within a sample to the end of that
 samples; ``t`` is the table of a body (``_stack_table``) and ``o`` its row of the contact state.
 """
 
-import math
-
 import numba
 
 from rockfrag.rocking import _stack_table as table
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import between
-from rockfrag.rocking._pendulum import hops, rate, rates, sine_cosine, travel
+from rockfrag.rocking._pendulum import HALF_TURN, dips, hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._series import ORDER, closing_time, crossing_time, slope, value
 from rockfrag.rocking._stack_table import (
     CLOSES,
@@ -68,8 +66,6 @@ _GX, _GY, _PER_ANGLE, _PER_SPEED = (
 _RIGHT = LANES * HOLD
 _LEFT = LANES * (HOLD + CORNER)
 
-HALF_TURN = 0.5 * math.pi
-
 
 @numba.njit(inline="always", error_model="numpy")
 def _moment(x, o, stride, s, c, alpha, square, a):
@@ -78,6 +74,18 @@ def _moment(x, o, stride, s, c, alpha, square, a):
     moment += (x[o + 3 * stride] + x[o + 4 * stride] * s + x[o + 5 * stride] * c) * square
     moment += (x[o + 6 * stride] + x[o + 7 * stride] * s + x[o + 8 * stride] * c) * a
     return moment + (x[o + 9 * stride] + x[o + 10 * stride] * s + x[o + 11 * stride] * c)
+
+
+@numba.njit(inline="always", error_model="numpy")
+def _rates(x, i, theta, w, left, a, a_end, g):
+    """Sine and cosine of θ and Taylor coefficients of θ' over what is left of a lane's sample."""
+    s, c = sine_cosine(theta)
+    gx, gy = x[_GX + i], x[_GY + i]
+    down = -1.0 / g
+    w1, w2, w3, w4, w5, w6 = rates(
+        gx * c + gy * s, gy * c - gx * s, w, left * left, a * down, (a_end - a) * down
+    )
+    return s, c, w1, w2, w3, w4, w5, w6
 
 
 @kernel
@@ -94,12 +102,7 @@ def advance(x, g):
         a_end = x[GROUND_END + i]
         per = 1.0 / left
         w = omega * left
-        s, c = sine_cosine(theta)
-        gx, gy = x[_GX + i], x[_GY + i]
-        down = -1.0 / g
-        w1, w2, w3, w4, w5, w6 = rates(
-            gx * c + gy * s, gy * c - gx * s, w, left * left, a * down, (a_end - a) * down
-        )
+        s, c, w1, w2, w3, w4, w5, w6 = _rates(x, i, theta, w, left, a, a_end, g)
         x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i] = w1, w2, w3, w4, w5, w6
         n = theta + travel(w, w1, w2, w3, w4, w5, w6, 1.0)
         z = rate(w, w1, w2, w3, w4, w5, w6, 1.0)
@@ -108,8 +111,8 @@ def advance(x, g):
         gap = sign * theta
         out = sign * w
         end = sign * z
-        dips = (out < 0.0) & (end > 0.0) & (gap * (end - out) < out * out)
-        flag = NEARS if dips | hops(gap, out, end, sign * w1) | (abs(n) >= HALF_TURN) else QUIET
+        near = dips(gap, out, end) | hops(gap, out, end, sign * w1)
+        flag = NEARS if near | (abs(n) >= HALF_TURN) else QUIET
         flag = CLOSES if sign * n < 0.0 else flag
         # the closed contact would have to be pulled
         square = omega * omega
@@ -135,10 +138,10 @@ def advance(x, g):
         was_ratio, was_fast, was_near = x[RATIO + i], x[FAST + i], x[NEAR + i]
         x[WAS_RATIO + i], x[WAS_FAST + i], x[WAS_NEAR + i] = was_ratio, was_fast, was_near
         ratio = x[_PER_ANGLE + i] * n
-        near = (1.0 - ratio) * (1.0 - ratio) + x[_PER_SPEED + i] * z * z
+        away = (1.0 - ratio) * (1.0 - ratio) + x[_PER_SPEED + i] * z * z
         x[RATIO + i] = max(was_ratio, ratio)
         x[FAST + i] = max(was_fast, abs(z))
-        x[NEAR + i] = min(was_near, near)
+        x[NEAR + i] = min(was_near, away)
 
 
 @inlined_kernel
@@ -159,12 +162,7 @@ def go_back(x, i, g):
     end, a = x[WAS_GROUND + i], x[BEFORE_GROUND + i]
     x[WAS_THETA + i], x[WAS_OMEGA + i], x[WAS_LEFT + i] = theta, omega, left
     x[GROUND_END + i], x[WAS_GROUND + i] = end, a
-    s, c = sine_cosine(theta)
-    gx, gy = x[_GX + i], x[_GY + i]
-    down = -1.0 / g
-    w1, w2, w3, w4, w5, w6 = rates(
-        gx * c + gy * s, gy * c - gx * s, omega * left, left * left, a * down, (end - a) * down
-    )
+    _, _, w1, w2, w3, w4, w5, w6 = _rates(x, i, theta, omega * left, left, a, end, g)
     x[W1 + i], x[W2 + i], x[W3 + i], x[W4 + i], x[W5 + i], x[W6 + i] = w1, w2, w3, w4, w5, w6
 
 

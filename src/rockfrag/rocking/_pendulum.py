@@ -5,9 +5,14 @@ pushes the block back down, κ = p² h² and time is counted in steps of h (thes
 branches or calls, so that the compiler can work on several cases at once.
 """
 
+import math
+
 import numba
 
 from rockfrag.rocking._intrinsics import fma
+
+HALF_TURN = 0.5 * math.pi
+"""A block that has turned so far lies down [rad]."""
 
 
 @numba.njit(inline="always", error_model="numpy")
@@ -68,6 +73,12 @@ def rate(w, w1, w2, w3, w4, w5, w6, t):
     """ψ'(t)."""
     v = fma(t, fma(t, fma(t, fma(t, fma(t, w6, w5), w4), w3), w2), w1)
     return fma(t, v, w)
+
+
+@numba.njit(inline="always", error_model="numpy")
+def dips(gap, out, out_at_end):
+    """Whether a contact that closes at the start and opens at the end may have closed in between."""
+    return (out < 0.0) & (out_at_end > 0.0) & (gap * (out_at_end - out) < out * out)
 
 
 @numba.njit(inline="always", error_model="numpy")

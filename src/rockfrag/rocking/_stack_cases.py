@@ -19,6 +19,7 @@ from rockfrag.rocking._mechanics import (
     potential_energy,
     settle,
 )
+from rockfrag.rocking._pendulum import HALF_TURN
 from rockfrag.rocking._rest import uplift
 from rockfrag.rocking._series import slope, value
 from rockfrag.rocking._stack_impacts import land, meet
@@ -212,9 +213,9 @@ def _put(s, n, j, c1, c2, t1, w1, t2, w2, tau):
         n[K + j] += 1
     n[C1 + j], n[C2 + j] = c1, c2
     s[TH1 + j], s[RATE1 + j], s[TH2 + j], s[RATE2 + j], s[TAU + j] = t1, w1, t2, w2, tau
-    if abs(t1) >= one.HALF_TURN:
+    if abs(t1) >= HALF_TURN:
         n[FELL + j] = 1
-    elif max(abs(t2), abs(t2 - t1)) >= one.HALF_TURN:
+    elif max(abs(t2), abs(t2 - t1)) >= HALF_TURN:
         n[FELL + j] = 2
 
 

@@ -5,12 +5,12 @@ allowed.  Time is counted in samples; ``t`` is the table of a body (``_stack_tab
 the contact state.
 """
 
-import math
+import numba
 
 from rockfrag.rocking import _stack_table as table
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import first_closing, ground_gap, interface_gap
-from rockfrag.rocking._pendulum import hops, rate, sine_cosine, travel
+from rockfrag.rocking._pendulum import HALF_TURN, dips, hops, rate, sine_cosine, travel
 from rockfrag.rocking._series import crossing_time
 from rockfrag.rocking._stack_table import CLOSES, LANES, NEARS, QUIET, TWO_COLUMNS, WITHIN
 from rockfrag.rocking._step import GAP
@@ -67,9 +67,14 @@ _V1X, _V1Y, _V2X, _V2Y, _M11, _M22, _E, _F, _PER_ANGLE1, _PER_ANGLE2, _PER_SPEED
 )
 INERTIAS = _M11, _M22
 
-HALF_TURN = 0.5 * math.pi
 REMNANT = 1e-12
 """Part of a sample that is not worth a step of its own."""
+
+
+@numba.njit(inline="always", error_model="numpy")
+def _span(left, part):
+    """Length of a step with so much of the sample left and so large a part of it allowed."""
+    return left if left <= part + REMNANT else part
 
 
 @kernel
@@ -81,8 +86,7 @@ def advance(x, g):
     """
     for i in range(LANES):
         left = x[LEFT + i]
-        part = x[PART + i]
-        span = left if left <= part + REMNANT else part
+        span = _span(left, x[PART + i])
         scale = span * span
         t1 = x[TH1 + i]
         t2 = x[TH2 + i]
@@ -124,14 +128,12 @@ def advance(x, g):
         out2 = sign2 * (w2 - w1)
         in2 = sign2 * (z2 - z1)
         closes = (sign1 * n1 < 0.0) | (sign2 * (n2 - n1) < 0.0)
-        dips = ((out1 < 0.0) & (in1 > 0.0) & (from1 * (in1 - out1) < out1 * out1)) | (
-            (out2 < 0.0) & (in2 > 0.0) & (from2 * (in2 - out2) < out2 * out2)
-        )
-        hop = hops(from1, out1, in1, sign1 * p1) | hops(from2, out2, in2, sign2 * (q1 - p1))
+        near = dips(from1, out1, in1) | hops(from1, out1, in1, sign1 * p1)
+        near |= dips(from2, out2, in2) | hops(from2, out2, in2, sign2 * (q1 - p1))
         lies = (max(abs(n1), abs(n2)) >= HALF_TURN) | (abs(n2 - n1) >= HALF_TURN)
         flag = WITHIN if span < left else QUIET
         flag = CLOSES if closes else flag
-        flag = NEARS if dips | hop | lies else flag
+        flag = NEARS if near | lies else flag
         x[FLAG + i] = flag
         x[WAS_TH1 + i] = t1
         x[WAS_RATE1 + i] = rate1
@@ -165,7 +167,7 @@ def advance(x, g):
 @inlined_kernel
 def span_of(x, i):
     """Length of a lane's step."""
-    return x[WAS_LEFT + i] if x[WAS_LEFT + i] <= x[PART + i] + REMNANT else x[PART + i]
+    return _span(x[WAS_LEFT + i], x[PART + i])
 
 
 @inlined_kernel
