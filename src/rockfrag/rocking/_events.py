@@ -4,8 +4,6 @@ import math
 
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._mechanics import (
-    FIXED,
-    GRAVITY,
     accelerations,
     equations,
     first_moment2,
@@ -45,7 +43,7 @@ def rest_interval(p):
     low = -math.inf
     high = math.inf
     for which in (1, 2):
-        if which == 1 and p[FIXED] > 0.0:
+        if which == 1 and p.fixed:
             continue
         for s in (1, -1):
             still, pushed = _rest_moment(p, which, s, 0.0), _rest_moment(p, which, s, 1.0)
@@ -184,7 +182,7 @@ def next_event(p, c1, c2, q, h, a0, ramp):
     when, closes1, closes2 = first_closing(c1, c2, q)
     fails = 0
     for which in (1, 2):
-        if (which == 1 and (c1 != 0 or p[FIXED] > 0.0)) or (which == 2 and c2 != 0):
+        if (which == 1 and (c1 != 0 or p.fixed)) or (which == 2 and c2 != 0):
             continue
         time = _failing_time(p, which, c1, c2, q, min(1.0, when), h, a0, ramp)
         if time < when:
@@ -243,7 +241,7 @@ def strike(
             after = kinetic_energy(p, n1, n2, 0.0, w1, 0.0, w2)
             share = math.sqrt(after / before)
             # a pedestal that is thrown about lengthens the flights of the statue
-            safety = 1.03 if p[FIXED] > 0.0 else 1.5
+            safety = 1.03 if p.fixed else 1.5
             if chatter_dies(
                 speed, share, safety, restoring, 0, drop, k, tau, dt, samples, last, scale
             ):
@@ -269,13 +267,13 @@ def restoring_table(p, table, n):
     """
     for i, (c1, c2) in enumerate(((0, 1), (0, -1), (1, 0), (-1, 0))):
         at = n + 2 * i
-        if c1 != 0 and p[FIXED] > 0.0:
+        if c1 != 0 and p.fixed:
             table[at], table[at + 1] = math.inf, 0.0
         else:
             still = _restoring(p, c1, c2, 0.0)
             table[at], table[at + 1] = still, _restoring(p, c1, c2, 1.0) - still
     vx, vy = first_moment2(p, 1)
-    frequency2 = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, 1)
+    frequency2 = p.gravity * math.hypot(vx, vy) / inertia2(p, 1)
     table[n + FREQUENCY2] = frequency2
     table[n + FASTEST] = 0.2 * _least_restoring(table, n, 0.0) / math.sqrt(frequency2)
 

@@ -16,7 +16,6 @@ from rockfrag.rocking._events import (
     strike,
 )
 from rockfrag.rocking._mechanics import (
-    FIXED,
     settle,
 )
 from rockfrag.rocking._pendulum import HALF_TURN
@@ -50,7 +49,7 @@ def march(
 
     Parameters
     ----------
-    p : parameter array of the body
+    p : BODY of the body
     acceleration : samples [m/s²]; zero after the last
     dt : sampling interval [s]
     substeps : steps per sample
@@ -131,7 +130,7 @@ def march(
         lying1 = abs(theta1) >= HALF_TURN
         lying2 = abs(theta2) >= HALF_TURN or abs(theta2 - theta1) >= HALF_TURN
         if lying1 or lying2:
-            summary[FALLEN] = 1.0 if lying1 and p[FIXED] == 0.0 else 2.0
+            summary[FALLEN] = 1.0 if lying1 and not p.fixed else 2.0
             summary[FALL_TIME] = (done - 1) * dt
             break
         if free and c1 == 0 and c2 == 0:

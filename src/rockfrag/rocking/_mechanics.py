@@ -8,38 +8,47 @@ Positions along an interface are given as σ in [-1, 1]: the poles are σ = ±1.
 r1 = R(θ1) arm1, d = R(θ1) reach, r2 = R(θ2) arm2 the equations are M θ'' + f = τ with τ the moments of
 the contact forces, zero at a rocking pole (thesis eq. 2.43, 2.51, 2.55, 2.58).
 
-A lone block is block 2 on a block 1 that cannot move (``FIXED``).
+A lone block is block 2 on a block 1 that cannot move (``fixed``).
 """
 
 import math
 
+import numpy as np
+
 from rockfrag.rocking._compile import kernel
 
-# Entries of the parameter array of one body; lengths [m], masses [kg], inertias [kg m²].
-M1, I1, B1, C1X, C1Y = 0, 1, 2, 3, 4  # pedestal: mass, inertia, half width, centre of gravity
-TX, TY, EX, EY = 5, 6, 7, 8  # middle and direction of the statue's footing
-M2, I2, B2, C2X, C2Y = 9, 10, 11, 12, 13  # statue: likewise, centre from the middle of its footing
-# Where the impulse of a closing contact acts, σ towards the new pole +1 and -1; 1 is the pole itself.
-ETA1R, ETA1L, ETA2R, ETA2L = 14, 15, 16, 17
-FIXED = 18  # 1 if block 1 cannot move
-LINEAR = 19  # 0 exact; 1 eq. 2.60-2.65; 2 eq. 2.9 (lone block)
-GRAVITY = 20
-MEASURED = 21  # 1 if an impulse acts elsewhere than at its pole
-PARAMETERS = 22
+BODY = np.dtype(
+    [
+        # pedestal: mass, inertia, half width, centre of gravity
+        ("m1", np.float64), ("i1", np.float64), ("b1", np.float64), ("c1x", np.float64), ("c1y", np.float64),
+        # middle and direction of the statue's footing
+        ("tx", np.float64), ("ty", np.float64), ("ex", np.float64), ("ey", np.float64),
+        # statue: likewise, centre from the middle of its footing
+        ("m2", np.float64), ("i2", np.float64), ("b2", np.float64), ("c2x", np.float64), ("c2y", np.float64),
+        # where the impulse of a closing contact acts, σ towards the new pole +1 and -1; 1 is the pole itself
+        ("eta1r", np.float64), ("eta1l", np.float64), ("eta2r", np.float64), ("eta2l", np.float64),
+        ("gravity", np.float64),
+        ("linear", np.int64),  # 0 exact; 1 eq. 2.60-2.65; 2 eq. 2.9 (lone block)
+        ("fixed", np.bool_),  # block 1 cannot move
+        ("measured", np.bool_),  # an impulse acts elsewhere than at its pole
+    ],
+    align=True,
+)  # fmt: skip
+"""What the kernels know of a body: lengths [m], masses [kg], moments of inertia [kg m²], gravity [m/s²]."""
 
 
 @kernel
 def arm1(p, sigma):
     """Return the vector from σ on the ground to the pedestal's centre, at θ1 = 0."""
-    return p[C1X] - sigma * p[B1], p[C1Y]
+    return p.c1x - sigma * p.b1, p.c1y
 
 
 @kernel
 def arm2(p, sigma):
     """Return the vector from σ on the interface to the statue's centre, at θ2 = 0."""
-    x = p[C2X] - sigma * p[B2] * p[EX]
-    y = p[C2Y] - sigma * p[B2] * p[EY]
-    if p[LINEAR] == 2.0:
+    x = p.c2x - sigma * p.b2 * p.ex
+    y = p.c2y - sigma * p.b2 * p.ey
+    if p.linear == 2:
         # eq. 2.9: sin θc → θc, cos θc → 1
         radius = math.hypot(x, y)
         return -sigma * radius * math.atan2(-sigma * x, y), radius
@@ -50,8 +59,8 @@ def arm2(p, sigma):
 def reach(p, sigma1, sigma2):
     """Return the vector d from σ1 on the ground to σ2 on the interface, at θ1 = 0."""
     return (
-        p[TX] + sigma2 * p[B2] * p[EX] - sigma1 * p[B1],
-        p[TY] + sigma2 * p[B2] * p[EY],
+        p.tx + sigma2 * p.b2 * p.ex - sigma1 * p.b1,
+        p.ty + sigma2 * p.b2 * p.ey,
     )
 
 
@@ -60,15 +69,15 @@ def inertia1(p, sigma1, sigma2):
     """M11 = I1 + m1 |r1|² + m2 |d|²."""
     rx, ry = arm1(p, sigma1)
     dx, dy = reach(p, sigma1, sigma2)
-    return p[I1] + p[M1] * (rx * rx + ry * ry) + p[M2] * (dx * dx + dy * dy)
+    return p.i1 + p.m1 * (rx * rx + ry * ry) + p.m2 * (dx * dx + dy * dy)
 
 
 @kernel
 def inertia2(p, sigma2):
     """M22 = I2 + m2 |r2|²."""
-    x = p[C2X] - sigma2 * p[B2] * p[EX]
-    y = p[C2Y] - sigma2 * p[B2] * p[EY]
-    return p[I2] + p[M2] * (x * x + y * y)
+    x = p.c2x - sigma2 * p.b2 * p.ex
+    y = p.c2y - sigma2 * p.b2 * p.ey
+    return p.i2 + p.m2 * (x * x + y * y)
 
 
 @kernel
@@ -76,7 +85,7 @@ def coupling(p, sigma1, sigma2):
     """E and F of M12 = m2 d·r2 = E cos(θ2 - θ1) + F sin(θ2 - θ1)."""
     dx, dy = reach(p, sigma1, sigma2)
     rx, ry = arm2(p, sigma2)
-    return p[M2] * (dx * rx + dy * ry), p[M2] * (dx * ry - dy * rx)
+    return p.m2 * (dx * rx + dy * ry), p.m2 * (dx * ry - dy * rx)
 
 
 @kernel
@@ -84,21 +93,21 @@ def first_moment1(p, sigma1, sigma2):
     """m1 r1 + m2 d at θ1 = 0, what gravity and ground acceleration act on in the first equation."""
     rx, ry = arm1(p, sigma1)
     dx, dy = reach(p, sigma1, sigma2)
-    return p[M1] * rx + p[M2] * dx, p[M1] * ry + p[M2] * dy
+    return p.m1 * rx + p.m2 * dx, p.m1 * ry + p.m2 * dy
 
 
 @kernel
 def first_moment2(p, sigma2):
     """m2 r2 at θ2 = 0."""
     rx, ry = arm2(p, sigma2)
-    return p[M2] * rx, p[M2] * ry
+    return p.m2 * rx, p.m2 * ry
 
 
 @kernel
 def weight_moment(p, vx, vy, theta, a):
     """-g V_x + a V_y with V = R(θ)(vx, vy): gravity's and the ground's share of f1 or f2."""
-    g = p[GRAVITY]
-    if p[LINEAR] > 0.0:
+    g = p.gravity
+    if p.linear > 0:
         return a * vy - g * (vx + vy * theta)
     c = math.cos(theta)
     s = math.sin(theta)
@@ -109,7 +118,7 @@ def weight_moment(p, vx, vy, theta, a):
 def equations(p, sigma1, sigma2, theta1, omega1, theta2, omega2, a):
     """M11, M12, M22, f1, f2 of M θ'' + f = τ."""
     e, f = coupling(p, sigma1, sigma2)
-    if p[LINEAR] > 0.0:
+    if p.linear > 0:
         m12 = e
         d = 0.0
     else:
@@ -147,7 +156,7 @@ def ground_hold(p, c2, theta1, theta2, omega2, a, alpha2):
 
     The full contact persists while it is not negative: the ground pushes and never pulls.
     """
-    if p[FIXED] > 0.0:
+    if p.fixed:
         return 1.0, 1
     s2 = c2 if c2 != 0 else 1
     least = math.inf
@@ -194,7 +203,7 @@ def settle(p, c1, c2, theta1, omega1, theta2, omega2, a):
         for n1 in (0, 1, -1):
             if c1 != 0 and n1 != 0:
                 continue
-            if p[FIXED] > 0.0 and n1 != 0:
+            if p.fixed and n1 != 0:
                 continue
             for n2 in (0, 1, -1):
                 if c2 != 0 and n2 != 0:
@@ -226,7 +235,7 @@ def settle(p, c1, c2, theta1, omega1, theta2, omega2, a):
                 if good:
                     return t1, t2
     # within rounding of a threshold: open what its own criterion opens
-    if p[FIXED] > 0.0:
+    if p.fixed:
         fallback1 = 0
     return fallback1, fallback2
 
@@ -234,7 +243,7 @@ def settle(p, c1, c2, theta1, omega1, theta2, omega2, a):
 @kernel
 def _between(p, theta1, theta2):
     """Cosine and sine of θ2 - θ1; 1 and 0 in the linearised equations."""
-    if p[LINEAR] > 0.0 or theta1 == theta2:
+    if p.linear > 0 or theta1 == theta2:
         return 1.0, 0.0
     return math.cos(theta2 - theta1), math.sin(theta2 - theta1)
 
@@ -251,20 +260,20 @@ def _metric(p, ta1, ta2, tb1, tb2, c, s):
     dbx, dby = reach(p, tb1, tb2)
     rax, ray = arm2(p, ta2)
     rbx, rby = arm2(p, tb2)
-    m1 = p[M1]
-    m2 = p[M2]
-    k11 = p[I1] + m1 * (ax * bx + ay * by) + m2 * (dax * dbx + day * dby)
+    m1 = p.m1
+    m2 = p.m2
+    k11 = p.i1 + m1 * (ax * bx + ay * by) + m2 * (dax * dbx + day * dby)
     # d·R(Δ)r
     k12 = m2 * (dax * (rbx * c + rby * s) + day * (rby * c - rbx * s))
     k21 = m2 * (dbx * (rax * c + ray * s) + dby * (ray * c - rax * s))
-    if p[LINEAR] == 2.0:
+    if p.linear == 2:
         k22 = inertia2(p, ta2)
         if ta2 != tb2:
-            x, y = p[C2X], p[C2Y]
-            b = p[B2]
-            k22 = p[I2] + m2 * ((x - ta2 * b) * (x - tb2 * b) + y * y)
+            x, y = p.c2x, p.c2y
+            b = p.b2
+            k22 = p.i2 + m2 * ((x - ta2 * b) * (x - tb2 * b) + y * y)
     else:
-        k22 = p[I2] + m2 * (rax * rbx + ray * rby)
+        k22 = p.i2 + m2 * (rax * rbx + ray * rby)
     return k11, k12, k21, k22
 
 
@@ -285,8 +294,8 @@ def potential_energy(p, c1, c2, theta1, theta2):
     s2 = c2 if c2 != 0 else 1
     v1x, v1y = first_moment1(p, s1, s2)
     v2x, v2y = first_moment2(p, s2)
-    g = p[GRAVITY]
-    if p[LINEAR] > 0.0:
+    g = p.gravity
+    if p.linear > 0:
         return -g * (theta1 * (v1x + 0.5 * v1y * theta1) + theta2 * (v2x + 0.5 * v2y * theta2))
     # V_y(θ) - V_y(0), with 1 - cos θ = 2 sin²(θ/2) so that nothing cancels
     h1 = math.sin(0.5 * theta1)
@@ -358,7 +367,7 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
             if not free1:
                 continue
             n1 = 0
-        if p[FIXED] > 0.0 and n1 != 0:
+        if p.fixed and n1 != 0:
             continue
         for choice2 in range(3):
             if choice2 == 0:
@@ -375,9 +384,9 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
             t2 = float(n2) if n2 != 0 else 1.0
             if measured:
                 if closes1 and n1 != 0:
-                    t1 = n1 * (p[ETA1R] if n1 > 0 else p[ETA1L])
+                    t1 = n1 * (p.eta1r if n1 > 0 else p.eta1l)
                 if closes2 and n2 != 0:
-                    t2 = n2 * (p[ETA2R] if n2 > 0 else p[ETA2L])
+                    t2 = n2 * (p.eta2r if n2 > 0 else p.eta2l)
             w1, w2 = _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2)
             if free1 and n1 != 0 and n1 * w1 <= tiny:
                 continue
@@ -386,8 +395,8 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
             p1 = n1 if n1 != 0 else 1
             p2 = n2 if n2 != 0 else 1
             good = True
-            if n1 == 0 and p[FIXED] == 0.0:
-                slack = 1e-12 * p[I1] * (abs(omega1) + abs(omega2))
+            if n1 == 0 and not p.fixed:
+                slack = 1e-12 * p.i1 * (abs(omega1) + abs(omega2))
                 for corner in (1, -1):
                     moment = _row1(
                         p, float(corner), t2, p1, p2, o1, o2, c, s,
@@ -396,7 +405,7 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
                     if corner * moment < -slack:
                         good = False
             if good and n2 == 0:
-                slack = 1e-12 * p[I2] * (abs(omega1) + abs(omega2))
+                slack = 1e-12 * p.i2 * (abs(omega1) + abs(omega2))
                 for corner in (1, -1):
                     moment = _row2(
                         p, t1, float(corner), p1, p2, o1, o2, c, s, w1, w2, omega1, omega2
@@ -427,7 +436,7 @@ def impact(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2):
         n1, n2, w1, w2 = _strike(
             p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measured
         )
-        if p[MEASURED] == 0.0:
+        if not p.measured:
             break
         before = kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2)
         after = kinetic_energy(p, n1, n2, theta1, w1, theta2, w2)

@@ -11,12 +11,12 @@ change a bit of them.
 """
 
 import numpy as np
-from numba import types
+from numba import from_dtype, types
 
 from rockfrag.rocking import _one_rotation as one
 from rockfrag.rocking import _two_rotations as two
 from rockfrag.rocking._compile import entry_kernel
-from rockfrag.rocking._mechanics import GRAVITY
+from rockfrag.rocking._mechanics import BODY
 from rockfrag.rocking._stack_cases import (
     END,
     FLOATS,
@@ -56,14 +56,15 @@ def working_arrays():
 
 _N, _I, _B = types.float64, types.int64, types.boolean
 _NS, _IS = types.float64[::1], types.int64[::1]
-_TABLE, _IS_TABLE = types.float64[:, ::1], types.int64[:, ::1]
+_BODY = from_dtype(BODY)
+_BODIES, _TABLE, _IS_TABLE = _BODY[::1], types.float64[:, ::1], types.int64[:, ::1]
 
 
 def compile_events():
     """Compile what takes cases through events, a half of the work."""
-    event = (_I, _I, _NS, _NS, _IS, _NS, _NS, _TABLE, _NS, _N, _N, _NS)
+    event = (_I, _I, _NS, _NS, _IS, _NS, _NS, _BODIES, _NS, _N, _N, _NS)
     strike_case.compile(
-        (_NS, _IS, _I, _NS, _NS, _B, _B, _I, _I, _N, _N, _N, _N, _N, _N, _B, _I, _N, _NS, _NS)
+        (_NS, _IS, _I, _NS, _BODY, _B, _B, _I, _I, _N, _N, _N, _N, _N, _N, _B, _I, _N, _NS, _NS)
     )
     event_of_two.compile(event)
     event_of_one.compile(event)
@@ -81,7 +82,7 @@ def compile_others():
     store_one.compile((_I, _I, _NS, _NS, _IS))
     carry_on.compile(
         (
-            _I, _NS, _IS, _NS, _IS, _I, _TABLE, _TABLE, _TABLE, _IS_TABLE, _TABLE, _IS_TABLE, _IS, _IS, _NS, _NS,
+            _I, _NS, _IS, _NS, _IS, _I, _BODIES, _TABLE, _TABLE, _IS_TABLE, _TABLE, _IS_TABLE, _IS, _IS, _NS, _NS,
             _NS, _TABLE,
         )
     )  # fmt: skip
@@ -99,7 +100,7 @@ def stack_cases(
     ----------
     counter : (1,) the next case to take, shared by all threads
     count : number of cases
-    parameters : (bodies, PARAMETERS)
+    parameters : (bodies,) of BODY
     intervals : (bodies, motions) sampling interval of the sampled motion [s]
     parts : (bodies, motions) largest part of it that a step of two rotations may take
     free : (bodies, motions) samples of free rocking
@@ -116,7 +117,7 @@ def stack_cases(
     -------
     Numbers of steps that lanes of one rotation and of two were advanced by.
     """
-    g = parameters[0, GRAVITY]
+    g = parameters[0].gravity
     for j in range(SLOTS):
         carry_on(
             j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets, lasts,

@@ -10,12 +10,6 @@ import math
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._events import restoring_table
 from rockfrag.rocking._mechanics import (
-    GRAVITY,
-    I1,
-    I2,
-    M1,
-    M2,
-    MEASURED,
     arm1,
     arm2,
     coupling,
@@ -113,12 +107,12 @@ def body_table(p, h, t, start):
                 _one_rotates(p, c1, c2, hh, t, o)
                 _landing(p, c1, c2, t, at)
     restoring_table(p, t, start + RESTORING_AT)
-    t[start + HAS_MEASURED] = p[MEASURED]
+    t[start + HAS_MEASURED] = p.measured
 
 
 @kernel
 def _one_rotates(p, c1, c2, hh, t, o):
-    g = p[GRAVITY]
+    g = p.gravity
     if c1 != 0:
         critical, vx, vy, inertia = balance(p, c1, c2)
         _interface_hold(p, c1, hh, t, o + HOLD)
@@ -135,7 +129,7 @@ def _one_rotates(p, c1, c2, hh, t, o):
 
 @kernel
 def _both_rotate(p, c1, c2, hh, t, o):
-    g = p[GRAVITY]
+    g = p.gravity
     t[o + M11], t[o + M22] = inertia1(p, c1, c2), inertia2(p, c2)
     t[o + E], t[o + F] = coupling(p, c1, c2)
     critical, vx, vy, inertia = balance(p, c1, c2)
@@ -161,7 +155,7 @@ def _ground_hold(p, c2, hh, t, o):
         t[at + 1], t[at + 2] = s1 * f, s1 * e
         t[at + 4], t[at + 5] = -s1 * e, s1 * f
         t[at + 6] = s1 * hh * vy
-        t[at + 9] = -s1 * hh * p[GRAVITY] * vx
+        t[at + 9] = -s1 * hh * p.gravity * vx
 
 
 @kernel
@@ -175,7 +169,7 @@ def _interface_hold(p, c1, hh, t, o):
             t[at + n] = 0.0
         t[at] = s2 * (e + inertia2(p, s2))
         t[at + 3] = -s2 * f
-        weight = s2 * hh * p[GRAVITY]
+        weight = s2 * hh * p.gravity
         t[at + 7], t[at + 8] = -s2 * hh * vx, s2 * hh * vy
         t[at + 10], t[at + 11] = -weight * vy, -weight * vx
 
@@ -187,14 +181,14 @@ def _meeting(p, c1, c2, t, o):
     bx, by = arm1(p, -c1)
     dx, dy = reach(p, c1, c2)
     ex, ey = reach(p, -c1, c2)
-    t[o + GROUND] = p[I1] + p[M1] * (ax * bx + ay * by) + p[M2] * (dx * ex + dy * ey)
+    t[o + GROUND] = p.i1 + p.m1 * (ax * bx + ay * by) + p.m2 * (dx * ex + dy * ey)
     ex, ey = reach(p, c1, -c2)
     rx, ry = arm2(p, c2)
     sx, sy = arm2(p, -c2)
-    t[o + BOTH11] = p[I1] + p[M1] * (ax * ax + ay * ay) + p[M2] * (dx * ex + dy * ey)
-    t[o + BOTH12] = p[M2] * (ex * rx + ey * ry)
-    t[o + BOTH21] = p[M2] * (dx * sx + dy * sy)
-    t[o + BOTH22] = p[I2] + p[M2] * (rx * sx + ry * sy)
+    t[o + BOTH11] = p.i1 + p.m1 * (ax * ax + ay * ay) + p.m2 * (dx * ex + dy * ey)
+    t[o + BOTH12] = p.m2 * (ex * rx + ey * ry)
+    t[o + BOTH21] = p.m2 * (dx * sx + dy * sy)
+    t[o + BOTH22] = p.i2 + p.m2 * (rx * sx + ry * sy)
 
 
 @kernel

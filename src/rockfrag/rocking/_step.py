@@ -2,8 +2,6 @@
 
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking._mechanics import (
-    GRAVITY,
-    LINEAR,
     coupling,
     first_moment1,
     first_moment2,
@@ -25,16 +23,16 @@ SCRATCH = RESTORING + RESTORED
 def _one(p, vx, vy, inertia, h, a0, slope, q, theta, sine, cosine):
     """Series of one rotation: J θ'' = g V_x - a V_y; the first two coefficients are there."""
     scale = h * h / inertia
-    g = p[GRAVITY]
+    g = p.gravity
     # coefficients of cos θ and sin θ, constant and linear in τ
     pc0 = scale * (g * vx - a0 * vy)
     pc1 = -scale * slope * vy
     ps0 = scale * g * vy
     ps1 = 0.0
-    if p[LINEAR] == 0.0:
+    if p.linear == 0:
         ps0 += scale * a0 * vx
         ps1 = scale * slope * vx
-    linear = p[LINEAR] > 0.0
+    linear = p.linear > 0
     for k in range(ORDER - 1):
         extend_rotation(q, k, linear, theta, sine, cosine)
         total = pc0 * q[cosine + k] + ps0 * q[sine + k]
@@ -46,14 +44,14 @@ def _one(p, vx, vy, inertia, h, a0, slope, q, theta, sine, cosine):
 @kernel
 def _two(p, c1, c2, h, a0, slope, q):
     """Series of both rotations of patterns 1 and 2; TH1 and TH2 hold the initial state."""
-    g = p[GRAVITY]
+    g = p.gravity
     hh = h * h
     m11 = inertia1(p, c1, c2)
     m22 = inertia2(p, c2)
     e, f = coupling(p, c1, c2)
     v1x, v1y = first_moment1(p, c1, c2)
     v2x, v2y = first_moment2(p, c2)
-    linear = p[LINEAR] > 0.0
+    linear = p.linear > 0
     for k in range(ORDER - 1):
         q[DELTA + k] = q[TH2 + k] - q[TH1 + k]
         extend_rotation(q, k, linear, TH1, SIN1, COS1)

@@ -6,9 +6,6 @@ import numpy as np
 
 from rockfrag.rocking._compile import entry_kernel, kernel
 from rockfrag.rocking._mechanics import (
-    FIXED,
-    GRAVITY,
-    LINEAR,
     accelerations,
     coupling,
     first_moment1,
@@ -72,14 +69,14 @@ def barrier(p):
     for s2 in (1, -1):
         vx, vy = first_moment2(p, s2)
         least = min(least, math.hypot(vx, vy) - vy)
-        if p[FIXED] == 0.0:
+        if not p.fixed:
             for s1 in (1, -1):
                 vx, vy = first_moment1(p, s1, s2)
                 least = min(least, math.hypot(vx, vy) - vy)
                 wx, wy = first_moment2(p, s2)
                 vx, vy = vx + wx, vy + wy
                 least = min(least, math.hypot(vx, vy) - vy)
-    return least * p[GRAVITY]
+    return least * p.gravity
 
 
 @kernel
@@ -90,12 +87,12 @@ def ways_to_balance(p, q):
             critical, vx, vy, inertia = balance(p, c1, c2)
             column = 1 + c2 + (0 if c1 > 0 else 3)
             q[CRITICAL + column] = critical
-            q[FREQUENCY2 + column] = p[GRAVITY] * math.hypot(vx, vy) / inertia
+            q[FREQUENCY2 + column] = p.gravity * math.hypot(vx, vy) / inertia
     for c2 in (1, -1):
         vx, vy = first_moment2(p, c2)
         column = 6 if c2 > 0 else 7
         q[CRITICAL + column] = math.atan2(-c2 * vx, vy)
-        q[FREQUENCY2 + column] = p[GRAVITY] * math.hypot(vx, vy) / inertia2(p, c2)
+        q[FREQUENCY2 + column] = p.gravity * math.hypot(vx, vy) / inertia2(p, c2)
 
 
 @kernel
@@ -150,7 +147,7 @@ def work(p, c1, c2, q, end, h, a0, ramp):
             t2 = value(q, TH2, tau)
             w1 = slope(q, TH1, tau)
             w2 = slope(q, TH2, tau)
-            if p[LINEAR] > 0.0:
+            if p.linear > 0:
                 rate = v1y * w1 + v2y * w2
             else:
                 rate = w1 * (v1y * math.cos(t1) - v1x * math.sin(t1))

@@ -14,6 +14,7 @@ from rockfrag.rocking import _lanes as lanes
 from rockfrag.rocking import _stack_cases as columns
 from rockfrag.rocking import _stack_lanes as stack_lanes
 from rockfrag.rocking._compile import compiling_alone
+from rockfrag.rocking._mechanics import BODY
 from rockfrag.rocking._rest import BLOCK
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.inputs import (
@@ -208,7 +209,7 @@ def _stacks(
     rows: NDArray[np.intp],
 ) -> None:
     parameters = np.array(
-        [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)]
+        [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)], BODY
     )
     motions = _sampled(bodies, values, dts, g, step)
     free = np.array(

@@ -1,10 +1,9 @@
-"""From a body and its restitution to the array of numbers that the kernels read."""
+"""From a body and its restitution to the record of numbers that the kernels read."""
 
 import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking import _mechanics as km
@@ -90,8 +89,8 @@ def lone_restitution(block: Block, restitution: Restitution) -> float | None:
 
 def body_parameters(
     body: Body, restitution: Restitution = None, linear: bool = False, g: float = 9.81
-) -> NDArray[np.float64]:
-    """Return the parameter array of a body, shape (PARAMETERS,).
+) -> np.void:
+    """Return the record of a body that the kernels read (``_mechanics.BODY``).
 
     Parameters
     ----------
@@ -110,33 +109,34 @@ def body_parameters(
     if not isinstance(body, (Block, Stack)):
         raise InputError(f"a body is a Block or a Stack, not {type(body).__name__}.")
     ground, interface = _pair(body, restitution)
-    p = np.zeros(km.PARAMETERS)
-    p[[km.ETA1R, km.ETA1L, km.ETA2R, km.ETA2L]] = 1.0
-    p[km.GRAVITY] = g
+    p: np.void = np.zeros(1, km.BODY)[0]
+    for name in ("eta1r", "eta1l", "eta2r", "eta2l"):
+        p[name] = 1.0
+    p["gravity"] = g
     if isinstance(body, Block):
         statue, centre = body, body.centre
         # a support that cannot move; its numbers never matter
-        p[[km.M1, km.I1, km.B1]] = 1.0
-        p[km.EX] = 1.0
-        p[km.FIXED] = 1.0
-        p[km.LINEAR] = 2.0 if linear else 0.0
+        p["m1"] = p["i1"] = p["b1"] = 1.0
+        p["ex"] = 1.0
+        p["fixed"] = True
+        p["linear"] = 2 if linear else 0
     else:
         statue, pedestal = body.statue, body.pedestal
-        p[[km.M1, km.I1, km.B1]] = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
-        p[[km.C1X, km.C1Y]] = pedestal.centre
+        p["m1"], p["i1"], p["b1"] = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
+        p["c1x"], p["c1y"] = pedestal.centre
         right, left = body.interface_pole(+1), body.interface_pole(-1)
         along = right.minus(left)
-        p[[km.TX, km.TY]] = (right.x + left.x) / 2, (right.y + left.y) / 2
-        p[[km.EX, km.EY]] = along.x / statue.width, along.y / statue.width
+        p["tx"], p["ty"] = (right.x + left.x) / 2, (right.y + left.y) / 2
+        p["ex"], p["ey"] = along.x / statue.width, along.y / statue.width
         centre = statue.centre.turned(pedestal.lean)
-        p[km.LINEAR] = 1.0 if linear else 0.0
+        p["linear"] = 1 if linear else 0
         if ground is not None:
-            p[km.ETA1R] = impulse_position(pedestal, ground, +1)
-            p[km.ETA1L] = impulse_position(pedestal, ground, -1)
-    p[km.MEASURED] = float(ground is not None or interface is not None)
-    p[[km.M2, km.I2, km.B2]] = statue.mass, statue.centroidal_inertia, statue.b
-    p[[km.C2X, km.C2Y]] = centre
+            p["eta1r"] = impulse_position(pedestal, ground, +1)
+            p["eta1l"] = impulse_position(pedestal, ground, -1)
+    p["measured"] = ground is not None or interface is not None
+    p["m2"], p["i2"], p["b2"] = statue.mass, statue.centroidal_inertia, statue.b
+    p["c2x"], p["c2y"] = centre
     if interface is not None:
-        p[km.ETA2R] = impulse_position(statue, interface, +1)
-        p[km.ETA2L] = impulse_position(statue, interface, -1)
+        p["eta2r"] = impulse_position(statue, interface, +1)
+        p["eta2l"] = impulse_position(statue, interface, -1)
     return p

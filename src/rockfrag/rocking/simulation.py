@@ -100,7 +100,7 @@ def simulate(
 
 def _response(
     body: Body,
-    p: NDArray[np.float64],
+    p: np.void,
     values: NDArray[np.float64],
     dt: float,
     history: NDArray[np.float64],
@@ -165,7 +165,7 @@ def _event_table(events: NDArray[np.float64], blocks: list[int]) -> pd.DataFrame
 
 
 def _energy_table(
-    p: NDArray[np.float64],
+    p: np.void,
     time: NDArray[np.float64],
     history: NDArray[np.float64],
     events: NDArray[np.float64],
