@@ -45,7 +45,7 @@ def rest_interval(p):
     for which in (1, 2):
         if which == 1 and p.fixed:
             continue
-        for s in (1, -1):
+        for s in (1.0, -1.0):
             still, pushed = _rest_moment(p, which, s, 0.0), _rest_moment(p, which, s, 1.0)
             limit = still / (still - pushed)
             if still > pushed:
@@ -58,7 +58,9 @@ def rest_interval(p):
 @kernel
 def _rest_moment(p, which, s, a):
     """Contact moment s τ(s) of the ground (1) or the interface (2) at rest under acceleration a."""
-    _, _, _, f1, f2 = equations(p, s if which == 1 else 1, s if which == 2 else 1, 0, 0, 0, 0, a)
+    _, _, _, f1, f2 = equations(
+        p, s if which == 1 else 1.0, s if which == 2 else 1.0, 0.0, 0.0, 0.0, 0.0, a
+    )
     return s * (f1 + f2) if which == 1 else s * f2
 
 
@@ -212,13 +214,14 @@ def let_go(p, fails, stuck, c1, c2, theta1, omega1, theta2, omega2, a):
 
 @kernel
 def strike(
-    p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, a, closing_speed, forced, drop, restoring,
+    p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, a, closing_speed, forced, drop, t, restoring,
     k, tau, dt, samples, last, scale, summary,
 ):  # fmt: skip
     """Contact state, velocities and kind of event after contacts close.
 
     A contact that comes off slower than ``closing_speed`` stays closed, one that has met too often
-    within a step (``forced``) too, and impacts that are sure to end at rest are not followed.
+    within a step (``forced``) too, and impacts that are sure to end at rest are not followed.  ``t`` holds a
+    ``restoring_table`` from place ``restoring``.
     """
     kind = CLOSING
     if (abs(omega1) if closes1 else abs(omega2 - omega1)) < GRAZING_SPEED:
@@ -236,14 +239,14 @@ def strike(
         kind = CHATTER
     elif theta1 == 0.0 and theta2 == 0.0 and (n1 != 0 or n2 != 0):
         speed = max(abs(w1), abs(w2))
-        if speed < restoring[FASTEST]:
+        if speed < t[restoring + FASTEST]:
             before = kinetic_energy(p, c1, c2, 0.0, omega1, 0.0, omega2)
             after = kinetic_energy(p, n1, n2, 0.0, w1, 0.0, w2)
             share = math.sqrt(after / before)
             # a pedestal that is thrown about lengthens the flights of the statue
             safety = 1.03 if p.fixed else 1.5
             if chatter_dies(
-                speed, share, safety, restoring, 0, drop, k, tau, dt, samples, last, scale
+                speed, share, safety, t, restoring, drop, k, tau, dt, samples, last, scale
             ):
                 n1, n2, w1, w2 = 0, 0, 0.0, 0.0
                 summary[CLOSURES] += 1.0
@@ -272,8 +275,8 @@ def restoring_table(p, table, n):
         else:
             still = _restoring(p, c1, c2, 0.0)
             table[at], table[at + 1] = still, _restoring(p, c1, c2, 1.0) - still
-    vx, vy = first_moment2(p, 1)
-    frequency2 = p.gravity * math.hypot(vx, vy) / inertia2(p, 1)
+    vx, vy = first_moment2(p, 1.0)
+    frequency2 = p.gravity * math.hypot(vx, vy) / inertia2(p, 1.0)
     table[n + FREQUENCY2] = frequency2
     table[n + FASTEST] = 0.2 * _least_restoring(table, n, 0.0) / math.sqrt(frequency2)
 
@@ -296,7 +299,7 @@ def _least_restoring(t, n, a):
 
 @kernel
 def chatter_dies(
-    speed, share, safety, restoring, at, drop, k, tau, dt, samples, last, scale
+    speed, share, safety, t, restoring, drop, k, tau, dt, samples, last, scale
 ):  # fmt: skip
     """Whether the impacts that follow one at θ1 = θ2 = 0 are over before anything else can happen.
 
@@ -304,16 +307,16 @@ def chatter_dies(
     the ``share`` e of the speed (√ of that of the kinetic energy), so together they last 2 ω / D / (1 - e),
     here times ``safety``.  If the ground stays below the thresholds of rest that long, the body is at rest
     afterwards, whatever the flights were like.  Flights of no more than D/p²/50 keep D within 2 %, and those of
-    more than ``drop`` [rad] are followed.  ``restoring`` holds a ``restoring_table`` from place ``at``.
+    more than ``drop`` [rad] are followed.  ``t`` holds a ``restoring_table`` from place ``restoring``.
     """
     if share > 0.999:
         return False
-    frequency2 = restoring[at + FREQUENCY2]
+    frequency2 = t[restoring + FREQUENCY2]
     least = math.inf
     for ahead in range(33):
         i = k + ahead
         a = samples[i] * scale if i <= last else 0.0
-        least = min(least, _least_restoring(restoring, at, a))
+        least = min(least, _least_restoring(t, restoring, a))
         if least <= 0.0 or speed * speed * frequency2 > 0.04 * least * least:
             return False
         if speed * speed > 2.0 * drop * least:

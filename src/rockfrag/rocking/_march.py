@@ -118,7 +118,7 @@ def march(
                         theta2 = theta1
                     c1, c2, omega1, omega2, kind = strike(
                         p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, now,
-                        closing_speed, n_events > MAX_EVENTS_PER_STEP, FINE_DROP, q[RESTORING:], k,
+                        closing_speed, n_events > MAX_EVENTS_PER_STEP, FINE_DROP, q, RESTORING, k,
                         (sub + tau) / substeps, dt, acceleration, n - 1, scale, summary,
                     )  # fmt: skip
                 keep_event(

@@ -38,6 +38,12 @@ BODY = np.dtype(
 
 
 @kernel
+def pole(c):
+    """Position σ of the pole of contact state c; full contact (0) counts as rocking on +1, at rest."""
+    return -1.0 if c < 0 else 1.0
+
+
+@kernel
 def arm1(p, sigma):
     """Return the vector from σ on the ground to the pedestal's centre, at θ1 = 0."""
     return p.c1x - sigma * p.b1, p.c1y
@@ -136,8 +142,7 @@ def equations(p, sigma1, sigma2, theta1, omega1, theta2, omega2, a):
 @kernel
 def accelerations(p, c1, c2, theta1, omega1, theta2, omega2, a):
     """θ1'' and θ2'' [rad/s²] in contact state (c1, c2)."""
-    s1 = c1 if c1 != 0 else 1
-    s2 = c2 if c2 != 0 else 1
+    s1, s2 = pole(c1), pole(c2)
     if c1 == 0 and c2 == 0:
         return 0.0, 0.0
     m11, m12, m22, f1, f2 = equations(p, s1, s2, theta1, omega1, theta2, omega2, a)
@@ -158,32 +163,32 @@ def ground_hold(p, c2, theta1, theta2, omega2, a, alpha2):
     """
     if p.fixed:
         return 1.0, 1
-    s2 = c2 if c2 != 0 else 1
+    s2 = pole(c2)
     least = math.inf
     corner = 1
-    for s1 in (1, -1):
-        _, m12, m22, f1, f2 = equations(p, s1, s2, theta1, 0.0, theta2, omega2, a)
+    for c1 in (1, -1):
+        _, m12, m22, f1, f2 = equations(p, pole(c1), s2, theta1, 0.0, theta2, omega2, a)
         tau = m12 * alpha2 + f1
         if c2 == 0:
             tau += m22 * alpha2 + f2
-        if s1 * tau < least:
-            least = s1 * tau
-            corner = s1
+        if c1 * tau < least:
+            least = c1 * tau
+            corner = c1
     return least, corner
 
 
 @kernel
 def interface_hold(p, c1, theta1, omega1, theta2, omega2, a, alpha1):
     """Least s2 τ2(s2) over both corners of a statue stuck to its pedestal [N m], and the corner."""
-    s1 = c1 if c1 != 0 else 1
+    s1 = pole(c1)
     least = math.inf
     corner = 1
-    for s2 in (1, -1):
-        _, m12, m22, _, f2 = equations(p, s1, s2, theta1, omega1, theta2, omega2, a)
+    for c2 in (1, -1):
+        _, m12, m22, _, f2 = equations(p, s1, pole(c2), theta1, omega1, theta2, omega2, a)
         tau = (m12 + m22) * alpha1 + f2
-        if s2 * tau < least:
-            least = s2 * tau
-            corner = s2
+        if c2 * tau < least:
+            least = c2 * tau
+            corner = c2
     return least, corner
 
 
@@ -280,8 +285,7 @@ def _metric(p, ta1, ta2, tb1, tb2, c, s):
 @kernel
 def kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2):
     """Kinetic energy relative to the ground [J]."""
-    s1 = c1 if c1 != 0 else 1
-    s2 = c2 if c2 != 0 else 1
+    s1, s2 = pole(c1), pole(c2)
     c, s = _between(p, theta1, theta2)
     k11, k12, _, k22 = _metric(p, s1, s2, s1, s2, c, s)
     return 0.5 * (k11 * omega1 * omega1 + 2.0 * k12 * omega1 * omega2 + k22 * omega2 * omega2)
@@ -290,8 +294,7 @@ def kinetic_energy(p, c1, c2, theta1, omega1, theta2, omega2):
 @kernel
 def potential_energy(p, c1, c2, theta1, theta2):
     """Potential energy above rest [J]: g Σ m y, quadratic in θ in the linearised equations."""
-    s1 = c1 if c1 != 0 else 1
-    s2 = c2 if c2 != 0 else 1
+    s1, s2 = pole(c1), pole(c2)
     v1x, v1y = first_moment1(p, s1, s2)
     v2x, v2y = first_moment2(p, s2)
     g = p.gravity
@@ -327,12 +330,10 @@ def _row2(p, t1, t2, n1, n2, c1, c2, c, s, w1n, w2n, w1o, w2o):
 @kernel
 def _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2):
     """Velocities after an impact that takes the poles from (c1, c2) to (n1, n2), 0 being stuck."""
-    o1 = c1 if c1 != 0 else 1
-    o2 = c2 if c2 != 0 else 1
+    o1, o2 = pole(c1), pole(c2)
     if n1 == 0 and n2 == 0:
         return 0.0, 0.0
-    p1 = n1 if n1 != 0 else 1
-    p2 = n2 if n2 != 0 else 1
+    p1, p2 = pole(n1), pole(n2)
     k11, k12, k21, k22 = _metric(p, t1, t2, p1, p2, c, s)
     b11, b12, b21, b22 = _metric(p, t1, t2, o1, o2, c, s)
     q1 = b11 * omega1 + b12 * omega2
@@ -349,8 +350,7 @@ def _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2):
 @kernel
 def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measured):
     """Try the states an impact may lead to, open before stuck; the first admissible one."""
-    o1 = c1 if c1 != 0 else 1
-    o2 = c2 if c2 != 0 else 1
+    o1, o2 = pole(c1), pole(c2)
     c, s = _between(p, theta1, theta2)
     # velocities that rounding alone leaves count as none
     tiny = 1e-13 * (abs(omega1) + abs(omega2))
@@ -380,8 +380,8 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
                 if not free2:
                     continue
                 n2 = 0
-            t1 = float(n1) if n1 != 0 else 1.0
-            t2 = float(n2) if n2 != 0 else 1.0
+            p1, p2 = pole(n1), pole(n2)
+            t1, t2 = p1, p2
             if measured:
                 if closes1 and n1 != 0:
                     t1 = n1 * (p.eta1r if n1 > 0 else p.eta1l)
@@ -392,24 +392,20 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
                 continue
             if free2 and n2 != 0 and n2 * (w2 - w1) <= tiny:
                 continue
-            p1 = n1 if n1 != 0 else 1
-            p2 = n2 if n2 != 0 else 1
             good = True
             if n1 == 0 and not p.fixed:
                 slack = 1e-12 * p.i1 * (abs(omega1) + abs(omega2))
-                for corner in (1, -1):
+                for corner in (1.0, -1.0):
                     moment = _row1(
-                        p, float(corner), t2, p1, p2, o1, o2, c, s,
+                        p, corner, t2, p1, p2, o1, o2, c, s,
                         w1, w2, omega1, omega2, n2 == 0,
                     )  # fmt: skip
                     if corner * moment < -slack:
                         good = False
             if good and n2 == 0:
                 slack = 1e-12 * p.i2 * (abs(omega1) + abs(omega2))
-                for corner in (1, -1):
-                    moment = _row2(
-                        p, t1, float(corner), p1, p2, o1, o2, c, s, w1, w2, omega1, omega2
-                    )
+                for corner in (1.0, -1.0):
+                    moment = _row2(p, t1, corner, p1, p2, o1, o2, c, s, w1, w2, omega1, omega2)
                     if corner * moment < -slack:
                         good = False
             if good:
@@ -417,9 +413,7 @@ def _strike(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2, measure
     # no admissible solution: what met stays together (thesis, after eq. 2.78)
     n1 = 0 if free1 else c1
     n2 = 0 if free2 else c2
-    t1 = float(n1) if n1 != 0 else 1.0
-    t2 = float(n2) if n2 != 0 else 1.0
-    w1, w2 = _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2)
+    w1, w2 = _after(p, c1, c2, n1, n2, pole(n1), pole(n2), c, s, omega1, omega2)
     return n1, n2, w1, w2
 
 
@@ -449,6 +443,4 @@ def impact(p, c1, c2, closes1, closes2, theta1, omega1, theta2, omega2):
 def stick(p, c1, c2, n1, n2, theta1, omega1, theta2, omega2):
     """Velocities after an impact that is made to end in the state (n1, n2)."""
     c, s = _between(p, theta1, theta2)
-    t1 = float(n1) if n1 != 0 else 1.0
-    t2 = float(n2) if n2 != 0 else 1.0
-    return _after(p, c1, c2, n1, n2, t1, t2, c, s, omega1, omega2)
+    return _after(p, c1, c2, n1, n2, pole(n1), pole(n2), c, s, omega1, omega2)

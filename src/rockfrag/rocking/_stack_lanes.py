@@ -18,16 +18,15 @@ from rockfrag.rocking import _two_rotations as two
 from rockfrag.rocking._compile import entry_kernel
 from rockfrag.rocking._mechanics import BODY
 from rockfrag.rocking._stack_cases import (
-    END,
-    FLOATS,
-    INTEGERS,
+    CASE,
+    OUTCOME,
     SLOTS,
-    K,
     carry_on,
     event_of_one,
     event_of_two,
     goes_on,
     kind_of,
+    pass_event,
     place_one,
     place_two,
     store_one,
@@ -43,31 +42,29 @@ SLOT, AT, LAST = (LANES * row for row in range(3))
 
 
 def working_arrays():
-    """Arrays that a thread works in: lanes of both kinds, slots, waiting slots, tables, scratch and summary."""
+    """Arrays that a thread works in: lanes of both kinds, cases, waiting slots, tables, scratch and summary."""
     integers = np.int64
+    cases = np.zeros(SLOTS, CASE)
+    cases["number"] = cases["body"] = -1
+    cases["table"] = TABLE * np.arange(SLOTS)
     return (
         np.zeros(one.ROWS * LANES), np.full(3 * LANES, -1, integers),
         np.zeros(two.ROWS * LANES), np.full(3 * LANES, -1, integers),
-        np.zeros(FLOATS), np.full(INTEGERS, -1, integers),
-        np.zeros(2 * SLOTS, integers), np.zeros(2, integers), np.zeros(2, integers),
+        cases, np.zeros(2 * SLOTS, integers), np.zeros(2, integers), np.zeros(2, integers),
         np.zeros(SLOTS * TABLE), np.zeros(SCRATCH), np.zeros(SUMMARY),
     )  # fmt: skip
 
 
 _N, _I, _B = types.float64, types.int64, types.boolean
-_NS, _IS = types.float64[::1], types.int64[::1]
-_BODY = from_dtype(BODY)
-_BODIES, _TABLE, _IS_TABLE = _BODY[::1], types.float64[:, ::1], types.int64[:, ::1]
+_NS, _IS, _TABLE, _IS_TABLE = _N[::1], _I[::1], _N[:, ::1], _I[:, ::1]
+_BODY, _CASE, _OUTCOME = from_dtype(BODY), from_dtype(CASE), from_dtype(OUTCOME)
 
 
 def compile_events():
     """Compile what takes cases through events, a half of the work."""
-    event = (_I, _I, _NS, _NS, _IS, _NS, _NS, _BODIES, _NS, _N, _N, _NS)
-    strike_case.compile(
-        (_NS, _IS, _I, _NS, _BODY, _B, _B, _I, _I, _N, _N, _N, _N, _N, _N, _B, _I, _N, _NS, _NS)
-    )
-    event_of_two.compile(event)
-    event_of_one.compile(event)
+    strike_case.compile((_CASE, _NS, _BODY, _B, _B, _N, _NS, _NS))
+    event_of_two.compile((_I, _CASE, _NS, _NS, _NS, _NS, _N, _N))
+    event_of_one.compile((_I, _CASE, _NS, _NS, _NS, _BODY[::1], _NS, _N, _N))
 
 
 def compile_others():
@@ -75,24 +72,23 @@ def compile_others():
     one.go_back.compile((_NS, _I, _N))
     two.advance.compile((_NS, _N))
     one.advance.compile((_NS, _N))
-    place = (_I, _I, _NS, _NS, _IS, _NS, _NS)
-    place_two.compile(place)
-    place_one.compile(place)
-    store_two.compile((_I, _I, _NS, _NS))
-    store_one.compile((_I, _I, _NS, _NS, _IS))
+    place_two.compile((_I, _CASE, _NS, _NS, _NS))
+    place_one.compile((_I, _CASE, _NS, _NS, _NS))
+    store_two.compile((_I, _CASE, _NS))
+    store_one.compile((_I, _CASE, _NS))
     carry_on.compile(
         (
-            _I, _NS, _IS, _NS, _IS, _I, _BODIES, _TABLE, _TABLE, _IS_TABLE, _TABLE, _IS_TABLE, _IS, _IS, _NS, _NS,
-            _NS, _TABLE,
+            _CASE, _NS, _IS, _I, _BODY[::1], _TABLE, _TABLE, _IS_TABLE, _TABLE, _IS_TABLE, _IS, _IS, _NS,
+            _NS, _NS, _OUTCOME[::1],
         )
     )  # fmt: skip
 
 
 @entry_kernel
 def stack_cases(
-    counter, count, parameters, intervals, parts, free, factors, rows, offsets, lasts, samples, highest, lowest,
-    closing_speed, results,
-    x1, lanes1, x2, lanes2, s, n, waiting, waits, busy, t, q, summary,
+    counter, count, bodies, intervals, parts, free, factors, rows, offsets, lasts, samples, highest, lowest,
+    closing_speed, outcomes,
+    x1, lanes1, x2, lanes2, cases, waiting, waits, busy, t, q, summary,
 ):  # fmt: skip
     """March cases of bodies × motions × scales, the scale running fastest, until none is left.
 
@@ -100,7 +96,7 @@ def stack_cases(
     ----------
     counter : (1,) the next case to take, shared by all threads
     count : number of cases
-    parameters : (bodies,) of BODY
+    bodies : (bodies,) of BODY
     intervals : (bodies, motions) sampling interval of the sampled motion [s]
     parts : (bodies, motions) largest part of it that a step of two rotations may take
     free : (bodies, motions) samples of free rocking
@@ -110,20 +106,20 @@ def stack_cases(
     lasts : (sampled motions,) its last sample
     samples : all sampled motions end to end [m/s²]
     highest, lowest : extremes of each BLOCK of ``samples``
-    results : (count, RESULTS)
+    outcomes : (count,) of OUTCOME
     x1, ..., summary : ``working_arrays``
 
     Returns
     -------
     Numbers of steps that lanes of one rotation and of two were advanced by.
     """
-    g = parameters[0].gravity
+    g = bodies[0].gravity
     for j in range(SLOTS):
         carry_on(
-            j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets, lasts,
-            samples, highest, lowest, results,
+            cases[j], t, counter, count, bodies, intervals, parts, free, factors, rows, offsets, lasts,
+            samples, highest, lowest, outcomes,
         )  # fmt: skip
-        kind = kind_of(n, j)
+        kind = kind_of(cases[j])
         if kind >= 0:
             waiting[SLOTS * kind + waits[kind]] = j
             waits[kind] += 1
@@ -153,26 +149,31 @@ def stack_cases(
                     if k < lanes[LAST + i]:
                         x[ground_end + i] = x[factor + i] * samples[k + 1]
                         continue
-                n[K + j] = k
-                if kind == 0:
-                    if x[flag + i] == QUIET:
-                        store_one(i, j, x, s, n)
+                case = cases[j]
+                case.k = k
+                if x[flag + i] == QUIET:
+                    if kind == 0:
+                        store_one(i, case, x)
                     else:
-                        event_of_one(
-                            i, j, x, s, n, t, q, parameters, samples, g, closing_speed, summary
-                        )
-                elif x[flag + i] == QUIET:
-                    store_two(i, j, x, s)
+                        store_two(i, case, x)
                 else:
-                    event_of_two(
-                        i, j, x, s, n, t, q, parameters, samples, g, closing_speed, summary
-                    )
-                if not goes_on(n, j):
+                    if kind == 0:
+                        closes1, closes2 = event_of_one(
+                            i, case, x, t, q, bodies, samples, g, closing_speed
+                        )
+                    else:
+                        closes1, closes2 = event_of_two(i, case, x, t, q, samples, g, closing_speed)
+                    if closes1 or closes2:
+                        strike_case(
+                            case, t, bodies[case.body], closes1, closes2, closing_speed, samples, summary
+                        )  # fmt: skip
+                    pass_event(case)
+                if not goes_on(case):
                     carry_on(
-                        j, s, n, t, counter, count, parameters, intervals, parts, free, factors, rows, offsets,
-                        lasts, samples, highest, lowest, results,
+                        case, t, counter, count, bodies, intervals, parts, free, factors, rows, offsets, lasts,
+                        samples, highest, lowest, outcomes,
                     )  # fmt: skip
-                now = kind_of(n, j)
+                now = kind_of(case)
                 if now != kind:
                     if now >= 0:
                         waiting[SLOTS * now + waits[now]] = j
@@ -187,9 +188,10 @@ def stack_cases(
                 waits[kind] -= 1
                 busy[kind] += 1
                 j = waiting[SLOTS * kind + waits[kind]]
-            lanes[SLOT + i], lanes[AT + i], lanes[LAST + i] = j, n[K + j], n[END + j]
+            case = cases[j]
+            lanes[SLOT + i], lanes[AT + i], lanes[LAST + i] = j, case.k, case.last
             if kind == 0:
-                place_one(i, j, x, s, n, t, samples)
+                place_one(i, case, x, t, samples)
             else:
-                place_two(i, j, x, s, n, t, samples)
+                place_two(i, case, x, t, samples)
     return steps1, steps2

@@ -19,6 +19,7 @@ from rockfrag.rocking._mechanics import (
     inertia1,
     inertia2,
     kinetic_energy,
+    pole,
     reach,
 )
 from rockfrag.rocking._step import RESTORED
@@ -117,8 +118,9 @@ def _one_rotates(p, c1, c2, hh, t, o):
         critical, vx, vy, inertia = balance(p, c1, c2)
         _interface_hold(p, c1, hh, t, o + HOLD)
     else:
-        vx, vy = first_moment2(p, c2)
-        inertia = inertia2(p, c2)
+        s2 = pole(c2)
+        vx, vy = first_moment2(p, s2)
+        inertia = inertia2(p, s2)
         critical = math.atan2(-c2 * vx, vy)
         _ground_hold(p, c2, hh, t, o + HOLD)
     per = hh * g / inertia
@@ -130,13 +132,14 @@ def _one_rotates(p, c1, c2, hh, t, o):
 @kernel
 def _both_rotate(p, c1, c2, hh, t, o):
     g = p.gravity
-    t[o + M11], t[o + M22] = inertia1(p, c1, c2), inertia2(p, c2)
-    t[o + E], t[o + F] = coupling(p, c1, c2)
+    s1, s2 = pole(c1), pole(c2)
+    t[o + M11], t[o + M22] = inertia1(p, s1, s2), inertia2(p, s2)
+    t[o + E], t[o + F] = coupling(p, s1, s2)
     critical, vx, vy, inertia = balance(p, c1, c2)
     t[o + V1X], t[o + V1Y] = hh * vx, hh * vy
     t[o + PER_ANGLE1] = c1 / critical
     t[o + PER_SPEED1] = inertia / (hh * g * math.hypot(vx, vy) * critical * critical)
-    vx, vy = first_moment2(p, c2)
+    vx, vy = first_moment2(p, s2)
     critical = math.atan2(-c2 * vx, vy)
     t[o + V2X], t[o + V2Y] = hh * vx, hh * vy
     t[o + PER_ANGLE2] = c2 / critical
@@ -146,9 +149,10 @@ def _both_rotate(p, c1, c2, hh, t, o):
 @kernel
 def _ground_hold(p, c2, hh, t, o):
     """Moments of the ground on a standing pedestal in pattern 4 (``_mechanics.ground_hold``)."""
-    for s1, at in ((1, o), (-1, o + CORNER)):
-        e, f = coupling(p, s1, c2)
-        vx, vy = first_moment1(p, s1, c2)
+    s2 = pole(c2)
+    for s1, at in ((1.0, o), (-1.0, o + CORNER)):
+        e, f = coupling(p, s1, s2)
+        vx, vy = first_moment1(p, s1, s2)
         # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
         for n in range(CORNER):
             t[at + n] = 0.0
@@ -161,8 +165,9 @@ def _ground_hold(p, c2, hh, t, o):
 @kernel
 def _interface_hold(p, c1, hh, t, o):
     """Moments of the interface on the statue that turns with its pedestal (``interface_hold``)."""
-    for s2, at in ((1, o), (-1, o + CORNER)):
-        e, f = coupling(p, c1, s2)
+    s1 = pole(c1)
+    for s2, at in ((1.0, o), (-1.0, o + CORNER)):
+        e, f = coupling(p, s1, s2)
         vx, vy = first_moment2(p, s2)
         # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
         for n in range(CORNER):
@@ -177,14 +182,15 @@ def _interface_hold(p, c1, hh, t, o):
 @kernel
 def _meeting(p, c1, c2, t, o):
     """Impacts of one contact while the other stays open."""
-    ax, ay = arm1(p, c1)
-    bx, by = arm1(p, -c1)
-    dx, dy = reach(p, c1, c2)
-    ex, ey = reach(p, -c1, c2)
+    s1, s2 = pole(c1), pole(c2)
+    ax, ay = arm1(p, s1)
+    bx, by = arm1(p, -s1)
+    dx, dy = reach(p, s1, s2)
+    ex, ey = reach(p, -s1, s2)
     t[o + GROUND] = p.i1 + p.m1 * (ax * bx + ay * by) + p.m2 * (dx * ex + dy * ey)
-    ex, ey = reach(p, c1, -c2)
-    rx, ry = arm2(p, c2)
-    sx, sy = arm2(p, -c2)
+    ex, ey = reach(p, s1, -s2)
+    rx, ry = arm2(p, s2)
+    sx, sy = arm2(p, -s2)
     t[o + BOTH11] = p.i1 + p.m1 * (ax * ax + ay * ay) + p.m2 * (dx * ex + dy * ey)
     t[o + BOTH12] = p.m2 * (ex * rx + ey * ry)
     t[o + BOTH21] = p.m2 * (dx * sx + dy * sy)

@@ -7,6 +7,7 @@ from rockfrag.rocking._mechanics import (
     first_moment2,
     inertia1,
     inertia2,
+    pole,
 )
 from rockfrag.rocking._series import ORDER, extend_circular, extend_rotation
 
@@ -46,11 +47,12 @@ def _two(p, c1, c2, h, a0, slope, q):
     """Series of both rotations of patterns 1 and 2; TH1 and TH2 hold the initial state."""
     g = p.gravity
     hh = h * h
-    m11 = inertia1(p, c1, c2)
-    m22 = inertia2(p, c2)
-    e, f = coupling(p, c1, c2)
-    v1x, v1y = first_moment1(p, c1, c2)
-    v2x, v2y = first_moment2(p, c2)
+    s1, s2 = pole(c1), pole(c2)
+    m11 = inertia1(p, s1, s2)
+    m22 = inertia2(p, s2)
+    e, f = coupling(p, s1, s2)
+    v1x, v1y = first_moment1(p, s1, s2)
+    v2x, v2y = first_moment2(p, s2)
     linear = p.linear > 0
     for k in range(ORDER - 1):
         q[DELTA + k] = q[TH2 + k] - q[TH1 + k]
@@ -116,14 +118,15 @@ def series(p, c1, c2, theta1, omega1, theta2, omega2, h, a0, slope, q):
         return
     q[TH1 + 1] = omega1 * h
     q[TH2 + 1] = omega2 * h
+    s1, s2 = pole(c1), pole(c2)
     if c1 == 0:
-        vx, vy = first_moment2(p, c2)
-        _one(p, vx, vy, inertia2(p, c2), h, a0, slope, q, TH2, SIN2, COS2)
+        vx, vy = first_moment2(p, s2)
+        _one(p, vx, vy, inertia2(p, s2), h, a0, slope, q, TH2, SIN2, COS2)
     elif c2 == 0:
-        v1x, v1y = first_moment1(p, c1, 1)
-        v2x, v2y = first_moment2(p, 1)
-        e, _ = coupling(p, c1, 1)
-        whole = inertia1(p, c1, 1) + 2.0 * e + inertia2(p, 1)
+        v1x, v1y = first_moment1(p, s1, s2)
+        v2x, v2y = first_moment2(p, s2)
+        e, _ = coupling(p, s1, s2)
+        whole = inertia1(p, s1, s2) + 2.0 * e + inertia2(p, s2)
         _one(p, v1x + v2x, v1y + v2y, whole, h, a0, slope, q, TH1, SIN1, COS1)
         for k in range(ORDER + 1):
             q[TH2 + k] = q[TH1 + k]

@@ -13,6 +13,7 @@ from rockfrag.rocking._mechanics import (
     inertia1,
     inertia2,
     kinetic_energy,
+    pole,
     potential_energy,
 )
 from rockfrag.rocking._series import slope, value
@@ -49,16 +50,16 @@ OPENING, CLOSING, CHATTER = 0.0, 1.0, 2.0
 @kernel
 def balance(p, c1, c2):
     """Critical angle and frequency of the pedestal with what stands on it, on pole c1."""
-    s2 = c2 if c2 != 0 else 1
+    s1, s2 = pole(c1), pole(c2)
     if c2 == 0:
-        v1x, v1y = first_moment1(p, c1, s2)
+        v1x, v1y = first_moment1(p, s1, s2)
         v2x, v2y = first_moment2(p, s2)
-        e, _ = coupling(p, c1, s2)
+        e, _ = coupling(p, s1, s2)
         vx, vy = v1x + v2x, v1y + v2y
-        inertia = inertia1(p, c1, s2) + 2.0 * e + inertia2(p, s2)
+        inertia = inertia1(p, s1, s2) + 2.0 * e + inertia2(p, s2)
     else:
-        vx, vy = first_moment1(p, c1, s2)
-        inertia = inertia1(p, c1, s2)
+        vx, vy = first_moment1(p, s1, s2)
+        inertia = inertia1(p, s1, s2)
     return math.atan2(-c1 * vx, vy), vx, vy, inertia
 
 
@@ -66,11 +67,11 @@ def balance(p, c1, c2):
 def barrier(p):
     """Least energy [J] that could overturn the body at rest without help from the ground."""
     least = math.inf
-    for s2 in (1, -1):
+    for s2 in (1.0, -1.0):
         vx, vy = first_moment2(p, s2)
         least = min(least, math.hypot(vx, vy) - vy)
         if not p.fixed:
-            for s1 in (1, -1):
+            for s1 in (1.0, -1.0):
                 vx, vy = first_moment1(p, s1, s2)
                 least = min(least, math.hypot(vx, vy) - vy)
                 wx, wy = first_moment2(p, s2)
@@ -89,10 +90,10 @@ def ways_to_balance(p, q):
             q[CRITICAL + column] = critical
             q[FREQUENCY2 + column] = p.gravity * math.hypot(vx, vy) / inertia
     for c2 in (1, -1):
-        vx, vy = first_moment2(p, c2)
+        vx, vy = first_moment2(p, pole(c2))
         column = 6 if c2 > 0 else 7
         q[CRITICAL + column] = math.atan2(-c2 * vx, vy)
-        q[FREQUENCY2 + column] = p.gravity * math.hypot(vx, vy) / inertia2(p, c2)
+        q[FREQUENCY2 + column] = p.gravity * math.hypot(vx, vy) / inertia2(p, pole(c2))
 
 
 @kernel
@@ -132,8 +133,7 @@ def track(p, c1, c2, q, end, theta1, omega1, theta2, omega2, h, summary):
 @kernel
 def work(p, c1, c2, q, end, h, a0, ramp):
     """Work of the ground acceleration, -∫ a (m1 x1' + m2 x2') dt, over (0, end] of a step [J]."""
-    s1 = c1 if c1 != 0 else 1
-    s2 = c2 if c2 != 0 else 1
+    s1, s2 = pole(c1), pole(c2)
     v1x, v1y = first_moment1(p, s1, s2)
     v2x, v2y = first_moment2(p, s2)
     # Gauss-Legendre, six points: exact to order 11

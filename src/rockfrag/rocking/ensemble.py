@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking import _lanes as lanes
-from rockfrag.rocking import _stack_cases as columns
 from rockfrag.rocking import _stack_lanes as stack_lanes
 from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking._mechanics import BODY
 from rockfrag.rocking._rest import BLOCK
+from rockfrag.rocking._stack_cases import OUTCOME
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.inputs import (
     COARSE_CLOSING_SPEED,
@@ -208,7 +208,7 @@ def _stacks(
     result: EnsembleResult,
     rows: NDArray[np.intp],
 ) -> None:
-    parameters = np.array(
+    records = np.array(
         [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)], BODY
     )
     motions = _sampled(bodies, values, dts, g, step)
@@ -221,29 +221,25 @@ def _stacks(
         for body, h in zip(bodies, motions.intervals, strict=True)
     ]
     parts = 1.0 / np.array(shares)
-    outcome = np.empty((math.prod(shape), columns.RESULTS))
+    outcome = np.empty(math.prod(shape), OUTCOME)
 
     _in_parallel(
-        stack_lanes.stack_cases, stack_lanes.working_arrays, workers, len(outcome), parameters,
+        stack_lanes.stack_cases, stack_lanes.working_arrays, workers, len(outcome), records,
         motions.intervals, parts, free, factors, motions.rows, motions.offsets, motions.lasts, motions.samples,
         motions.highest, motions.lowest, COARSE_CLOSING_SPEED, outcome,
         halves=(stack_lanes.compile_events, stack_lanes.compile_others),
     )  # fmt: skip
-    outcome = outcome.reshape(*shape, columns.RESULTS)
-    fallen = outcome[..., columns.R_FALLEN]
+    outcome = outcome.reshape(shape)
+    fallen = outcome["fallen"]
     interval = motions.intervals[:, :, np.newaxis]
     result.overturned[rows] = fallen > 0
     result.overturned_body[rows] = fallen
-    result.overturning_time[rows] = np.where(
-        fallen > 0, outcome[..., columns.R_CERTAIN] * interval, np.nan
-    )
-    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, outcome[..., columns.R_PEAK2])
-    result.peak_rotation_pedestal[rows] = np.where(
-        fallen == 1, np.inf, outcome[..., columns.R_PEAK1]
-    )
-    result.peak_velocity[rows] = outcome[..., columns.R_SPEED] / interval
-    result.impacts[rows] = outcome[..., columns.R_IMPACTS]
-    result.closest_approach[rows] = outcome[..., columns.R_CLOSEST]
+    result.overturning_time[rows] = np.where(fallen > 0, outcome["certain"] * interval, np.nan)
+    result.peak_rotation[rows] = np.where(fallen == 2, np.inf, outcome["peak2"])
+    result.peak_rotation_pedestal[rows] = np.where(fallen == 1, np.inf, outcome["peak1"])
+    result.peak_velocity[rows] = outcome["fast"] / interval
+    result.impacts[rows] = outcome["impacts"]
+    result.closest_approach[rows] = outcome["closest"]
 
 
 def _lone_blocks(
