@@ -79,13 +79,25 @@ def nudged_share(cases: Cases, by: float = 1e-9) -> float:
     return float((all_cases(nudged).overturned != all_cases(cases).overturned).mean())
 
 
-def two_thread_ratio(cases: Cases, repeats: int = 3) -> float:
-    """Speed of two threads over that of one, wall clock, runs taken in turn."""
-    one, two = math.inf, math.inf
-    for _ in range(repeats):
-        one = min(one, wall_seconds(lambda: all_cases(cases, 1), 1))
-        two = min(two, wall_seconds(lambda: all_cases(cases, 2), 1))
-    return one / two
+def ratio_in_turn(
+    work: Callable[[], object], other: Callable[[], object], clock: Callable[[], float]
+) -> float:
+    """Time of ``work`` over that of ``other``: the median of seven pairs of runs, one right after the other.
+
+    A machine that changes its speed from second to second changes both runs of a pair alike.
+    """
+    return float(
+        np.median(
+            [_least_seconds(clock, work, 1) / _least_seconds(clock, other, 1) for _ in range(7)]
+        )
+    )
+
+
+def two_thread_ratio(cases: Cases) -> float:
+    """Speed of two threads over that of one, wall clock."""
+    return ratio_in_turn(
+        lambda: all_cases(cases, 1), lambda: all_cases(cases, 2), time.perf_counter
+    )
 
 
 @numba.njit(nogil=True)  # type: ignore[misc]
@@ -136,11 +148,8 @@ def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
             only(rows, count // part.LANES)
 
     smooth()
-    whole, limit = math.inf, math.inf
-    for _ in range(7):
-        whole = min(whole, cpu_seconds(lambda: all_cases(cases), 1))
-        limit = min(limit, cpu_seconds(smooth, 1))
-    return whole / limit, float(steps.sum()) / cases.count
+    over = ratio_in_turn(lambda: all_cases(cases), smooth, time.process_time)
+    return over, float(steps.sum()) / cases.count
 
 
 # the kernels of the lanes, and what a lane steps on with for ever: no event, no division by zero

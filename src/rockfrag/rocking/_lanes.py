@@ -158,6 +158,10 @@ def _flight(gap, w, w1, w2, w3, w4, w5, w6, end):
 @kernel
 def _graze(gap, w, w1, w2, w3, w4, w5, w6):
     """Time of impact of a ψ that rises and falls again within a step; 2 if it stays clear."""
+    most = gap + max(0.0, w) + max(0.0, 0.5 * w1) + max(0.0, w2) + max(0.0, w3)
+    if most + max(0.0, w4) + max(0.0, w5) + max(0.0, w6) < 0.0:
+        # as nearly always: it turns back far from there
+        return 2.0
     low = 0.0
     high = 1.0
     while high - low > 1e-9:

@@ -8,6 +8,7 @@ R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwi
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from rockfrag.errors import InputError
@@ -115,7 +116,7 @@ class Block:
         """Height over width, H/B [-]."""
         return self.height / self.width
 
-    @property
+    @cached_property
     def centre(self) -> Vector:
         """Centre of gravity of the standing block, from the middle of its base [m]."""
         return Vector(self.cg_offset, self.h).turned(self.lean)
