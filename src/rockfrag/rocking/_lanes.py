@@ -16,6 +16,7 @@ import numpy as np
 
 from rockfrag.rocking._compile import entry_kernel, inlined_kernel, kernel
 from rockfrag.rocking._intrinsics import lowest_bit, take_next
+from rockfrag.rocking._passes import QUIET, next_samples
 from rockfrag.rocking._pendulum import HALF_TURN, hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._rest import BLOCK, uplift
 from rockfrag.rocking._series import crossing
@@ -92,7 +93,7 @@ ROWS = 30
 ) = (LANES * row for row in range(9))
 INTEGERS = 9
 
-QUIET, TOUCHES, CERTAIN_FALL = 0.0, 1.0, 2.0
+TOUCHES, CERTAIN_FALL = 1.0, 2.0
 
 
 @kernel
@@ -354,7 +355,7 @@ def lone_blocks(
     while busy > 0:
         passes += 1
         advance(x)
-        stops = _next_sample(x, n, samples)
+        stops = _next_samples(x, n, samples)
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1
@@ -378,18 +379,8 @@ def lone_blocks(
 
 
 @inlined_kernel
-def _next_sample(x, n, samples):
-    """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop."""
-    stops = 0
-    for i in range(LANES):
-        k = n[K + i] + (1 if x[FLAG + i] == QUIET else 0)
-        n[K + i] = k
-        stops |= (1 << i) if (x[FLAG + i] != QUIET) | (k >= n[END + i]) else 0
-    for i in range(LANES):
-        # unsigned, as an index that may be negative is looked at before it is used
-        following = np.uint64(min(n[K + i] + 1, n[END + i]))
-        x[A1 + i] = x[SIGNED + i] * samples[following]
-    return stops
+def _next_samples(x, n, samples):
+    return next_samples(x, n, FLAG, SIGNED, A1, K, END, LANES, samples)
 
 
 @inlined_kernel

@@ -9,6 +9,7 @@ import numba
 from rockfrag.rocking import _stack_table as table
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import between
+from rockfrag.rocking._passes import QUIET
 from rockfrag.rocking._pendulum import HALF_TURN, dips, hops, rate, rates, sine_cosine, travel
 from rockfrag.rocking._series import ORDER, closing_time, crossing_time, slope, value
 from rockfrag.rocking._stack_table import (
@@ -18,7 +19,6 @@ from rockfrag.rocking._stack_table import (
     LANES,
     NEARS,
     ONE_COLUMNS,
-    QUIET,
     RELEASE,
 )
 from rockfrag.rocking._step import GAP

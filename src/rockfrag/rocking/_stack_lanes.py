@@ -15,8 +15,10 @@ from numba import from_dtype, types
 
 from rockfrag.rocking import _one_rotation as one
 from rockfrag.rocking import _two_rotations as two
-from rockfrag.rocking._compile import entry_kernel
+from rockfrag.rocking._compile import entry_kernel, inlined_kernel
+from rockfrag.rocking._intrinsics import lowest_bit
 from rockfrag.rocking._mechanics import BODY
+from rockfrag.rocking._passes import QUIET, WITHIN, next_samples
 from rockfrag.rocking._stack_cases import (
     CASE,
     OUTCOME,
@@ -33,7 +35,7 @@ from rockfrag.rocking._stack_cases import (
     store_two,
     strike_case,
 )
-from rockfrag.rocking._stack_table import LANES, QUIET, TABLE, WITHIN
+from rockfrag.rocking._stack_table import LANES, TABLE
 from rockfrag.rocking._step import SCRATCH
 from rockfrag.rocking._tally import SUMMARY
 
@@ -44,12 +46,13 @@ SLOT, AT, LAST = (LANES * row for row in range(3))
 def working_arrays():
     """Arrays that a thread works in: lanes of both kinds, cases, waiting slots, tables, scratch and summary."""
     integers = np.int64
+    idle = np.zeros(3 * LANES, integers)
+    idle[SLOT : SLOT + LANES] = -1
     cases = np.zeros(SLOTS, CASE)
     cases["number"] = cases["body"] = -1
     cases["table"] = TABLE * np.arange(SLOTS)
     return (
-        np.zeros(one.ROWS * LANES), np.full(3 * LANES, -1, integers),
-        np.zeros(two.ROWS * LANES), np.full(3 * LANES, -1, integers),
+        np.zeros(one.ROWS * LANES), idle, np.zeros(two.ROWS * LANES), idle.copy(),
         cases, np.zeros(2 * SLOTS, integers), np.zeros(2, integers), np.zeros(2, integers),
         np.zeros(SLOTS * TABLE), np.zeros(SCRATCH), np.zeros(SUMMARY),
     )  # fmt: skip
@@ -82,6 +85,16 @@ def compile_others():
             _NS, _NS, _OUTCOME[::1],
         )
     )  # fmt: skip
+
+
+@inlined_kernel
+def _next_samples_of_one(x, lanes, samples):
+    return next_samples(x, lanes, one.FLAG, one.FACTOR, one.GROUND_END, AT, LAST, LANES, samples)
+
+
+@inlined_kernel
+def _next_samples_of_two(x, lanes, samples):
+    return next_samples(x, lanes, two.FLAG, two.FACTOR, two.GROUND_END, AT, LAST, LANES, samples)
 
 
 @entry_kernel
@@ -126,31 +139,26 @@ def stack_cases(
     steps1, steps2 = 0, 0
     while busy[0] + waits[0] + busy[1] + waits[1] > 0:
         if busy[0] + waits[0] >= min(LANES, busy[1] + waits[1]):
-            kind, x, lanes, flag, factor, ground_end = (
-                0, x1, lanes1, one.FLAG, one.FACTOR, one.GROUND_END,
-            )  # fmt: skip
+            kind, x, lanes, flag = 0, x1, lanes1, one.FLAG
             steps1 += LANES
-            one.advance(x, g)
+            one.advance(x1, g)
+            stops = _next_samples_of_one(x1, lanes1, samples)
         else:
-            kind, x, lanes, flag, factor, ground_end = (
-                1, x2, lanes2, two.FLAG, two.FACTOR, two.GROUND_END,
-            )  # fmt: skip
+            kind, x, lanes, flag = 1, x2, lanes2, two.FLAG
             steps2 += LANES
-            two.advance(x, g)
+            two.advance(x2, g)
+            stops = _next_samples_of_two(x2, lanes2, samples)
         for i in range(LANES):
+            stops |= (1 << i) if lanes[SLOT + i] < 0 else 0
+        while stops != 0:
+            i = lowest_bit(stops)
+            stops &= stops - 1
             j = lanes[SLOT + i]
             if j >= 0:
                 if x[flag + i] == WITHIN:
                     continue
-                k = lanes[AT + i]
-                if x[flag + i] == QUIET:
-                    k += 1
-                    lanes[AT + i] = k
-                    if k < lanes[LAST + i]:
-                        x[ground_end + i] = x[factor + i] * samples[k + 1]
-                        continue
                 case = cases[j]
-                case.k = k
+                case.k = lanes[AT + i]
                 if x[flag + i] == QUIET:
                     if kind == 0:
                         store_one(i, case, x)

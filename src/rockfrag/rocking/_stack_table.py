@@ -28,8 +28,8 @@ from rockfrag.rocking._tally import balance
 LANES = 16
 """Lanes of each kind."""
 
-QUIET, WITHIN, CLOSES, NEARS, RELEASE = 0.0, 1.0, 2.0, 3.0, 4.0
-"""What a lane did in a step: reached the end of its sample, or less than that, or an event."""
+CLOSES, NEARS, RELEASE = 1.0, 2.0, 3.0
+"""Flags of the events of a lane's step."""
 
 # Columns of a state in which one rotates: the statue (pattern 4), or both blocks as one (pattern 3).
 (

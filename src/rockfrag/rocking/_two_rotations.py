@@ -10,9 +10,10 @@ import numba
 from rockfrag.rocking import _stack_table as table
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import first_closing, ground_gap, interface_gap
+from rockfrag.rocking._passes import QUIET, WITHIN
 from rockfrag.rocking._pendulum import HALF_TURN, dips, hops, rate, sine_cosine, travel
 from rockfrag.rocking._series import crossing_time
-from rockfrag.rocking._stack_table import CLOSES, LANES, NEARS, QUIET, TWO_COLUMNS, WITHIN
+from rockfrag.rocking._stack_table import CLOSES, LANES, NEARS, TWO_COLUMNS
 from rockfrag.rocking._step import GAP
 from rockfrag.rocking._step import TH1 as SERIES1
 from rockfrag.rocking._step import TH2 as SERIES2
