@@ -43,54 +43,40 @@ SLOTS = 2 * LANES
 
 CASE = np.dtype(
     [
-        ("number", np.int64),  # of the case, -1 for none
-        ("body", np.int64),
-        ("table", np.int64),  # where the table of its body begins
-        ("interval", np.float64),  # sampling interval [s]
-        ("part", np.float64),  # the largest part of it that a step of two rotations may take
-        ("factor", np.float64),
-        ("low", np.float64),  # ground accelerations between which the body rests
-        ("high", np.float64),
-        ("barrier", np.float64),  # least energy that overturns the body
-        (
-            "first",
-            np.int64,
-        ),  # samples: of its motion the first and the last, and the end of free rocking
-        ("last", np.int64),
-        ("free_last", np.int64),
-        ("k", np.int64),  # the sample it has reached, and the time since then
-        ("tau", np.float64),
-        ("c1", np.int64),  # the state, rates per sample
-        ("c2", np.int64),
-        ("theta1", np.float64),
-        ("rate1", np.float64),
-        ("theta2", np.float64),
-        ("rate2", np.float64),
-        ("now", np.float64),  # ground acceleration at its last event
-        ("crowded", np.int64),  # the sample of its last event, and how many it has had
-        ("crowd", np.int64),
-        ("fallen", np.int64),  # 1 the pedestal, 2 the statue
-        ("peak1", np.float64),  # extremes so far, as in the rows of the lanes
-        ("peak2", np.float64),
-        ("fast", np.float64),
-        ("near", np.float64),
-        ("impacts", np.int64),
+        # number of the case, -1 for none; its body, and where the table of that begins
+        ("number", np.int64), ("body", np.int64), ("table", np.int64),
+        # sampling interval [s], the largest part of it that a step of two rotations may take, and the scale
+        ("interval", np.float64), ("part", np.float64), ("factor", np.float64),
+        # ground accelerations between which the body rests, and the least energy that overturns it
+        ("low", np.float64), ("high", np.float64), ("barrier", np.float64),
+        # samples: of its motion the first and the last, and the last of free rocking
+        ("first", np.int64), ("last", np.int64), ("free_last", np.int64),
+        # the sample it has reached, and the time since then
+        ("k", np.int64), ("tau", np.float64),
+        # the state, with rates per sample
+        ("c1", np.int64), ("c2", np.int64),
+        ("theta1", np.float64), ("rate1", np.float64), ("theta2", np.float64), ("rate2", np.float64),
+        # of its last event the ground acceleration, the sample, and how many that sample has had
+        ("now", np.float64), ("crowded", np.int64), ("crowd", np.int64),
+        # extremes so far, as in the rows of the lanes; impacts; what fell, 1 the pedestal, 2 the statue
+        ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("near", np.float64),
+        ("impacts", np.int64), ("fallen", np.int64),
     ],
     align=True,
-)
+)  # fmt: skip
+"""A case in flight; time is counted in samples."""
 
 OUTCOME = np.dtype(
     [
-        ("fallen", np.int64),
-        ("certain", np.int64),  # samples until the verdict was certain
-        ("peak1", np.float64),
-        ("peak2", np.float64),
-        ("fast", np.float64),
-        ("closest", np.float64),
+        # what fell, and the number of samples after which that was certain
+        ("fallen", np.int64), ("certain", np.int64),
+        # extremes, with the distance from balance itself; impacts
+        ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("closest", np.float64),
         ("impacts", np.int64),
     ],
     align=True,
-)
+)  # fmt: skip
+"""What remains of a case."""
 
 
 @inlined_kernel
@@ -277,13 +263,8 @@ def event_of_one(i, case, x, t, q, bodies, samples, g, closing_speed):
         return False, False
     case.impacts += 1
     case.theta1, case.theta2 = 0.0, 0.0
-    done, n1, n2, v1, v2 = land(
-        p, t, case.table, c1, c2, omega, now, closing_speed, case.k, case.tau, h, samples, case.last,
-        case.factor,
-    )  # fmt: skip
-    if _forced(case) or not done:
+    if _forced(case) or not land(case, p, t, g, closing_speed, samples):
         return c1 != 0, c2 != 0
-    case.c1, case.c2, case.rate1, case.rate2 = n1, n2, v1, v2
     return False, False
 
 
@@ -314,15 +295,13 @@ def event_of_two(i, case, x, t, q, samples, g, closing_speed):
         t2 = t1
     case.theta1, case.theta2 = t1, t2
     case.impacts += 1
-    if closes1 == closes2 or t[case.table + HAS_MEASURED] != 0.0 or _forced(case):
+    if (
+        closes1 == closes2
+        or t[case.table + HAS_MEASURED] != 0.0
+        or _forced(case)
+        or not meet(case, t, closes1, g, closing_speed, samples)
+    ):
         return closes1, closes2
-    done, n1, n2, v1, v2 = meet(
-        t, case.table, closes1, c1, c2, t1, w1, t2, w2, g, closing_speed, case.k, case.tau, case.interval,
-        samples, case.last, case.factor,
-    )  # fmt: skip
-    if not done:
-        return closes1, closes2
-    case.c1, case.c2, case.rate1, case.rate2 = n1, n2, v1, v2
     return False, False
 
 

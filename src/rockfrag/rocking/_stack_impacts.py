@@ -4,7 +4,8 @@ The general treatment is in ``_mechanics.impact`` and ``_events.strike``; here a
 all impacts of an ensemble: one contact of two closes, momentum is conserved, and both come off; and a
 landing of what rocks alone (pattern 3 or 4), whose outcome is the same for every speed but for its size.
 
-``t`` is the table (``_stack_table``), and ``before`` and ``after`` its rows of the contact states.
+``case`` is a case with its state at the event (``_stack_cases.CASE``), ``t`` holds the tables of bodies
+(``_stack_table``), and ``before`` and ``after`` are rows of contact states in them.
 """
 
 import math
@@ -12,6 +13,7 @@ import math
 from rockfrag.rocking._compile import inlined_kernel, kernel
 from rockfrag.rocking._events import COARSE_DROP, FASTEST, chatter_dies
 from rockfrag.rocking._mechanics import settle
+from rockfrag.rocking._one_rotation import least_hold
 from rockfrag.rocking._pendulum import sine_cosine
 from rockfrag.rocking._stack_table import (
     AFTER1,
@@ -102,8 +104,7 @@ def _opening(t, o, ground, side, sine, cosine, omega1, omega2, g):
 
 @inlined_kernel
 def _chatter_closes(
-    t, before, after, ground, old, side, sine, cosine, omega1, omega2, longest, g, k, tau, h, samples, last,
-    factor,
+    case, t, before, after, ground, old, side, sine, cosine, omega1, omega2, longest, g, samples
 ):  # fmt: skip
     """Whether a contact that comes off may stay closed at once, while the other is open.
 
@@ -123,6 +124,7 @@ def _chatter_closes(
     sine, cosine : of the statue's rotation
     longest : time that it may take at most [samples]
     """
+    h, k, tau, last, factor = case.interval, case.k, case.tau, case.last, case.factor
     speed = abs(omega1) if ground else abs(omega2 - omega1)
     if speed > FASTEST_CHATTER * h:
         return False
@@ -173,58 +175,67 @@ def _closed(t, o, ground, cosine, sine, omega1, omega2):
 
 
 @inlined_kernel
-def land(p, t, start, c1, c2, omega, now, closing_speed, k, tau, h, samples, last, factor):
-    """Contacts and velocities after what rocks alone lands, and whether that was possible here."""
-    products = impacts_of(start, c1, c2)
+def land(case, p, t, g, closing_speed, samples):
+    """Take what rocks alone through its landing; whether that was possible here."""
+    products = impacts_of(case.table, case.c1, case.c2)
     n1 = int(t[products + NEXT1])
     n2 = int(t[products + NEXT2])
-    v1 = abs(omega) * t[products + AFTER1]
-    v2 = abs(omega) * t[products + AFTER2]
+    omega = abs(case.rate2)
+    v1, v2 = omega * t[products + AFTER1], omega * t[products + AFTER2]
+    h = case.interval
     slow = closing_speed * h
     fast = (n1 == 0 or abs(v1) >= slow) and (n2 == 0 or abs(v2 - v1) >= slow)
     if not fast or (n1 == 0 and n2 == 0):
-        return False, n1, n2, v1, v2
+        return False
     speed = max(abs(v1), abs(v2)) / h
-    restoring = start + RESTORING_AT
+    restoring = case.table + RESTORING_AT
     if speed < t[restoring + FASTEST] and chatter_dies(
-        speed, t[products + SHARE], 1.5, t, restoring, COARSE_DROP, k, tau, h, samples, last, factor
-    ):
+        speed, t[products + SHARE], 1.5, t, restoring, COARSE_DROP, case.k, case.tau, h, samples, case.last,
+        case.factor,
+    ):  # fmt: skip
         n1, n2, v1, v2 = 0, 0, 0.0, 0.0
-    if n1 == 0 or n2 == 0:
-        n1, n2 = settle(p, n1, n2, 0.0, v1 / h, 0.0, v2 / h, now)
-    return True, n1, n2, v1, v2
+    if n1 == 0 and n2 == 0:
+        settled = case.low < case.now < case.high
+    elif n1 == 0 or n2 == 0:
+        settled = least_hold(t, state(case.table, n1, n2), 0.0, v2, case.now, g) > 0.0
+    else:
+        settled = True
+    if not settled:
+        n1, n2 = settle(p, n1, n2, 0.0, v1 / h, 0.0, v2 / h, case.now)
+    case.c1, case.c2, case.rate1, case.rate2 = n1, n2, v1, v2
+    return True
 
 
 @inlined_kernel
-def meet(
-    t, start, ground, c1, c2, theta1, omega1, theta2, omega2, g, closing_speed, k, tau, h, samples, last, factor
-):  # fmt: skip
-    """Contacts and velocities after one of two open contacts closes, and whether that was possible here."""
-    before = state(start, c1, c2)
-    products = impacts_of(start, c1, c2)
-    sine, cosine = sine_cosine(theta2)
+def meet(case, t, ground, g, closing_speed, samples):
+    """Take two rocking blocks through the closing of one contact; whether that was possible here."""
+    c1, c2, omega1, omega2 = case.c1, case.c2, case.rate1, case.rate2
+    before = state(case.table, c1, c2)
+    products = impacts_of(case.table, c1, c2)
+    sine, cosine = sine_cosine(case.theta2)
     if ground:
         n1, n2 = -c1, c2
-        after = state(start, n1, n2)
+        after = state(case.table, n1, n2)
         v1, v2 = _ground_impact(t, before, after, products, cosine, sine, omega1, omega2)
         side, off, old = n1, v1, omega1
-        gap, toward = abs(theta2), c2 * (v1 - v2)
+        gap, toward = abs(case.theta2), c2 * (v1 - v2)
     else:
         n1, n2 = c1, -c2
-        after = state(start, n1, n2)
+        after = state(case.table, n1, n2)
         v1, v2 = _interface_impact(t, after, products, omega1, omega2)
         side, off, old = n2, v2 - v1, omega2 - omega1
-        gap, toward = abs(theta1), -c1 * v1
-    if side * off <= closing_speed * h:
-        return False, n1, n2, v1, v2
+        gap, toward = abs(case.theta1), -c1 * v1
+    if side * off <= closing_speed * case.interval:
+        return False
     # half the time in which the other contact would close
     longest = 0.5 * gap / toward if toward > 0.0 else math.inf
     if _chatter_closes(
-        t, before, after, ground, old, side, sine, cosine, v1, v2, longest, g, k, tau, h, samples, last, factor
+        case, t, before, after, ground, old, side, sine, cosine, v1, v2, longest, g, samples
     ):  # fmt: skip
         v1, v2 = _closed(t, after, ground, cosine, sine, v1, v2)
         if ground:
             n1 = 0
         else:
             n2 = 0
-    return True, n1, n2, v1, v2
+    case.c1, case.c2, case.rate1, case.rate2 = n1, n2, v1, v2
+    return True
