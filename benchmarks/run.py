@@ -66,11 +66,16 @@ def machine() -> dict[str, object]:
 
 
 def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
-    """Histories per second and core, and wrong verdicts, of the package and its competitors."""
+    """Histories per second and core, and wrong verdicts, of the package and its competitors.
+
+    The package runs again and again between the histories of a competitor, so that a machine that changes its
+    speed changes both.
+    """
     reference = converged(set_)
     fast = all_cases(set_)
     seconds = cpu_seconds(lambda: all_cases(set_))
-    rows = [row(kind, "rockfrag", set_.count, seconds, int((fast.overturned != reference).sum()))]
+    wrong = int((fast.overturned != reference).sum())
+    rows = [row(kind, "rockfrag", set_.count, seconds, wrong, set_.count / seconds)]
     if kind == "lone":
         few = cases("lone", 300 if quick else 2000)
         verdicts: list[np.ndarray] = []
@@ -79,7 +84,8 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
             1,
         )
         wrong = int((verdicts[0] != converged(few)).sum())
-        rows.append(row(kind, "numpy, no event location", few.count, seconds, wrong))
+        own = set_.count / cpu_seconds(lambda: all_cases(set_))
+        rows.append(row(kind, "numpy, no event location", few.count, seconds, wrong, own))
     scipy_verdict = scipy_lone if kind == "lone" else scipy_stack
     count = 3 if quick else 20
     competitors: list[tuple[str, Callable[..., bool], int]] = [
@@ -97,22 +103,28 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
             ("MuJoCo 1 ms, default contacts", lambda *a: mujoco_verdict(*a, stiff=False), count),
         ]
     for name, verdict, count in competitors:
-        wrong, seconds = 0, 0.0
-        for at, body, values in set_.each(count):
+        wrong, seconds, runs, own_seconds = 0, 0.0, 0, 0.0
+        for n, (at, body, values) in enumerate(set_.each(count)):
+            if n % max(1, count // 10) == 0:
+                own_seconds += cpu_seconds(lambda: all_cases(set_), 1)
+                runs += 1
             found: list[bool] = []
             seconds += cpu_seconds(
                 lambda v=verdict, b=body, a=values, f=found: f.append(v(b, a, set_.dt)), 1
             )
             wrong += found[0] != reference[at]
-        rows.append(row(kind, name, count, seconds, wrong))
+        rows.append(row(kind, name, count, seconds, wrong, runs * set_.count / own_seconds))
     return rows
 
 
-def row(kind: str, name: str, count: int, seconds: float, wrong: int) -> dict[str, object]:
+def row(
+    kind: str, name: str, count: int, seconds: float, wrong: int, own: float
+) -> dict[str, object]:
+    """Row of a program; ``own``: histories per second of the package meanwhile."""
     made = {
         "bodies": NAMES[kind], "program": name, "histories": count,
         "histories_per_s_core": count / seconds, "wrong_verdicts": wrong,
-        "wrong_share": wrong / count,
+        "wrong_share": wrong / count, "rockfrag_times_as_fast": own * seconds / count,
     }  # fmt: skip
     print(
         f"{NAMES[kind]:13s} {name:32s} {count / seconds:12.4g} /s {100 * wrong / count:6.2f} % wrong"
@@ -183,23 +195,17 @@ def wide_study(folder: Path) -> float:
 
 def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[str, object]]:
     """Rows of the targets: what is asked, what was measured, whether it is met."""
-    speed = table[table.bodies == NAMES[kind]].set_index("program")["histories_per_s_core"]
-    own = speed["rockfrag"]
+    times = table[table.bodies == NAMES[kind]].set_index("program")["rockfrag_times_as_fast"]
     rows: list[tuple[str, str, float, bool]] = []
 
     def add(what: str, target: str, value: float, met: bool) -> None:
         rows.append((what, target, value, met))
 
     for name in (BY_EVENT, BY_SAMPLE):
-        add(f"times as fast as {name}", "≥ 20000", own / speed[name], own / speed[name] >= 20_000)
-    peers = speed[speed.index.str.startswith("MuJoCo")]
+        add(f"times as fast as {name}", "≥ 20000", times[name], times[name] >= 20_000)
+    peers = times[times.index.str.startswith("MuJoCo")]
     if len(peers):
-        add(
-            "times as fast as MuJoCo at 1 ms",
-            "≥ 2000",
-            own / peers.max(),
-            own / peers.max() >= 2000,
-        )
+        add("times as fast as MuJoCo at 1 ms", "≥ 2000", peers.min(), peers.min() >= 2000)
     most = 2 if kind == "lone" else 4
     add(
         "time over smooth arithmetic",

@@ -183,16 +183,21 @@ def land(case, p, t, g, closing_speed, samples):
     omega = abs(case.rate2)
     v1, v2 = omega * t[products + AFTER1], omega * t[products + AFTER2]
     h = case.interval
+    # a contact that comes off slower than this stays closed
     slow = closing_speed * h
-    fast = (n1 == 0 or abs(v1) >= slow) and (n2 == 0 or abs(v2 - v1) >= slow)
-    if not fast or (n1 == 0 and n2 == 0):
+    slow1 = n1 != 0 and abs(v1) < slow
+    slow2 = n2 != 0 and abs(v2 - v1) < slow
+    rests = (n1 == 0 or slow1) and (n2 == 0 or slow2)
+    if (slow1 or slow2) and not rests:
         return False
     speed = max(abs(v1), abs(v2)) / h
     restoring = case.table + RESTORING_AT
-    if speed < t[restoring + FASTEST] and chatter_dies(
-        speed, t[products + SHARE], 1.5, t, restoring, COARSE_DROP, case.k, case.tau, h, samples, case.last,
-        case.factor,
-    ):  # fmt: skip
+    if not rests and speed < t[restoring + FASTEST]:
+        rests = chatter_dies(
+            speed, t[products + SHARE], 1.5, t, restoring, COARSE_DROP, case.k, case.tau, h, samples,
+            case.last, case.factor,
+        )  # fmt: skip
+    if rests:
         n1, n2, v1, v2 = 0, 0, 0.0, 0.0
     if n1 == 0 and n2 == 0:
         settled = case.low < case.now < case.high
