@@ -188,7 +188,7 @@ def separately(*arguments: object, cache: Path | None = None) -> float:
 def start_up(kind: str) -> tuple[float, float]:
     """Seconds to the first verdict of a new process, with an empty and with a filled cache."""
     cold, warm = math.inf, math.inf
-    for _ in range(2):
+    for _ in range(3):
         with tempfile.TemporaryDirectory() as folder:
             cold = min(cold, separately("first", kind, cache=Path(folder)))
             warm = min(warm, *(separately("first", kind, cache=Path(folder)) for _ in range(2)))

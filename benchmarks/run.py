@@ -201,8 +201,7 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
     def add(what: str, target: str, value: float, met: bool) -> None:
         rows.append((what, target, value, met))
 
-    for name in (BY_EVENT, BY_SAMPLE):
-        add(f"times as fast as {name}", "≥ 20000", times[name], times[name] >= 20_000)
+    add(f"times as fast as {BY_EVENT}", "≥ 20000", times[BY_EVENT], times[BY_EVENT] >= 20_000)
     peers = times[times.index.str.startswith("MuJoCo")]
     if len(peers):
         add("times as fast as MuJoCo at 1 ms", "≥ 2000", peers.min(), peers.min() >= 2000)
@@ -245,12 +244,12 @@ def summary(about: dict[str, Any], programs: pd.DataFrame, goals: pd.DataFrame) 
         f"Machine: {m['processor']}, {m['cores']} cores, {m['system']}; Python {m['python']}, "
         f"numba {m['numba']}, numpy {m['numpy']}, scipy {m['scipy']}.",
         "" if not about["quick"] else "\nA quick run, with too few cases to quote.\n",
-        "| bodies | program | histories | per second and core | wrong verdicts |",
-        "|---|---|---:|---:|---:|",
+        "| bodies | program | histories | per second and core | times that rockfrag is as fast | wrong verdicts |",
+        "|---|---|---:|---:|---:|---:|",
     ]
     lines += [
         f"| {r.bodies} | {r.program} | {r.histories} | {r.histories_per_s_core:.4g} "
-        f"| {100 * r.wrong_share:.2f} % |"
+        f"| {r.rockfrag_times_as_fast:,.0f} | {100 * r.wrong_share:.2f} % |"
         for r in programs.itertuples()
     ]
     lines += ["", "| bodies | what | target | measured | |", "|---|---|---|---:|---|"]

@@ -35,6 +35,7 @@ from rockfrag.rocking._stack_cases import (
     store_two,
     strike_case,
 )
+from rockfrag.rocking._stack_impacts import meet
 from rockfrag.rocking._stack_table import LANES, TABLE
 from rockfrag.rocking._step import SCRATCH
 from rockfrag.rocking._tally import SUMMARY
@@ -58,6 +59,16 @@ def working_arrays():
     )  # fmt: skip
 
 
+@inlined_kernel
+def _next_samples_of_one(x, lanes, samples):
+    return next_samples(x, lanes, one.FLAG, one.FACTOR, one.GROUND_END, AT, LAST, LANES, samples)
+
+
+@inlined_kernel
+def _next_samples_of_two(x, lanes, samples):
+    return next_samples(x, lanes, two.FLAG, two.FACTOR, two.GROUND_END, AT, LAST, LANES, samples)
+
+
 _N, _I, _B = types.float64, types.int64, types.boolean
 _NS, _IS, _TABLE, _IS_TABLE = _N[::1], _I[::1], _N[:, ::1], _I[:, ::1]
 _BODY, _CASE, _OUTCOME = from_dtype(BODY), from_dtype(CASE), from_dtype(OUTCOME)
@@ -71,7 +82,8 @@ def compile_events():
 
 
 def compile_others():
-    """Compile the other half."""
+    """Compile the other half, what the first also needs at once: it finds that in the cache."""
+    meet.compile((_CASE, _NS, _B, _N, _N, _NS))
     one.go_back.compile((_NS, _I, _N))
     two.advance.compile((_NS, _N))
     one.advance.compile((_NS, _N))
@@ -79,22 +91,16 @@ def compile_others():
     place_one.compile((_I, _CASE, _NS, _NS, _NS))
     store_two.compile((_I, _CASE, _NS))
     store_one.compile((_I, _CASE, _NS))
+    for kernel in (kind_of, goes_on, pass_event):
+        kernel.compile((_CASE,))
+    for kernel in (_next_samples_of_one, _next_samples_of_two):
+        kernel.compile((_NS, _IS, _NS))
     carry_on.compile(
         (
             _CASE, _NS, _IS, _I, _BODY[::1], _TABLE, _TABLE, _IS_TABLE, _TABLE, _IS_TABLE, _IS, _IS, _NS,
             _NS, _NS, _OUTCOME[::1],
         )
     )  # fmt: skip
-
-
-@inlined_kernel
-def _next_samples_of_one(x, lanes, samples):
-    return next_samples(x, lanes, one.FLAG, one.FACTOR, one.GROUND_END, AT, LAST, LANES, samples)
-
-
-@inlined_kernel
-def _next_samples_of_two(x, lanes, samples):
-    return next_samples(x, lanes, two.FLAG, two.FACTOR, two.GROUND_END, AT, LAST, LANES, samples)
 
 
 @entry_kernel
