@@ -82,13 +82,13 @@ def nudged_share(cases: Cases, by: float = 1e-9) -> float:
 def ratio_in_turn(
     work: Callable[[], object], other: Callable[[], object], clock: Callable[[], float]
 ) -> float:
-    """Time of ``work`` over that of ``other``: the median of seven pairs of runs, one right after the other.
+    """Time of ``work`` over that of ``other``: the median of fifteen pairs of runs, one right after the other.
 
     A machine that changes its speed from second to second changes both runs of a pair alike.
     """
     return float(
         np.median(
-            [_least_seconds(clock, work, 1) / _least_seconds(clock, other, 1) for _ in range(7)]
+            [_least_seconds(clock, work, 1) / _least_seconds(clock, other, 1) for _ in range(15)]
         )
     )
 
