@@ -1,6 +1,6 @@
 """Speed and accuracy of the rocking kernels against other programs, in one process on this machine.
 
-``python benchmarks/run.py`` takes a quarter of an hour; ``--quick`` a minute, with too few cases to
+``python benchmarks/run.py`` takes a quarter of an hour; ``--quick`` three minutes, with too few cases to
 quote; ``--wide`` adds a study of 2.4 million histories.  Everything goes to ``results/bench``.
 """
 
@@ -273,7 +273,9 @@ def summary(about: dict[str, Any], programs: pd.DataFrame, goals: pd.DataFrame) 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="a minute, too few cases to quote")
+    parser.add_argument(
+        "--quick", action="store_true", help="three minutes, too few cases to quote"
+    )
     parser.add_argument("--wide", action="store_true", help="also run 2.4 million histories")
     parser.add_argument("--docs", type=Path, help="document to put the results into")
     parser.add_argument("--out", type=Path, default=Path("results/bench"))

@@ -15,9 +15,7 @@ from rockfrag.rocking._events import (
     restoring_table,
     strike,
 )
-from rockfrag.rocking._mechanics import (
-    settle,
-)
+from rockfrag.rocking._mechanics import settle
 from rockfrag.rocking._pendulum import HALF_TURN
 from rockfrag.rocking._series import slope, value
 from rockfrag.rocking._step import RESTORING, TH1, TH2, series

@@ -26,7 +26,6 @@ from rockfrag.rocking._rest import uplift
 from rockfrag.rocking._series import slope, value
 from rockfrag.rocking._stack_impacts import land, meet
 from rockfrag.rocking._stack_table import (
-    HAS_MEASURED,
     LANES,
     ONE_COLUMNS,
     RELEASE,
@@ -269,7 +268,7 @@ def event_of_one(i, case, x, t, q, bodies, samples, g, closing_speed):
 
 
 @inlined_kernel
-def event_of_two(i, case, x, t, q, samples, g, closing_speed):
+def event_of_two(i, case, x, t, q, bodies, samples, g, closing_speed):
     """Likewise of a case in lane i of those of two rotations."""
     two.take_series(x, i, q)
     c1, c2 = case.c1, case.c2
@@ -297,7 +296,7 @@ def event_of_two(i, case, x, t, q, samples, g, closing_speed):
     case.impacts += 1
     if (
         closes1 == closes2
-        or t[case.table + HAS_MEASURED] != 0.0
+        or bodies[case.body].measured
         or _forced(case)
         or not meet(case, t, closes1, g, closing_speed, samples)
     ):

@@ -236,7 +236,7 @@ def meet(case, t, ground, g, closing_speed, samples):
     longest = 0.5 * gap / toward if toward > 0.0 else math.inf
     if _chatter_closes(
         case, t, before, after, ground, old, side, sine, cosine, v1, v2, longest, g, samples
-    ):  # fmt: skip
+    ):
         v1, v2 = _closed(t, after, ground, cosine, sine, v1, v2)
         if ground:
             n1 = 0

@@ -77,8 +77,9 @@ _BODY, _CASE, _OUTCOME = from_dtype(BODY), from_dtype(CASE), from_dtype(OUTCOME)
 def compile_events():
     """Compile what takes cases through events, a half of the work."""
     strike_case.compile((_CASE, _NS, _BODY, _B, _B, _N, _NS, _NS))
-    event_of_two.compile((_I, _CASE, _NS, _NS, _NS, _NS, _N, _N))
-    event_of_one.compile((_I, _CASE, _NS, _NS, _NS, _BODY[::1], _NS, _N, _N))
+    event = (_I, _CASE, _NS, _NS, _NS, _BODY[::1], _NS, _N, _N)
+    event_of_two.compile(event)
+    event_of_one.compile(event)
 
 
 def compile_others():
@@ -154,8 +155,6 @@ def stack_cases(
             steps2 += LANES
             two.advance(x2, g)
             stops = _next_samples_of_two(x2, lanes2, samples)
-        for i in range(LANES):
-            stops |= (1 << i) if lanes[SLOT + i] < 0 else 0
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1
@@ -176,7 +175,9 @@ def stack_cases(
                             i, case, x, t, q, bodies, samples, g, closing_speed
                         )
                     else:
-                        closes1, closes2 = event_of_two(i, case, x, t, q, samples, g, closing_speed)
+                        closes1, closes2 = event_of_two(
+                            i, case, x, t, q, bodies, samples, g, closing_speed
+                        )
                     if closes1 or closes2:
                         strike_case(
                             case, t, bodies[case.body], closes1, closes2, closing_speed, samples, summary
@@ -196,8 +197,8 @@ def stack_cases(
                     busy[kind] -= 1
             if j < 0:
                 if waits[kind] == 0:
-                    # what the lane computes from here on, nobody looks at
-                    lanes[SLOT + i] = -1
+                    # what the lane computes from here on, nobody looks at; at its last sample, it stops each time
+                    lanes[SLOT + i], lanes[AT + i], lanes[LAST + i] = -1, 0, 0
                     continue
                 waits[kind] -= 1
                 busy[kind] += 1

@@ -77,8 +77,7 @@ PRODUCTS = 10
 # Places in the table.
 IMPACTS = 9 * COLUMNS
 RESTORING_AT = IMPACTS + 9 * PRODUCTS
-HAS_MEASURED = RESTORING_AT + RESTORED
-TABLE = HAS_MEASURED + 1
+TABLE = RESTORING_AT + RESTORED
 
 
 @kernel
@@ -108,7 +107,6 @@ def body_table(p, h, t, start):
                 _one_rotates(p, c1, c2, hh, t, o)
                 _landing(p, c1, c2, t, at)
     restoring_table(p, t, start + RESTORING_AT)
-    t[start + HAS_MEASURED] = p.measured
 
 
 @kernel
