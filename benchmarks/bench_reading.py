@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import obspy
 
-from rockfrag.records import at2
-from rockfrag.records.reading import read_motion
+from rockfrag.records.formats import at2
+from rockfrag.records.read import read_motion
 
 SAMPLES = 200_000
 HEADER_LINES = 4

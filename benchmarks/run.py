@@ -35,8 +35,8 @@ from measures import (
 from scipy_stack import scipy_stack
 
 from rockfrag.files import write_table, write_text
-from rockfrag.report.benchmark_figures import draw_benchmark
-from rockfrag.report.style import save_figure
+from rockfrag.report.figures.benchmark import draw_benchmark
+from rockfrag.report.figures.style import save_figure
 from rockfrag.rocking.accuracy import fragile_verdicts
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import overturns

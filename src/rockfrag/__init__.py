@@ -9,7 +9,7 @@ from rockfrag._lazy import loader
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
-    from rockfrag.records.reading import read_motion
+    from rockfrag.records.read import read_motion
     from rockfrag.rocking import (
         Block,
         EnsembleResult,
@@ -34,7 +34,7 @@ __getattr__ = loader(
     __name__,
     {
         "Motion": "rockfrag.records.motion",
-        "read_motion": "rockfrag.records.reading",
+        "read_motion": "rockfrag.records.read",
         "Block": "rockfrag.rocking.bodies",
         "EnsembleResult": "rockfrag.rocking.ensemble",
         "Response": "rockfrag.rocking.response",

@@ -62,7 +62,7 @@ def _parser() -> argparse.ArgumentParser:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _info(options: argparse.Namespace) -> int:
-    from rockfrag.records.reading import read_motion
+    from rockfrag.records.read import read_motion
     from rockfrag.report.record_info import describe_files, draw_record
 
     table = describe_files(options.files, options.unit, options.dt)
@@ -82,7 +82,7 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _simulate(options: argparse.Namespace) -> int:
-    from rockfrag.records.reading import read_motion
+    from rockfrag.records.read import read_motion
     from rockfrag.rocking import Block, Stack, simulate
     from rockfrag.units import STANDARD_GRAVITY
 
@@ -113,8 +113,8 @@ def _simulate(options: argparse.Namespace) -> int:
     print("friction needed: " + ", ".join(f"{value:.3f}" for value in response.friction_demand))
     print(_history(response.events, options.all_events))
     if options.plot:
-        from rockfrag.report.response_figures import response_figure
-        from rockfrag.report.style import save_figure
+        from rockfrag.report.figures.response import response_figure
+        from rockfrag.report.figures.style import save_figure
 
         save_figure(response_figure(response, f"{motion.name}, peak {peak:.3f} g"), options.plot)
         print(f"drawn in {options.plot}")
@@ -141,8 +141,8 @@ def _check_image(path: str | None) -> None:
 
 
 def _check_config(options: argparse.Namespace) -> int:
-    from rockfrag.studies.loading import load_any
-    from rockfrag.studies.measured_table import MeasuredTable
+    from rockfrag.study.loading import load_any
+    from rockfrag.study.measured_table import MeasuredTable
 
     study = load_any(options.file)
     if options.report:

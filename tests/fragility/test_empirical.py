@@ -13,7 +13,7 @@ from rockfrag.fragility.empirical import (
     survival_windows,
     wilson_interval,
 )
-from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.observations import outcomes_from_table
 
 
 def sweep(verdicts, amplitudes=None, motion="m"):

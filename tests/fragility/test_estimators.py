@@ -7,8 +7,8 @@ from scipy import optimize, stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.censored import brackets_from_table, fit_brackets
+from rockfrag.fragility.discrete_hazard import fit_step_hazard
 from rockfrag.fragility.estimators import fit_cloud, fit_incremental, fit_step_tests, fit_stripes
-from rockfrag.fragility.step_hazard import fit_step_hazard
 
 THETA, BETA = 0.35, 0.4
 

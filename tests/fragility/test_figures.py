@@ -7,17 +7,17 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import fit_cloud, fit_incremental
 from rockfrag.fragility.goodness import goodness_of_fit
-from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.observations import outcomes_from_table
 from rockfrag.fragility.states import fit_three_states
 from rockfrag.fragility.surface import fit_surface
-from rockfrag.report.fragility_figures import (
+from rockfrag.report.figures.fragility import (
     calibration_figure,
     fragility_figure,
     measures_figure,
     states_figure,
     surface_figure,
 )
-from rockfrag.report.style import save_figure
+from rockfrag.report.figures.style import save_figure
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import pytest
 
 from rockfrag.fragility.intervals import interval_over_motions, verdict_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.observations import outcomes_from_table
 from rockfrag.fragility.sweeps import fragility_table
 
 LEVELS = np.exp(np.arange(np.log(0.1), np.log(1.2), 0.1))

@@ -8,11 +8,11 @@ from scipy import stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.measures import area_under_curve, recommend_measure
-from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.measure_choice import area_under_curve, recommend_measure
+from rockfrag.fragility.measure_choice_sweeps import recommend_sweep_measure
+from rockfrag.fragility.observations import outcomes_from_table
 from rockfrag.fragility.states import fit_three_states
 from rockfrag.fragility.surface import fit_surface, linearly_separable
-from rockfrag.fragility.sweep_measures import recommend_sweep_measure
 from rockfrag.fragility.variance import split_variance
 
 

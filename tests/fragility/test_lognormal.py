@@ -6,9 +6,9 @@ import pytest
 import statsmodels.api as sm
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.newton import fit_batch
-from rockfrag.fragility.outcomes import name_and_unit, outcomes_from_table
+from rockfrag.fragility.observations import name_and_unit, outcomes_from_table
 
 STRIPES = pd.DataFrame(
     {

@@ -9,7 +9,7 @@ from scipy import integrate
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.lognormal import fit_lognormal
-from rockfrag.fragility.outcomes import outcomes_from_table
+from rockfrag.fragility.observations import outcomes_from_table
 from rockfrag.fragility.seismic_hazard import overturning_rate
 
 

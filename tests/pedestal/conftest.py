@@ -29,7 +29,7 @@ def synthetic_tests(
         for floor in FLOORS:
             by_motion = rng.normal(0, sd_motion)
             level = level_event + rng.normal(0, 0.1)
-            for tower, amplitude in TOWERS.items():
+            for object_name, amplitude in TOWERS.items():
                 # the scatter of d is shared evenly by the two tests of a pair
                 noise, own = rng.normal(0, sd_pair / np.sqrt(2), 2)
                 d = effect + by_event + by_motion + own
@@ -38,8 +38,8 @@ def synthetic_tests(
                 for pedestal, ln_a in (("NP", common - noise), ("P", common + d)):
                     rows.append(
                         {
-                            "test": f"{tower}-{pedestal}-{event}-{floor}",
-                            "tower": tower,
+                            "test": f"{object_name}-{pedestal}-{event}-{floor}",
+                            "object": object_name,
                             "pedestal": pedestal,
                             "event": event,
                             "floor": floor,

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
-from rockfrag.pedestal.pairs import pair_tests
+from rockfrag.pedestal.paired_tests import pair_tests
 
 
 def test_bca_interval_agrees_with_scipy():
@@ -41,9 +41,9 @@ def test_what_levels_share_does_not_blur_their_order(tests_table):
 
 def test_probabilities_add_to_one_and_ties_share(tests_table):
     table = pair_tests(tests_table(1)).table
-    for factor, cluster, within in (("tower", "motion", False), ("event", "motion", True)):
+    for factor, cluster, within in (("object", "motion", False), ("event", "motion", True)):
         ranks = rank_probabilities(table, factor, cluster, 1, within=within)
         assert ranks["p_largest"].sum() == pytest.approx(1)
         assert ranks["p_smallest"].sum() == pytest.approx(1)
-    tied = rank_probabilities(table.assign(d=0.0), "tower", "motion", 1)
+    tied = rank_probabilities(table.assign(d=0.0), "object", "motion", 1)
     assert tied["p_largest"].tolist() == pytest.approx([1 / 3] * 3)

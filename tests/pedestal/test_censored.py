@@ -8,7 +8,7 @@ from scipy import stats
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.censored import _rectangle, fit_censored, most_likely_effect
-from rockfrag.pedestal.pairs import pair_tests
+from rockfrag.pedestal.paired_tests import pair_tests
 
 
 def censor(tests, limit):

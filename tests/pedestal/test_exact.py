@@ -4,9 +4,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rockfrag.pedestal.exact import leave_one_event_out, sign_flip_test, wilcoxon_exact
-from rockfrag.pedestal.pairs import pair_tests
-from rockfrag.pedestal.units import contrast, mean_effect, slope_effect, t_estimate, unit_means
+from rockfrag.pedestal.cluster_means import (
+    contrast,
+    mean_effect,
+    slope_effect,
+    t_estimate,
+    unit_means,
+)
+from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.pedestal.permutation import leave_one_event_out, sign_flip_test, wilcoxon_exact
 
 
 def test_t_on_units_is_the_one_sample_t_test():
@@ -66,7 +72,7 @@ def test_four_events_never_give_a_sign_flip_p_below_an_eighth():
 def test_drawn_sign_flips_agree_with_enumerated_ones(monkeypatch):
     x = np.random.default_rng(2).normal(0.1, 0.2, 12)
     exact = sign_flip_test(x).p
-    monkeypatch.setattr("rockfrag.pedestal.exact.LARGEST_ENUMERATION", 4)
+    monkeypatch.setattr("rockfrag.pedestal.permutation.LARGEST_ENUMERATION", 4)
     drawn = sign_flip_test(x, seed=5)
     assert not drawn.exact
     assert drawn.p == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 1e5))

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from rockfrag.pedestal import effects_table, pair_tests
-from rockfrag.report.pedestal_figures import (
+from rockfrag.report.figures.pedestal import (
     forest_figure,
     pedestal_scatter,
     sides_figure,
     slenderness_figure,
 )
-from rockfrag.report.style import save_figure
+from rockfrag.report.figures.style import save_figure
 
 
 def points(axes):
@@ -35,26 +35,26 @@ def test_slenderness_panels_show_72_tests_and_the_arithmetic_means(tests_table):
     figure = slenderness_figure(tests)
     assert sum(len(points(axes)) for axes in figure.axes) == 72
     means = next(x.get_ydata() for x in figure.axes[0].lines if x.get_marker() == "_")
-    without = tests[tests["pedestal"] == "NP"].groupby("tower")["amplitude_g"].mean()
+    without = tests[tests["pedestal"] == "NP"].groupby("object")["amplitude_g"].mean()
     assert means == pytest.approx(without.to_numpy())
     assert len(slenderness_figure(tests, by_floor=True).axes) == 6
 
 
 def test_censored_tests_are_arrows_and_not_in_the_means(tests_table):
     tests = tests_table(1)
-    row = tests.index[(tests["tower"] == "T1") & (tests["pedestal"] == "P")][0]
+    row = tests.index[(tests["object"] == "T1") & (tests["pedestal"] == "P")][0]
     tests.loc[row, ["censored", "lower_g", "upper_g", "amplitude_g"]] = ["right", 0.9, None, None]
     for figure in (
         pedestal_scatter(tests),
         slenderness_figure(tests),
-        sides_figure(tests, "tower"),
+        sides_figure(tests, "object"),
     ):
         arrows = [text for axes in figure.axes for text in axes.texts if text.arrow_patch]
         assert len(arrows) == 1
 
 
-def test_sides_by_floor_for_each_tower(tests_table):
-    figure = sides_figure(tests_table(1), "floor", panels="tower")
+def test_sides_by_floor_for_each_object(tests_table):
+    figure = sides_figure(tests_table(1), "floor", panels="object")
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["T1", "T2", "T3"]
     labels = [tick.get_text().replace("\n", " ") for tick in figure.axes[0].get_xticklabels()]
     assert labels == ["ground floor", "3rd floor", "5th floor"]

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.measurement import (
+from rockfrag.pedestal.mass_bias import (
     mass_errors,
     noise_from_repetitions,
     ratio_bias,
@@ -22,7 +22,7 @@ def test_right_masses_give_no_bias():
 
 def test_pedestal_not_counted_on_ten_kilograms_raises_the_ratio_by_17_to_19_percent():
     table = mass_errors([10.0])
-    bias = table[table["error"] == "pedestal not counted"].set_index("tower")["ratio_bias"]
+    bias = table[table["error"] == "pedestal not counted"].set_index("object")["ratio_bias"]
     assert bias.round(2).to_dict() == {"T1": 1.19, "T2": 1.18, "T3": 1.17}
 
 

@@ -13,7 +13,7 @@ from rockfrag.pedestal.mixed import (
     fit_mixed,
     long_rows,
 )
-from rockfrag.pedestal.pairs import pair_tests
+from rockfrag.pedestal.paired_tests import pair_tests
 
 
 def test_intercept_is_the_mean_of_the_pairs(tests_table):

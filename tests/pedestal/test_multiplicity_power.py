@@ -7,10 +7,10 @@ import pytest
 from statsmodels.stats.multitest import multipletests
 from statsmodels.stats.power import TTestPower
 
+from rockfrag.pedestal.cluster_means import t_estimate
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.power import detectable_ratio, power_note, power_of_t, units_needed
-from rockfrag.pedestal.units import t_estimate
 
 P = np.array([0.01, 0.04, 0.03, 0.2, 0.6])
 

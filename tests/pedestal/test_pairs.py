@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.pairs import pair_tests
+from rockfrag.pedestal.paired_tests import pair_tests
 
 
 def test_thesis_design_gives_36_pairs_in_12_motions_of_4_events(tests_table):
@@ -19,8 +19,8 @@ def test_thesis_design_gives_36_pairs_in_12_motions_of_4_events(tests_table):
 
 def test_d_is_log_ratio_with_over_without(tests_table):
     tests = tests_table(1)
-    pairs = pair_tests(tests).table.set_index(["tower", "motion"])
-    one = tests[(tests["tower"] == "T2") & (tests["motion"] == "Kobe-F3")]
+    pairs = pair_tests(tests).table.set_index(["object", "motion"])
+    one = tests[(tests["object"] == "T2") & (tests["motion"] == "Kobe-F3")]
     p = one.loc[one["pedestal"] == "P", "amplitude_g"].item()
     np_ = one.loc[one["pedestal"] == "NP", "amplitude_g"].item()
     assert pairs.loc[("T2", "Kobe-F3"), "d"] == pytest.approx(np.log(p / np_), abs=1e-14)
@@ -42,7 +42,7 @@ def test_missing_partner_is_left_out_and_named(tests_table):
 
 def test_censored_side_bounds_the_log_ratio(tests_table):
     tests = tests_table(1)
-    row = tests.index[(tests["tower"] == "T1") & (tests["motion"] == "Kobe-GF")]
+    row = tests.index[(tests["object"] == "T1") & (tests["motion"] == "Kobe-GF")]
     np_row, p_row = row[0], row[1]
     tests.loc[p_row, ["censored", "lower_g", "upper_g", "amplitude_g"]] = ["right", 0.6, None, None]
     pairs = pair_tests(tests)
@@ -74,7 +74,7 @@ def test_repetitions_are_averaged_in_the_logarithm(tests_table):
         ("pedestal", "yes", "pedestal is 'yes'"),
         ("censored", "left", "censored is 'left'"),
         ("event", None, "event is empty"),
-        ("tower", "T9", "slenderness of tower T9"),
+        ("object", "T9", "slenderness of object T9"),
         ("lower_g", 9.0, "exceeds upper_g"),
     ],
 )

@@ -18,7 +18,7 @@ from rockfrag.rocking.bodies import Block, Stack
 
 TOWER = Block(0.124, 0.496, 2.79)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
-# so wide and heavy that neither a motion nor an impact of the tower moves it
+# so wide and heavy that neither a motion nor an impact of the object moves it
 ROCK = Stack(Block(3.0, 2.4, 1e6), TOWER)
 LADDER = 0.1 * 1.08 ** np.arange(32)
 
@@ -43,7 +43,7 @@ def test_no_restitution_makes_a_difference_on_a_pedestal_that_cannot_move(motion
     assert len(rows["ratio"].dropna()) >= 8
 
 
-def test_an_interface_that_takes_more_energy_acts_like_a_lone_tower_that_does(motions):
+def test_an_interface_that_takes_more_energy_acts_like_a_lone_object_that_does(motions):
     lossy = 0.9 * TOWER.momentum_restitution()
     rows = case_ratios(factor_cases("T2", ROCK, {"interface_restitution": (0.9,)}), motions, LADDER)
     lone = Case("lone", 0.0, "T2", TOWER, ROCK, lossy, (None, lossy))

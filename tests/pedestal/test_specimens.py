@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from rockfrag.pedestal.specimens import THESIS_BODIES
-from rockfrag.studies.configurations import read_specimens
+from rockfrag.study.configurations import read_specimens
+from rockfrag.thesis.specimens import THESIS_BODIES
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -13,7 +13,7 @@ FAST = dict(seed=1)
 def test_every_scope_is_there_with_its_power(tests_table):
     study = study_pedestal(tests_table(1), **FAST)
     counts = study.effects["scope"].value_counts().to_dict()
-    assert counts == {"whole": 1, "floor": 3, "event": 4, "tower": 3, "cell": 9}
+    assert counts == {"whole": 1, "floor": 3, "event": 4, "object": 3, "cell": 9}
     assert (study.effects["lower"] <= study.effects["ratio"]).all()
     assert (study.effects["ratio"] <= study.effects["upper"]).all()
     assert (study.effects["p_holm"] >= study.effects["p"]).all()
@@ -64,16 +64,25 @@ def explanation_table(effect=0.15):
     rng = np.random.default_rng(2)
     rows = []
     for level, shift in ((0.85, 0.0), (0.80, effect), (0.75, 2 * effect)):
-        for tower in ("T1", "T2", "T3"):
+        for object_name in ("T1", "T2", "T3"):
             for event in "ABCD":
                 for floor in ("GF", "F3", "F5"):
                     sign = 1 if floor == "GF" else -0.5
                     for replicate in range(3):
                         d = sign * shift + rng.normal(0, 0.02)
                         rows.append(
-                            ("restitution", level, level == 0.85, tower, event, floor, replicate, d)
+                            (
+                                "restitution",
+                                level,
+                                level == 0.85,
+                                object_name,
+                                event,
+                                floor,
+                                replicate,
+                                d,
+                            )
                         )
-    names = ["factor", "level", "reference", "tower", "event", "floor", "replicate", "d"]
+    names = ["factor", "level", "reference", "object", "event", "floor", "replicate", "d"]
     table = pd.DataFrame(rows, columns=names)
     return table.assign(ratio=np.exp(table["d"])).drop(columns="d")
 
@@ -90,7 +99,7 @@ def test_explanation_recovers_the_effect_of_a_level_by_floor():
 
 def test_explanation_pairs_with_the_reference_and_counts_what_is_left_out():
     table = explanation_table()
-    gone = (table["level"] == 0.80) & (table["event"] == "A") & (table["tower"] == "T1")
+    gone = (table["level"] == 0.80) & (table["event"] == "A") & (table["object"] == "T1")
     table.loc[gone, "ratio"] = np.nan
     row = explain(table).set_index(["level", "floor"]).loc[(0.80, "all")]
     assert (row["pairs"], row["left_out"]) == (33, 3)

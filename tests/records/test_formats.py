@@ -10,9 +10,9 @@ from obspy import UTCDateTime
 from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats import FORMATS
-from rockfrag.records.quantities import TO_SI
-from rockfrag.records.reading import read_motion, read_record
+from rockfrag.records.formats.known import FORMATS
+from rockfrag.records.formats.quantities import TO_SI
+from rockfrag.records.read import read_motion, read_record
 
 
 def claims(source):

@@ -6,9 +6,9 @@ import pytest
 from obspy import Stream, Trace, UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.quantities import canonical_unit
-from rockfrag.records.reading import read_motion, read_record
-from rockfrag.records.times import american_time
+from rockfrag.records.formats.quantities import canonical_unit
+from rockfrag.records.formats.timestamps import american_time
+from rockfrag.records.read import read_motion, read_record
 
 
 def two_columns(path, times, values):

@@ -7,8 +7,8 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.motions import intensity
-from rockfrag.records.formats import FORMATS
-from rockfrag.records.reading import read_motion, read_record
+from rockfrag.records.formats.known import FORMATS
+from rockfrag.records.read import read_motion, read_record
 from rockfrag.units import STANDARD_GRAVITY
 
 # file, unit to give, format, station, start time, samples, dt [s], unit stored, PGA [g] of each

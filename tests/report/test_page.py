@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pandas as pd
 
+from rockfrag.report.figures.style import figure_style, new_figure, save_figure
 from rockfrag.report.findings import Finding, amplitudes_found, pedestal_effect
-from rockfrag.report.ledger_html import ledger_html
 from rockfrag.report.page import Column, Picture, Section, cell, render, table_html
-from rockfrag.report.style import figure_style, new_figure, save_figure
+from rockfrag.thesis.ledger_html import ledger_html
 
 
 def figure_files(folder: Path) -> tuple[Path, Path]:

@@ -7,8 +7,8 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.report.spectra_figures import comparison_figure, spectra_figure
-from rockfrag.report.style import save_figure
+from rockfrag.report.figures.spectra import comparison_figure, spectra_figure
+from rockfrag.report.figures.style import save_figure
 
 ALPHA = math.atan(1 / 4)
 T = np.arange(500) * 0.01

@@ -6,8 +6,10 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.records.reading import read_motion
-from rockfrag.report.thesis_tables import (
+from rockfrag.records.read import read_motion
+from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.study.loading import load_study
+from rockfrag.thesis.printed_tables import (
     TABLE_3_1,
     TABLE_3_3,
     TABLE_4_1,
@@ -17,8 +19,6 @@ from rockfrag.report.thesis_tables import (
     uplift_accelerations,
     uplift_table,
 )
-from rockfrag.rocking.bodies import Block, Stack
-from rockfrag.studies.loading import load_study
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 PRINTED = CONFIG / "printed"

@@ -29,11 +29,11 @@ def peaks(response: ReferenceResponse) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize("tower", TOWERS)
-def test_a_released_block_comes_down_after_the_exact_quarter_period(tower: Block) -> None:
-    theta0 = 0.5 * tower.alpha
-    response = simulate_reference(tower, STILL, 0.01, theta0=theta0, duration=0.5)
-    expected = quarter_period(theta0, tower.alpha, tower.frequency())
+@pytest.mark.parametrize("object", TOWERS)
+def test_a_released_block_comes_down_after_the_exact_quarter_period(object_name: Block) -> None:
+    theta0 = 0.5 * object_name.alpha
+    response = simulate_reference(object_name, STILL, 0.01, theta0=theta0, duration=0.5)
+    expected = quarter_period(theta0, object_name.alpha, object_name.frequency())
     assert response.events[0].time == pytest.approx(expected, rel=1e-10)
 
 

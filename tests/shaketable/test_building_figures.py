@@ -2,8 +2,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.report.building_figures import floor_order, floor_statements, shaker_limits
-from rockfrag.shaketable.floor_order import STATEMENTS
+from rockfrag.report.figures.building import floor_order, floor_statements, shaker_limits
+from rockfrag.thesis.floor_order import STATEMENTS
 
 PERIODS = (0.3, 0.5, 0.7)
 
@@ -63,9 +63,9 @@ def test_the_map_of_statements_shows_every_margin(margins):
     assert set(dots.get_xdata()) == {2}
 
 
-def test_the_shakers_limits_stand_beside_the_towers():
+def test_the_shakers_limits_stand_beside_the_objects():
     table = pd.DataFrame({"motion": ["a", "b"], "limit_g": [0.4, 1.5]})
-    fallen = pd.DataFrame({"tower": ["T1", "T1"], "motion": ["a", "b"], "upper_g": [0.5, 0.6]})
+    fallen = pd.DataFrame({"object": ["T1", "T1"], "motion": ["a", "b"], "upper_g": [0.5, 0.6]})
     axes = shaker_limits(table, fallen).axes[0]
     assert [bar.get_width() for bar in axes.patches] == [1.5, 0.4]
     assert axes.lines[0].get_xdata().tolist() == [0.6, 0.5]

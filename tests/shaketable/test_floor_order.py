@@ -7,25 +7,25 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.floor_order import FLOORS, STATEMENTS, floor_margins
+from rockfrag.thesis.floor_order import FLOORS, STATEMENTS, floor_margins
 
 TOWERS = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
 
 
-def table_of(order=None, effect=None, towers=None):
-    """Tests of two events; amplitude = tower × floor, times 1 + effect with the pedestal."""
+def table_of(order=None, effect=None, objects=None):
+    """Tests of two events; amplitude = object × floor, times 1 + effect with the pedestal."""
     order = order or {"GF": 1.2, "F3": 1.0, "F5": 1.1}
     effect = effect or {"GF": 0.1, "F3": -0.05, "F5": -0.05}
     rows = [
         {
-            "tower": tower,
+            "object": object_name,
             "event": event,
             "floor": floor,
             "pedestal": pedestal,
             "amplitude_g": base * order[floor] * (1 + effect[floor] if pedestal == "P" else 1),
             "lower_g": 0.0,
         }
-        for tower, base in (towers or TOWERS).items()
+        for object_name, base in (objects or TOWERS).items()
         for event in ("A", "B")
         for floor in FLOORS
         for pedestal in ("P", "NP")
@@ -44,7 +44,7 @@ def test_margins_are_the_logarithms_they_are_said_to_be():
     assert margins["C43"] == pytest.approx(math.log(1.2 / 1.1))
     assert margins["C44"] == pytest.approx(min(math.log(1.1), math.log(1.1)))
     assert margins["order"] == pytest.approx(math.log(1.2 / 1.1))
-    # all towers gain alike: T1 neither more nor less, and its sign on the 3rd floor is not the
+    # all objects gain alike: T1 neither more nor less, and its sign on the 3rd floor is not the
     # exception that C38 wants
     assert margins["C39"] == pytest.approx(0, abs=1e-12)
     assert margins["C38"] == pytest.approx(math.log(0.95))
@@ -79,6 +79,6 @@ def test_tables_without_all_floors_or_pairs_are_refused():
         floor_margins(table[table["floor"] != "F5"])
     with pytest.raises(InputError, match="nothing about P"):
         floor_margins(table[table["pedestal"] == "NP"])
-    one = (table["tower"] == "T2") & (table["event"] == "B") & (table["floor"] == "F3")
+    one = (table["object"] == "T2") & (table["event"] == "B") & (table["floor"] == "F3")
     with pytest.raises(InputError, match="T2, B, F3 has no positive amplitude"):
         floor_margins(table[~(one & (table["pedestal"] == "P"))])

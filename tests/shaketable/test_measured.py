@@ -4,13 +4,13 @@ from pathlib import Path
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.measured import read_measured
+from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.shaketable.tests_table import COLUMNS
 
 TEMPLATE = Path(__file__).resolve().parents[2] / "config" / "experiment" / "tests-template.csv"
 
 HEADER = (
-    "test,tower,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
+    "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
 )
 # synthetic: round numbers that nobody measured
 ROWS = (

@@ -3,21 +3,21 @@ import pandas as pd
 import pytest
 
 from rockfrag.fragility.censored import brackets_from_table, fit_brackets
-from rockfrag.pedestal.pairs import pair_tests
-from rockfrag.shaketable.measured import read_measured
+from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.readings import tests_from_sweep as read_sweep
 from rockfrag.shaketable.steps import GeometricSteps
-from rockfrag.shaketable.sweeps import tests_from_sweep as read_sweep
 
 AMPLITUDES = 0.05 * 1.02 ** np.arange(150)
 
 
 @pytest.fixture
 def simulated():
-    """Tests of synthetic towers that overturn above a threshold of their own, one of them censored."""
+    """Tests of synthetic objects that overturn above a threshold of their own, one of them censored."""
     rng = np.random.default_rng(7)
     sweeps = []
-    for tower in ("T1", "T2", "T3"):
+    for object_name in ("T1", "T2", "T3"):
         for event in ("A", "B", "C", "D"):
             for floor in ("GF", "F3", "F5"):
                 for pedestal in ("P", "NP"):
@@ -26,8 +26,8 @@ def simulated():
                     sweeps.append(
                         pd.DataFrame(
                             {
-                                "configuration": f"{tower} {pedestal}",
-                                "tower": tower,
+                                "configuration": f"{object_name} {pedestal}",
+                                "object": object_name,
                                 "pedestal": pedestal,
                                 "motion": f"{event}_{floor}",
                                 "event": event,
@@ -50,9 +50,7 @@ def simulated():
 def measured(simulated, tmp_path):
     """The same tests, written down as a laboratory would and read as a measured table."""
     path = tmp_path / "measured.csv"
-    names = (
-        "test,tower,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
-    )
+    names = "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
     simulated[names.split(",")].to_csv(path, index=False)
     return read_measured(path)
 

@@ -7,18 +7,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.measurement import Accelerometer, ForceOverMass
+from rockfrag.shaketable.instruments import Accelerometer, ForceOverMass
 from rockfrag.shaketable.protocols import Outcome, Protocol, climb, measured
-from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
-from rockfrag.shaketable.sweeps import (
+from rockfrag.shaketable.readings import (
     always_overturning,
     first_overturning,
     step_protocol,
     survival_windows,
 )
-from rockfrag.shaketable.sweeps import (
+from rockfrag.shaketable.readings import (
     tests_from_sweep as read_sweep,
 )
+from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
 from rockfrag.shaketable.tests_table import COLUMNS
 
 GRID = np.round(np.arange(0.05, 1.0001, 0.01), 10)
@@ -33,7 +33,7 @@ def grid(verdicts):
 
 
 def sweep_table(overturned=WINDOW, amplitudes=GRID, **fields):
-    columns = {"configuration": "T1", "tower": "T1", "pedestal": "NP", "motion": "Kobe_GF"}
+    columns = {"configuration": "T1", "object": "T1", "pedestal": "NP", "motion": "Kobe_GF"}
     columns |= {"event": "Kobe", "floor": "GF"} | fields
     body = np.where(overturned, "statue", "")
     return pd.DataFrame(

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.measurement import Accelerometer, ForceOverMass
+from rockfrag.shaketable.instruments import Accelerometer, ForceOverMass
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.settings import make_protocol, make_shaker, read_shaker
 from rockfrag.shaketable.shaker import Shaker

@@ -12,10 +12,10 @@ from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.shaketable.filter_effect import filter_effect
 from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.readings import tests_from_sweep as read_sweep
 from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants
 from rockfrag.shaketable.shaker import Shaker, limits_g
 from rockfrag.shaketable.steps import GeometricSteps
-from rockfrag.shaketable.sweeps import tests_from_sweep as read_sweep
 
 BUILDING = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
 TOWERS = {
@@ -41,8 +41,8 @@ def sweep(motions, values):
     return pd.concat(
         pd.DataFrame(
             {
-                "configuration": tower,
-                "tower": tower,
+                "configuration": object_name,
+                "object": object_name,
                 "pedestal": "NP",
                 "motion": motion.name,
                 "event": motion.name,
@@ -52,7 +52,7 @@ def sweep(motions, values):
                 "overturned_body": np.where(result.overturned[i, j], "statue", ""),
             }
         )
-        for i, tower in enumerate(TOWERS)
+        for i, object_name in enumerate(TOWERS)
         for j, motion in enumerate(motions)
     )
 
@@ -66,7 +66,7 @@ def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
         limits_g=limits_g(shaker, motions),
     )
     censored = tests[tests["censored"] == "right"]
-    assert censored[["tower", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta"]]
+    assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta"]]
     assert censored["lower_g"].iloc[0] == pytest.approx(0.40, abs=0.005)
 
 

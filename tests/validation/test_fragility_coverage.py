@@ -13,7 +13,7 @@ import pytest
 
 from rockfrag.fragility.censored import Brackets, bracket_fitter
 from rockfrag.fragility.intervals import Interval, population, resampled_interval, verdict_fitter
-from rockfrag.fragility.outcomes import Outcomes
+from rockfrag.fragility.observations import Outcomes
 
 THETA, BETA, SHARED = 0.35, 0.4, 0.3
 DESIGNS = {4: (4, 1), 12: (4, 3), 44: (22, 2)}

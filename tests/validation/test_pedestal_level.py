@@ -1,6 +1,6 @@
 """How often tests of the pedestal's effect call nothing something, in the thesis's crossed design.
 
-36 pairs: 3 towers under 12 motions, 3 floors of each of 4 events. d = event + motion + pair, all
+36 pairs: 3 objects under 12 motions, 3 floors of each of 4 events. d = event + motion + pair, all
 with mean zero, so that every rejection is false. The table in ``docs/validation-pedestal.md`` is what
 this file prints:
 
@@ -16,11 +16,11 @@ import pytest
 from scipy import stats
 
 from rockfrag.pedestal.bootstrap import bca_interval
+from rockfrag.pedestal.cluster_means import contrast, mean_effect, t_estimate
 from rockfrag.pedestal.equivalence import equivalence
-from rockfrag.pedestal.exact import wilcoxon_exact
 from rockfrag.pedestal.mixed import EFFECT, fit_mixed
 from rockfrag.pedestal.multiplicity import holm
-from rockfrag.pedestal.units import contrast, mean_effect, t_estimate
+from rockfrag.pedestal.permutation import wilcoxon_exact
 
 SEED = 20261121
 DATA_SETS = 20_000
@@ -42,7 +42,7 @@ BEYOND = ("events with heavy tails (t, 3 df)", "skewed events (exponential)")
 
 
 def simulated(design: str, data_sets: int = DATA_SETS, seed: int = SEED) -> np.ndarray:
-    """Values of d under no effect, shape (data sets, events, floors, towers)."""
+    """Values of d under no effect, shape (data sets, events, floors, objects)."""
     sd_event, sd_motion, sd_pair, law, missing = DESIGNS[design]
     rng = np.random.default_rng([seed, list(DESIGNS).index(design)])
     shape = (data_sets, EVENTS, 1, 1)
@@ -116,7 +116,7 @@ def frame(d: np.ndarray) -> pd.DataFrame:
     """One data set as a table of pairs."""
     index = np.indices(d.shape).reshape(3, -1)
     names = [[f"E{i}" for i in index[0]], [f"F{i}" for i in index[1]], [f"T{i}" for i in index[2]]]
-    table = pd.DataFrame(dict(zip(("event", "floor", "tower"), names, strict=True)))
+    table = pd.DataFrame(dict(zip(("event", "floor", "object"), names, strict=True)))
     table["motion"] = table["event"] + table["floor"]
     return table.assign(d=d.ravel())
 

@@ -1,6 +1,6 @@
 """Whether every estimator of the pedestal's effect finds the effect that was put in.
 
-Tests of the thesis's design are simulated: ln a of a tower, a floor and an event, a random effect of
+Tests of the thesis's design are simulated: ln a of an object, a floor and an event, a random effect of
 the pair, scatter per test, and a true effect of the pedestal that varies with event and motion. Some
 are swept in steps of 20 %, some end at the shaker's limit. The table in
 ``docs/validation-pedestal.md`` is what this file prints:
@@ -16,11 +16,11 @@ import pandas as pd
 import pytest
 
 from rockfrag.pedestal.censored import fit_censored, most_likely_effect
-from rockfrag.pedestal.exact import wilcoxon_exact
-from rockfrag.pedestal.measurement import noise_from_repetitions
+from rockfrag.pedestal.cluster_means import contrast, mean_effect, slope_effect, unit_means
+from rockfrag.pedestal.mass_bias import noise_from_repetitions
 from rockfrag.pedestal.mixed import AMPLITUDE, EFFECT, EFFECT_BY_FLOOR, fit_mixed, long_rows
-from rockfrag.pedestal.pairs import pair_tests
-from rockfrag.pedestal.units import contrast, mean_effect, slope_effect, unit_means
+from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.pedestal.permutation import wilcoxon_exact
 
 SEED = 20261121
 EVENTS = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
@@ -40,13 +40,15 @@ def simulated(seed: int) -> pd.DataFrame:
         by_event, level_event = rng.normal(0, SD_EVENT), rng.normal(0, SD_LEVEL)
         for floor, by_floor in FLOORS.items():
             by_motion = rng.normal(0, SD_MOTION)
-            for tower, (slenderness, amplitude) in TOWERS.items():
+            for object_name, (slenderness, amplitude) in TOWERS.items():
                 pair = math.log(amplitude) + level_event + rng.normal(0, SD_PAIR)
                 effect = EFFECT_SIZE + by_floor + SLOPE * (slenderness - 4) + by_event + by_motion
                 for pedestal in ("NP", "P"):
                     ln_a = pair + effect * (pedestal == "P") + rng.normal(0, SD_TEST)
-                    rows.append((tower, pedestal, event, floor, f"{event}-{floor}", math.exp(ln_a)))
-    names = ["tower", "pedestal", "event", "floor", "motion", "amplitude_g"]
+                    rows.append(
+                        (object_name, pedestal, event, floor, f"{event}-{floor}", math.exp(ln_a))
+                    )
+    names = ["object", "pedestal", "event", "floor", "motion", "amplitude_g"]
     table = pd.DataFrame(rows, columns=names).assign(censored="none")
     return table.assign(lower_g=table["amplitude_g"], upper_g=table["amplitude_g"])
 

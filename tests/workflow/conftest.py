@@ -14,13 +14,13 @@ SPECIMENS = (
     "name,width_cm,height_cm,mass_g\nT1,12.4,37.2,2172\nT2,12.4,49.6,2790\nP,18.4,20.8,2300\n"
 )
 
-CONFIGURATIONS = "name,tower,pedestal\nT1,T1,\nT2,T2,\nP&T1,T1,P\nP&T2,T2,P\n"
+CONFIGURATIONS = "name,object,pedestal\nT1,T1,\nT2,T2,\nP&T1,T1,P\nP&T2,T2,P\n"
 
 
 def study_content() -> dict:
     return {
         "study": "tiny",
-        "title": "Two towers under made-up motions",
+        "title": "Two objects under made-up motions",
         "seed": 3,
         "motions": {"catalogue": "motions.csv"},
         "bodies": {"specimens": "specimens.csv", "configurations": "configurations.csv"},

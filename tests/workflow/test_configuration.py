@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.studies.loading import load_study
+from rockfrag.study.loading import load_study
 
 from .conftest import SPECIMENS, study_content, write_study
 
@@ -96,9 +96,9 @@ def test_a_wrong_cell_is_named_with_line_and_column(
 
 
 def test_an_unknown_block_in_a_configuration_is_named(study_folder: Path):
-    (study_folder / "configurations.csv").write_text("name,tower,pedestal\nX,T7,\n")
+    (study_folder / "configurations.csv").write_text("name,object,pedestal\nX,T7,\n")
     message = refusal(study_folder, study_content())
-    assert "line 2, column tower" in message
+    assert "line 2, column object" in message
     assert "T7" in message
 
 
@@ -152,7 +152,7 @@ ANYTHING = st.recursive(
 def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(
     study_folder: Path, key: str, value: object
 ):
-    from rockfrag.studies.loading import checked_study
+    from rockfrag.study.loading import checked_study
 
     content = {**study_content(), key: value}
     try:

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from rockfrag.errors import InputError
-from rockfrag.studies.loading import load_any
+from rockfrag.study.loading import load_any
 
 from .test_run import ROOT, snakemake
 

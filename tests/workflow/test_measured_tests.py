@@ -6,11 +6,11 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.rocking.bodies import Block
-from rockfrag.shaketable.measured import read_measured
-from rockfrag.studies.measured_tests import MEASURED_TABLES, measured_tables
+from rockfrag.shaketable.laboratory_table import read_measured
+from rockfrag.stages.measured_tests import MEASURED_TABLES, measured_tables
 
 HEADER = (
-    "test,tower,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
+    "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
 )
 BLOCKS = {
     "T1": Block(0.124, 0.372, 2.172),
@@ -44,14 +44,14 @@ def test_one_test_is_set_beside_the_simulation_and_carries_no_statement(tmp_path
 def test_a_full_synthetic_table_is_judged_as_measured(tmp_path: Path):
     rng = np.random.default_rng(2)
     rows = []
-    for tower, level in (("T1", 0.5), ("T2", 0.4), ("T3", 0.3)):
+    for object_name, level in (("T1", 0.5), ("T2", 0.4), ("T3", 0.3)):
         for event in "ABCD":
             for floor in ("GF", "F3", "F5"):
                 for side in ("P", "NP"):
                     a = level * np.exp(0.1 * rng.normal())
                     name = f"synthetic {len(rows)}"
                     rows.append(
-                        f"{name},{tower},{side},{event},{floor},{a:.4f},{1.05 * a:.4f},none,statue,1,"
+                        f"{name},{object_name},{side},{event},{floor},{a:.4f},{1.05 * a:.4f},none,statue,1,"
                     )
     found = tables(tmp_path, rows)
     assert set(found["measured/claims"]["basis"]) == {"measured"}

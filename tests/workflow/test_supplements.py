@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.studies.loading import load_study
+from rockfrag.study.loading import load_study
 
 from .conftest import study_content, write_study
 from .test_run import ROOT, snakemake
@@ -29,7 +29,7 @@ EXPLANATION = {
 }
 
 SYNTHETIC_TESTS = (
-    "test,tower,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\n"
+    "test,object,pedestal,event,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\n"
     "synthetic 1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic\n"
     "synthetic 2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic\n"
     "synthetic 3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic\n"

@@ -6,11 +6,11 @@ import pytest
 
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Stack
-from rockfrag.studies.amplitudes import Amplitudes
-from rockfrag.studies.configurations import Configuration
-from rockfrag.studies.digest import STAGES, source_digest
-from rockfrag.studies.pedestal import pedestal_tables
-from rockfrag.studies.sweep import sweep
+from rockfrag.stages.digest import STAGES, source_digest
+from rockfrag.stages.pedestal import pedestal_tables
+from rockfrag.stages.sweep import sweep
+from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.configurations import Configuration
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
@@ -61,7 +61,7 @@ def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
         for side, amplitude in (("NP", 0.5), ("P", 0.5 + 0.01 * number)):
             rows.append(
                 {
-                    "tower": "T1",
+                    "object": "T1",
                     "pedestal": side,
                     "event": event,
                     "floor": "GF",

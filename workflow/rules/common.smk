@@ -5,18 +5,18 @@ import shlex
 import sys
 
 from rockfrag.errors import InputError
-from rockfrag.report.gallery import figure_names
-from rockfrag.studies.loading import checked_study
+from rockfrag.report.figure_list import figure_names
+from rockfrag.study.loading import checked_study
 from rockfrag.report.supplements import (
     sensitivity_figures,
     supplement_figures,
     supplement_tables,
 )
-from rockfrag.studies.digest import source_digest
-from rockfrag.studies.measured_tests import MEASURED_TABLES
-from rockfrag.studies.pedestal import PEDESTAL_TABLES
-from rockfrag.studies.study import PRINTED_TABLES
-from rockfrag.studies.study import RECORDS_FOLDER as RECORDS
+from rockfrag.stages.digest import source_digest
+from rockfrag.stages.measured_tests import MEASURED_TABLES
+from rockfrag.stages.pedestal import PEDESTAL_TABLES
+from rockfrag.study.study import PRINTED_TABLES
+from rockfrag.study.study import RECORDS_FOLDER as RECORDS
 
 # Snakemake puts the interpreter's path into shell commands as it is, so spaces in it must be quoted
 sys.executable = shlex.quote(sys.executable)

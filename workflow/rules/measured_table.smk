@@ -7,8 +7,8 @@ import sys
 from rockfrag.errors import InputError
 from rockfrag.report.measured_page import TABLES as MEASURED_TABLES
 from rockfrag.report.measured_page import figure_names as measured_figure_names
-from rockfrag.studies.digest import source_digest
-from rockfrag.studies.measured_table import measured_table_from
+from rockfrag.stages.digest import source_digest
+from rockfrag.study.measured_table import measured_table_from
 
 sys.executable = shlex.quote(sys.executable)
 

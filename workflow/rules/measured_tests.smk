@@ -15,7 +15,7 @@ rule study_measured_tests:
     params:
         study=STUDY_FILE,
         settings=settings("measured_tests", "fragility", "seed", "bodies"),
-        code=source_digest("claims"),
+        code=source_digest("thesis"),
     script:
         "../scripts/study_measured_tests.py"
 

@@ -71,7 +71,7 @@ rule test_theory:
     params:
         study=STUDY_FILE,
         settings=settings("bodies", "seed"),
-        code=source_digest("claims"),
+        code=source_digest("thesis"),
     script:
         "../scripts/test_theory.py"
 
@@ -91,6 +91,6 @@ rule test_claims:
     params:
         study=STUDY_FILE,
         settings=settings("bodies", "seed"),
-        code=source_digest("claims"),
+        code=source_digest("thesis"),
     script:
         "../scripts/test_claims.py"

@@ -3,11 +3,11 @@
 import pandas as pd
 
 from rockfrag.files import write_table
-from rockfrag.shaketable.sweeps import tests_from_sweep
-from rockfrag.studies.log import logged
-from rockfrag.studies.protocol import protocol_of
-from rockfrag.studies.shaker import limited_tests
-from rockfrag.studies.study import study_from
+from rockfrag.shaketable.readings import tests_from_sweep
+from rockfrag.stages.log import logged
+from rockfrag.stages.protocol import protocol_of
+from rockfrag.stages.shaker import limited_tests
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "protocol") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -5,9 +5,9 @@ import pandas as pd
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
 from rockfrag.report.findings import READING
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
-from rockfrag.studies.validity import validity_table
+from rockfrag.stages.log import logged
+from rockfrag.stages.validity import validity_table
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "validity") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -7,9 +7,9 @@ import pandas as pd
 from rockfrag.files import write_table
 from rockfrag.fragility.sweeps import record_set_hash
 from rockfrag.records.motion import read_motion_set
-from rockfrag.studies.log import logged
-from rockfrag.studies.measure_choice import export_curves, ground_curves, measure_choice
-from rockfrag.studies.study import study_from
+from rockfrag.stages.log import logged
+from rockfrag.stages.measure_choice import export_curves, ground_curves, measure_choice
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "measures") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -2,7 +2,9 @@
 
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
-from rockfrag.report.thesis_tables import (
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
+from rockfrag.thesis.printed_tables import (
     TABLE_3_1,
     TABLE_3_3,
     TABLE_4_1,
@@ -11,8 +13,6 @@ from rockfrag.report.thesis_tables import (
     ground_measures,
     uplift_table,
 )
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
 
 with logged(snakemake.log[0], "tables") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -5,10 +5,10 @@ from pathlib import Path
 import pandas as pd
 
 from rockfrag.records.motion import read_motion_set
-from rockfrag.report.gallery import Results, plates
-from rockfrag.report.style import save_figure
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.report.figure_list import Results, plates
+from rockfrag.report.figures.style import save_figure
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "figures") as log:
     study = study_from(snakemake.config, snakemake.params.study)

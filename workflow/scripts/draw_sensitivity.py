@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from rockfrag.report.building_figures import floor_order, floor_statements
+from rockfrag.report.figures.building import floor_order, floor_statements
+from rockfrag.report.figures.style import save_figure
 from rockfrag.report.findings import READING
-from rockfrag.report.style import save_figure
 from rockfrag.report.supplements import ORDER_FIGURE, STATEMENTS_FIGURE, sensitivity_figures
-from rockfrag.shaketable.sweeps import READINGS
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.shaketable.readings import READINGS
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "sensitivity figures") as log:
     study = study_from(snakemake.config, snakemake.params.study)

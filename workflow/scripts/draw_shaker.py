@@ -1,11 +1,11 @@
-"""Draw the shaker's limits beside what lone towers need."""
+"""Draw the shaker's limits beside what lone objects need."""
 
 import pandas as pd
 
-from rockfrag.report.building_figures import shaker_limits
+from rockfrag.report.figures.building import shaker_limits
+from rockfrag.report.figures.style import save_figure
 from rockfrag.report.findings import READING
-from rockfrag.report.style import save_figure
-from rockfrag.studies.log import logged
+from rockfrag.stages.log import logged
 
 with logged(snakemake.log[0], "shaker figure") as log:
     limits = pd.read_parquet(snakemake.input.limits)

@@ -3,9 +3,9 @@
 import pandas as pd
 
 from rockfrag.files import write_table
-from rockfrag.studies.log import logged
-from rockfrag.studies.pedestal import pedestal_tables
-from rockfrag.studies.study import study_from
+from rockfrag.stages.log import logged
+from rockfrag.stages.pedestal import pedestal_tables
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "pedestal") as log:
     study = study_from(snakemake.config, snakemake.params.study)

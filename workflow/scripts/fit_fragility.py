@@ -6,8 +6,8 @@ from rockfrag.files import write_table
 from rockfrag.fragility.empirical import survival_windows
 from rockfrag.fragility.sweeps import fragility_table, record_set_hash, with_measures
 from rockfrag.records.motion import read_motion_set
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "fragility") as log:
     study = study_from(snakemake.config, snakemake.params.study)

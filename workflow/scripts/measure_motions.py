@@ -3,7 +3,7 @@
 from rockfrag.files import write_table
 from rockfrag.motions.measures import measure_motions
 from rockfrag.records.motion import read_motion_set
-from rockfrag.studies.log import logged
+from rockfrag.stages.log import logged
 
 with logged(snakemake.log[0], "measure") as log:
     table = measure_motions(read_motion_set(snakemake.input[0]))

@@ -2,8 +2,8 @@
 
 from rockfrag.motions import process
 from rockfrag.records.motion import read_motion_set, write_motion_set
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "process") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from rockfrag.records.catalogue import load_motion
 from rockfrag.records.motion import write_motion_set
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import RECORDS_FOLDER, study_from
+from rockfrag.stages.log import logged
+from rockfrag.study.study import RECORDS_FOLDER, study_from
 
 with logged(snakemake.log[0], "read") as log:
     study = study_from(snakemake.config, snakemake.params.study)

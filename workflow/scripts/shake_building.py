@@ -3,8 +3,8 @@
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.settings import read_building
 from rockfrag.records.motion import read_motion_set, write_motion_set
-from rockfrag.studies.floors import on_the_ground
-from rockfrag.studies.log import logged
+from rockfrag.stages.floors import on_the_ground
+from rockfrag.stages.log import logged
 
 with logged(snakemake.log[0], "building") as log:
     ground = read_motion_set(snakemake.input.motions)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility import fit_user_table
+from rockfrag.report.figures.style import save_figure
 from rockfrag.report.measured_page import draw, result_tables, write_measured_page
-from rockfrag.report.style import save_figure
-from rockfrag.studies.log import logged
-from rockfrag.studies.measured_table import measured_table_from
+from rockfrag.stages.log import logged
+from rockfrag.study.measured_table import measured_table_from
 
 with logged(snakemake.log[0], "measured table") as log:
     study = measured_table_from(snakemake.config, snakemake.params.study)

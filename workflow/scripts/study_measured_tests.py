@@ -4,10 +4,10 @@ import pandas as pd
 
 from rockfrag.files import write_table
 from rockfrag.report.findings import READING
-from rockfrag.shaketable.measured import read_measured
-from rockfrag.studies.log import logged
-from rockfrag.studies.measured_tests import measured_tables
-from rockfrag.studies.study import study_from
+from rockfrag.shaketable.laboratory_table import read_measured
+from rockfrag.stages.log import logged
+from rockfrag.stages.measured_tests import measured_tables
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "measured tests") as log:
     study = study_from(snakemake.config, snakemake.params.study)

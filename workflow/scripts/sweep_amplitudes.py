@@ -4,9 +4,9 @@ import pandas as pd
 
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
-from rockfrag.studies.sweep import sweep
+from rockfrag.stages.log import logged
+from rockfrag.stages.sweep import sweep
+from rockfrag.study.study import study_from
 
 BATCH = 12
 

@@ -2,11 +2,11 @@
 
 import pandas as pd
 
-from rockfrag.claims import Evidence, contradictions, ledger
 from rockfrag.files import write_table
 from rockfrag.report.findings import READING
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
+from rockfrag.thesis.statements import Evidence, contradictions, ledger
 
 with logged(snakemake.log[0], "claims") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -1,11 +1,11 @@
 """Test the thesis's statements about theory on the study's bodies and ground motions."""
 
-from rockfrag.claims.ledger import ledger_table
-from rockfrag.claims.theory import theory_claims
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
+from rockfrag.thesis.statements.ledger import ledger_table
+from rockfrag.thesis.statements.theory import theory_claims
 
 with logged(snakemake.log[0], "theory") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -3,16 +3,18 @@
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
 from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants
-from rockfrag.studies.log import logged
-from rockfrag.studies.protocol import protocol_of
-from rockfrag.studies.study import study_from
-from rockfrag.studies.yaml_file import read_yaml
+from rockfrag.stages.log import logged
+from rockfrag.stages.protocol import protocol_of
+from rockfrag.study.study import study_from
+from rockfrag.study.yaml_file import read_yaml
 
 with logged(snakemake.log[0], "sensitivity") as log:
     study = study_from(snakemake.config, snakemake.params.study)
     building = snakemake.input.building
     variants = building_variants(read_yaml(building), study.more.sensitivity, building)
-    specimens = [Specimen(one.name, one.tower, one.label, one.body) for one in study.configurations]
+    specimens = [
+        Specimen(one.name, one.object, one.label, one.body) for one in study.configurations
+    ]
     tests, margins = building_sensitivity(
         variants,
         read_motion_set(snakemake.input.motions),

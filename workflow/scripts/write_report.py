@@ -5,12 +5,12 @@ from pathlib import Path
 import pandas as pd
 
 from rockfrag.files import write_text
-from rockfrag.report.contents import write_page
-from rockfrag.report.gallery import pictures
+from rockfrag.report.figure_list import pictures
 from rockfrag.report.provenance import provenance
+from rockfrag.report.study_report import write_page
 from rockfrag.report.supplements import supplement_pictures
-from rockfrag.studies.log import logged
-from rockfrag.studies.study import study_from
+from rockfrag.stages.log import logged
+from rockfrag.study.study import study_from
 
 with logged(snakemake.log[0], "report") as log:
     study = study_from(snakemake.config, snakemake.params.study)

@@ -6,6 +6,7 @@ from rockfrag.fragility.censored import (
     brackets_from_table,
     fit_brackets,
 )
+from rockfrag.fragility.discrete_hazard import StepHazard, fit_step_hazard
 from rockfrag.fragility.empirical import (
     isotonic_share,
     local_share,
@@ -25,15 +26,14 @@ from rockfrag.fragility.estimators import (
 from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.fragility.measures import MeasureChoice, area_under_curve, recommend_measure
+from rockfrag.fragility.measure_choice import MeasureChoice, area_under_curve, recommend_measure
+from rockfrag.fragility.measure_choice_sweeps import recommend_sweep_measure
 from rockfrag.fragility.nrml import write_nrml
-from rockfrag.fragility.outcomes import Outcomes, outcomes_from_table
+from rockfrag.fragility.observations import Outcomes, outcomes_from_table
 from rockfrag.fragility.seismic_hazard import OverturningRate, overturning_rate
 from rockfrag.fragility.simcenter import write_simcenter
 from rockfrag.fragility.states import ThreeStates, fit_three_states
-from rockfrag.fragility.step_hazard import StepHazard, fit_step_hazard
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
-from rockfrag.fragility.sweep_measures import recommend_sweep_measure
 from rockfrag.fragility.sweeps import (
     fragility_row,
     fragility_table,

@@ -30,7 +30,7 @@ from rockfrag.fragility.lognormal import (
     FragilityFit,
     curve_parameters,
 )
-from rockfrag.fragility.outcomes import Floats, labels, name_and_unit, numbers
+from rockfrag.fragility.observations import Floats, labels, name_and_unit, numbers
 
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, stats
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.outcomes import Floats, Outcomes, positive, verdicts
+from rockfrag.fragility.observations import Floats, Outcomes, positive, verdicts
 
 
 def wilson_interval(

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from rockfrag.fragility.batch_glm import Link
 from rockfrag.fragility.censored import bracket_interval, brackets_from_table, fit_brackets
 from rockfrag.fragility.empirical import survival_windows
 from rockfrag.fragility.intervals import Interval, IntervalMethod, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.fragility.newton import Link
-from rockfrag.fragility.outcomes import Outcomes, outcomes_from_table
+from rockfrag.fragility.observations import Outcomes, outcomes_from_table
 
 
 @dataclass(frozen=True)

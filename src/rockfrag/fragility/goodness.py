@@ -8,10 +8,10 @@ import pandas as pd
 from scipy import special
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.empirical import bin_codes, wilson_interval
 from rockfrag.fragility.lognormal import FragilityFit
-from rockfrag.fragility.newton import fit_batch
-from rockfrag.fragility.outcomes import Floats, Outcomes
+from rockfrag.fragility.observations import Floats, Outcomes
 
 
 @dataclass(frozen=True)

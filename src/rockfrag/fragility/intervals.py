@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import special, stats
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.batch_glm import Link, fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE
-from rockfrag.fragility.newton import Link, fit_batch, separated
-from rockfrag.fragility.outcomes import Floats, Outcomes
+from rockfrag.fragility.observations import Floats, Outcomes
 
 FEWEST_GROUPS = 4
 """Fewest groups for which the jackknife's coverage was validated."""

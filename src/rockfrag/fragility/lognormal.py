@@ -14,8 +14,8 @@ from statsmodels.tools.sm_exceptions import (
 )
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.newton import Link, fit_batch, separated
-from rockfrag.fragility.outcomes import Floats, Outcomes
+from rockfrag.fragility.batch_glm import Link, fit_batch, separated
+from rockfrag.fragility.observations import Floats, Outcomes
 
 LEAST_SLOPE = 1e-3
 """A curve with a smaller slope in ln IM (β above 1000) is flat: the measure foretells nothing."""

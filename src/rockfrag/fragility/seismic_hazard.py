@@ -8,7 +8,7 @@ from scipy import special
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.lognormal import FragilityFit
-from rockfrag.fragility.outcomes import Floats
+from rockfrag.fragility.observations import Floats
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
-from rockfrag.fragility.outcomes import numbers, outcomes_from_table, positive, verdicts
+from rockfrag.fragility.observations import numbers, outcomes_from_table, positive, verdicts
 
 
 @dataclass(frozen=True)

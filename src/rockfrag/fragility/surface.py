@@ -12,8 +12,8 @@ from scipy import optimize, special
 from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSeparationWarning
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.newton import fit_batch
-from rockfrag.fragility.outcomes import Floats, positive, verdicts
+from rockfrag.fragility.batch_glm import fit_batch
+from rockfrag.fragility.observations import Floats, positive, verdicts
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
-from rockfrag.fragility.outcomes import outcomes_from_table, positive
+from rockfrag.fragility.observations import outcomes_from_table, positive
 from rockfrag.records.motion import Motion
 
 _SCALE_LINEARLY = (

@@ -12,8 +12,8 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.empirical import share_in_bins
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
-from rockfrag.fragility.measures import MeasureChoice, recommend_measure
-from rockfrag.fragility.outcomes import Floats, Outcomes, outcomes_from_table, positive
+from rockfrag.fragility.measure_choice import MeasureChoice, recommend_measure
+from rockfrag.fragility.observations import Floats, Outcomes, outcomes_from_table, positive
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.fragility.sweeps import fragility_row, table_hash
 

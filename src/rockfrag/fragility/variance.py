@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.outcomes import Floats, labels, numbers, positive
+from rockfrag.fragility.observations import Floats, labels, numbers, positive
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pandas as pd
 from scipy import stats
 
-from rockfrag.pedestal.units import Array
+from rockfrag.pedestal.cluster_means import Array
 
 DRAWS = 9_999
 
@@ -74,7 +74,7 @@ def rank_probabilities(
     table
         Rows with the columns ``factor``, ``cluster``, ``value``.
     factor
-        Levels that are ranked: tower, floor or event.
+        Levels that are ranked: object, floor or event.
     cluster
         What is drawn with replacement: ``event`` or ``motion``; all rows of a drawn cluster come.
     seed

@@ -17,8 +17,8 @@ from scipy import optimize, stats
 from scipy.special import ndtr
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.pairs import KEY, SLENDERNESS, check_tests, slenderness_of
-from rockfrag.pedestal.units import ROUNDING, Array, Estimate, t_estimate
+from rockfrag.pedestal.cluster_means import ROUNDING, Array, Estimate, t_estimate
+from rockfrag.pedestal.paired_tests import KEY, SLENDERNESS, check_tests, slenderness_of
 
 NODES = 40
 FAR = 9.0
@@ -66,14 +66,14 @@ def fit_censored(
 ) -> CensoredFit:
     """Estimate the pedestal's effect from exact, interval- and right-censored tests.
 
-    Fixed effects are the tower (as ln of its slenderness), the floor, and the pedestal.  The
+    Fixed effects are the object (as ln of its slenderness), the floor, and the pedestal.  The
     interval of the effect comes from leaving out one event at a time, since events were sampled, not
     tests.
 
     Parameters
     ----------
     tests
-        See `rockfrag.pedestal.pairs.check_tests`; lower_g and upper_g of a step protocol are used.
+        See `rockfrag.pedestal.paired_tests.check_tests`; lower_g and upper_g of a step protocol are used.
 
     Raises
     ------

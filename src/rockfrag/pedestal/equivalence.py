@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from rockfrag.pedestal.units import Estimate
+from rockfrag.pedestal.cluster_means import Estimate
 
 MARGIN = 0.10
 """Largest change of the overturning amplitude that counts as none, ±10 % [-]."""

@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.pedestal.cluster_means import mean_effect
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
-from rockfrag.pedestal.units import mean_effect
 
-COLUMNS = ("factor", "level", "reference", "tower", "event", "floor", "ratio")
+COLUMNS = ("factor", "level", "reference", "object", "event", "floor", "ratio")
 UPPER_FLOORS = ("F3", "F5")
 
 
@@ -22,8 +22,8 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     table
-        One row per factor, level, tower, event, floor (and replicate): factor, level (text or
-        number), reference (True for the rows of the reference level, one level per factor), tower,
+        One row per factor, level, object, event, floor (and replicate): factor, level (text or
+        number), reference (True for the rows of the reference level, one level per factor), object,
         event, floor, ratio (a_P over a_NP, NaN where censored), and optionally motion and replicate
         (such as a number of a perturbed copy).  Replicates are averaged in the logarithm.
 
@@ -69,7 +69,7 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
         raise InputError(
             f"Explanation study: factor {name} has {len(marked)} reference levels; mark exactly one."
         )
-    key = ["tower", "event", "floor", "motion"]
+    key = ["object", "event", "floor", "motion"]
     cells = rows.groupby(["level", *key])["d"].mean().reset_index()
     reference = cells[cells["level"] == marked[0]].set_index(key)["d"]
     levels = sorted(cells["level"].unique(), key=lambda level: (level != marked[0], level))

@@ -17,7 +17,7 @@ import statsmodels.formula.api as smf
 from scipy import optimize, stats
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.units import CONFIDENCE, Array
+from rockfrag.pedestal.cluster_means import CONFIDENCE, Array
 
 VARIANCES = {"event": "0+C(event)", "motion": "0+C(event):C(floor)"}
 OPTIMISER = "bfgs"
@@ -272,7 +272,7 @@ def _coefficients(
 def long_rows(pairs: pd.DataFrame) -> pd.DataFrame:
     """Turn pairs into the rows of `AMPLITUDE`: two tests a pair, with ln_a and ped (0 or 1)."""
     sides = [
-        pairs[["tower", "event", "floor", "motion", "s_c"]].assign(
+        pairs[["object", "event", "floor", "motion", "s_c"]].assign(
             ped=value, ln_a=np.log(pairs[column])
         )
         for value, column in ((0, "a_np_g"), (1, "a_p_g"))

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from rockfrag.pedestal.units import Array
+from rockfrag.pedestal.cluster_means import Array
 
 
 def holm(p: npt.ArrayLike) -> Array:

@@ -4,7 +4,7 @@ import math
 
 from scipy import optimize, stats
 
-from rockfrag.pedestal.units import Estimate
+from rockfrag.pedestal.cluster_means import Estimate
 
 POWER = 0.80
 LEVEL = 0.05

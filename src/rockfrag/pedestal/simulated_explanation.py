@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.measurement import ratio_bias
+from rockfrag.pedestal.mass_bias import ratio_bias
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Block, Body, Stack
@@ -32,12 +32,12 @@ LARGEST_RESTITUTION = 0.995
 
 @dataclass(frozen=True)
 class Case:
-    """A tower with and without its pedestal at one level of one factor.
+    """An object with and without its pedestal at one level of one factor.
 
     Attributes
     ----------
-    factor, level, tower, replicate
-        What differs, how much, of which tower, and the number of the perturbed copy.
+    factor, level, object, replicate
+        What differs, how much, of which object, and the number of the perturbed copy.
     lone, stack
         Bodies without and with the pedestal.
     lone_restitution, stack_restitution
@@ -46,7 +46,7 @@ class Case:
 
     factor: str
     level: float
-    tower: str
+    object: str
     lone: Block
     stack: Stack
     lone_restitution: Restitution = None
@@ -54,15 +54,17 @@ class Case:
     replicate: int = 0
 
 
-def factor_cases(tower: str, stack: Stack, levels: Mapping[str, Sequence[float]]) -> list[Case]:
+def factor_cases(
+    object_name: str, stack: Stack, levels: Mapping[str, Sequence[float]]
+) -> list[Case]:
     """One case per level of each mechanical factor.
 
     Parameters
     ----------
-    tower
+    object
         Its name.
     stack
-        The ideal stack; its statue is the lone tower.
+        The ideal stack; its statue is the lone object.
     levels
         Any of ``statue_restitution``, ``interface_restitution``, ``ground_restitution`` (factors on
         the restitution that conserves momentum), ``pedestal_lean_deg``, ``statue_offset_mm``,
@@ -86,9 +88,9 @@ def factor_cases(tower: str, stack: Stack, levels: Mapping[str, Sequence[float]]
     for factor, build in make.items():
         for level in levels.get(factor, ()):
             try:
-                cases.append(Case(factor, level, tower, *build(stack, level)))
+                cases.append(Case(factor, level, object_name, *build(stack, level)))
             except InputError as error:
-                raise InputError(f"explanation.{factor}, {level:g}, {tower}: {error}") from error
+                raise InputError(f"explanation.{factor}, {level:g}, {object_name}: {error}") from error
     return cases
 
 
@@ -141,7 +143,7 @@ def _pedestal_width(stack: Stack, centimetres: float) -> Bodies:
 
 
 def perturbed_cases(
-    tower: str,
+    object_name: str,
     stack: Stack,
     tolerance: float,
     restitution: float,
@@ -174,7 +176,7 @@ def perturbed_cases(
         both = (values[1], values[2])
         level = 100 * tolerance
         copy = Stack(pedestal, statue, stack.offset)
-        cases.append(Case("tolerances", level, tower, lone, copy, values[0], both, number))
+        cases.append(Case("tolerances", level, object_name, lone, copy, values[0], both, number))
     return cases
 
 
@@ -243,7 +245,7 @@ def case_ratios(
 
     Returns
     -------
-    One row per case and motion: ``factor``, ``level``, ``reference`` (False), ``tower``, ``event``,
+    One row per case and motion: ``factor``, ``level``, ``reference`` (False), ``object``, ``event``,
     ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``.
     """
     wanted: dict[tuple[Body, Restitution], int] = {}
@@ -276,7 +278,7 @@ def _rows(case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats) ->
             "factor": case.factor,
             "level": case.level,
             "reference": False,
-            "tower": case.tower,
+            "object": case.object,
             "event": [str(one.metadata.get("event") or one.name) for one in motions],
             "floor": [str(one.metadata.get("floor") or "GF") for one in motions],
             "motion": [one.name for one in motions],
@@ -298,30 +300,30 @@ def mass_error_rows(
     ideal
         Rows of :func:`case_ratios` for the ideal model.
     stacks
-        Stacks by tower.
+        Stacks by object.
     table_masses
         Moved masses of the table [kg].
 
     Returns
     -------
     Rows like ``ideal`` with the factors ``pedestal_not_counted`` and ``table_not_counted`` and the
-    table's mass as level; see :mod:`rockfrag.pedestal.measurement`.
+    table's mass as level; see :mod:`rockfrag.pedestal.mass_bias`.
     """
     parts = []
     for mass in table_masses:
         for factor in ("pedestal_not_counted", "table_not_counted"):
             bias = {}
-            for tower, stack in stacks.items():
+            for object_name, stack in stacks.items():
                 statue, pedestal = stack.statue.mass, stack.pedestal.mass
                 counted = (
                     (mass + statue, mass + statue)
                     if factor == "pedestal_not_counted"
                     else (statue + pedestal, statue)
                 )
-                bias[tower] = ratio_bias(
+                bias[object_name] = ratio_bias(
                     statue, pedestal, mass, counted_with=counted[0], counted_without=counted[1]
                 )
-            ratio = ideal["ratio"] * ideal["tower"].map(bias)
+            ratio = ideal["ratio"] * ideal["object"].map(bias)
             parts.append(ideal.assign(factor=factor, level=float(mass), ratio=ratio))
     return pd.concat(parts, ignore_index=True) if parts else ideal.iloc[:0]
 

@@ -9,8 +9,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
 from rockfrag.pedestal.censored import CensoredFit, fit_censored
+from rockfrag.pedestal.cluster_means import mean_effect, sampled_unit, unit_means
 from rockfrag.pedestal.equivalence import equivalence
-from rockfrag.pedestal.exact import leave_one_event_out, sign_flip_test, wilcoxon_exact
 from rockfrag.pedestal.mixed import (
     AMPLITUDE,
     EFFECT,
@@ -20,16 +20,16 @@ from rockfrag.pedestal.mixed import (
     long_rows,
 )
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
-from rockfrag.pedestal.pairs import FLOORS, SLENDERNESS, Pairs, pair_tests
+from rockfrag.pedestal.paired_tests import FLOORS, SLENDERNESS, Pairs, pair_tests
+from rockfrag.pedestal.permutation import leave_one_event_out, sign_flip_test, wilcoxon_exact
 from rockfrag.pedestal.power import detectable_ratio
-from rockfrag.pedestal.units import mean_effect, sampled_unit, unit_means
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
     "whole": (),
     "floor": ("floor",),
     "event": ("event",),
-    "tower": ("tower",),
-    "cell": ("floor", "tower"),
+    "object": ("object",),
+    "cell": ("floor", "object"),
 }
 """What is averaged together; each is a family for Holm's adjustment."""
 
@@ -47,7 +47,7 @@ class PedestalStudy:
     whole
         Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark.
     without_event
-        See `rockfrag.pedestal.exact.leave_one_event_out`.
+        See `rockfrag.pedestal.permutation.leave_one_event_out`.
     ranks
         factor, level, mean ratio, p_largest, p_smallest.
     mixed
@@ -75,7 +75,7 @@ def population(table: pd.DataFrame) -> str:
         )
     smallest = 2.0 ** (1 - events)
     return (
-        f"inference is about earthquakes of which these {events} are a sample, for the towers and "
+        f"inference is about earthquakes of which these {events} are a sample, for the objects and "
         f"floors tested; sign flips over {events} events give no p below {smallest:.3g}"
     )
 
@@ -204,13 +204,13 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
 
 
 def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
-    """Rank probabilities of d: towers over motions, floors over events, events over their motions.
+    """Rank probabilities of d: objects over motions, floors over events, events over their motions.
 
-    Floors share the event and towers the motion, so they are drawn together.
+    Floors share the event and objects the motion, so they are drawn together.
     """
     parts = []
     for factor, cluster, within in (
-        ("tower", "motion", False),
+        ("object", "motion", False),
         ("floor", "event", False),
         ("event", "motion", True),
     ):
@@ -255,11 +255,11 @@ def study_pedestal(
     Parameters
     ----------
     tests
-        See `rockfrag.pedestal.pairs.check_tests`.
+        See `rockfrag.pedestal.paired_tests.check_tests`.
     seed
         Of the bootstrap and of drawn sign flips.
     slenderness
-        Height over width by tower [-].
+        Height over width by object [-].
 
     Raises
     ------

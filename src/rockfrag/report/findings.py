@@ -78,7 +78,7 @@ def amplitudes_found(tests: pd.DataFrame) -> Finding:
         text += f" Not overturned up to the largest amplitude: {names}."
     by_pedestal = int((tests["overturned_body"] == "pedestal").sum())
     text += (
-        " It was always the tower that fell, never the pedestal."
+        " It was always the object that fell, never the pedestal."
         if by_pedestal == 0
         else f" In {by_pedestal} tests the pedestal fell."
     )
@@ -144,10 +144,10 @@ def pedestal_by_floor(effects: pd.DataFrame) -> Finding:
 
 
 def slenderness_effect(tests: pd.DataFrame) -> Finding:
-    """Say how the mean amplitude changes from tower to tower."""
+    """Say how the mean amplitude changes from object to object."""
     means = (
         tests.dropna(subset=["amplitude_g"])
-        .groupby(["pedestal", "tower"], sort=True)["amplitude_g"]
+        .groupby(["pedestal", "object"], sort=True)["amplitude_g"]
         .mean()
     )
     parts, falling = [], True
@@ -155,12 +155,12 @@ def slenderness_effect(tests: pd.DataFrame) -> Finding:
         if side in means.index.get_level_values(0):
             one = means[side]
             falling &= bool((np.diff(one.to_numpy()) < 0).all())
-            listed = ", ".join(f"{tower} {value:.3f} g" for tower, value in one.items())
+            listed = ", ".join(f"{object_name} {value:.3f} g" for object_name, value in one.items())
             parts.append(f"{words}: {listed}")
     headline = (
-        "More slender towers overturn earlier, alone and on the pedestal"
+        "More slender objects overturn earlier, alone and on the pedestal"
         if falling
-        else "The mean amplitude does not fall in the order of the towers"
+        else "The mean amplitude does not fall in the order of the objects"
     )
     return Finding(headline, f"Mean amplitude {'; '.join(parts)}.")
 
@@ -185,7 +185,7 @@ def model_allowed(validity: pd.DataFrame) -> Finding:
 
 
 def readings_differ(tests: pd.DataFrame, windows: pd.DataFrame) -> Finding:
-    """Say how often a tower survives a stronger motion than one that overturned it."""
+    """Say how often an object survives a stronger motion than one that overturned it."""
     with_windows = windows["windows"] > 0
     wide = tests.pivot_table(index="test", columns="reading", values="amplitude_g")
     text = (

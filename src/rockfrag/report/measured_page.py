@@ -10,12 +10,12 @@ from matplotlib.figure import Figure
 
 from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.estimate_columns import with_limits
+from rockfrag.report.figures.fragility import calibration_figure, measures_figure, surface_figure
+from rockfrag.report.figures.style import COLUMN_WIDTH, figure_style, new_figure
 from rockfrag.report.findings import Finding
-from rockfrag.report.fragility_figures import calibration_figure, measures_figure, surface_figure
 from rockfrag.report.page import Column, Picture, Section, render, table_html
-from rockfrag.report.style import COLUMN_WIDTH, figure_style, new_figure
-from rockfrag.studies.digest import source_digest
-from rockfrag.studies.measured_table import MeasuredTable
+from rockfrag.stages.digest import source_digest
+from rockfrag.study.measured_table import MeasuredTable
 
 TABLES = ("tests", "fragility", "recommendation", "bins", "goodness")
 """Result tables of a measured table, each as CSV and Parquet."""

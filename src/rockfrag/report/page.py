@@ -106,7 +106,7 @@ def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
     Parameters
     ----------
     comparison
-        See :func:`rockfrag.report.thesis_tables.compare`.
+        See :func:`rockfrag.thesis.printed_tables.compare`.
     caption
         What the table shows.
     """

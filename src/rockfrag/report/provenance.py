@@ -5,8 +5,8 @@ from importlib.metadata import version
 
 import pandas as pd
 
-from rockfrag.studies.digest import source_digest
-from rockfrag.studies.study import Study
+from rockfrag.stages.digest import source_digest
+from rockfrag.study.study import Study
 
 _LIBRARIES = ("numpy", "scipy", "pandas", "numba", "statsmodels", "obspy", "matplotlib")
 

@@ -17,8 +17,8 @@ from rockfrag.motions.integration import integrate
 from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
 from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.records.reading import Record, motion_of, read_record
-from rockfrag.report.style import (
+from rockfrag.records.read import Record, motion_of, read_record
+from rockfrag.report.figures.style import (
     BLUE,
     GREEN,
     ORANGE,

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from rockfrag.report.building_figures import AXIS_NAMES
-from rockfrag.report.explanation_section import explanation_section
+from rockfrag.report.figures.building import AXIS_NAMES
 from rockfrag.report.findings import READING
-from rockfrag.report.measured_section import measured_section
 from rockfrag.report.page import Column, Picture, Section, table_html
-from rockfrag.studies.measured_tests import MEASURED_TABLES
-from rockfrag.studies.shaker import LIMITED
-from rockfrag.studies.study import Study
+from rockfrag.report.sections.explanation import explanation_section
+from rockfrag.report.sections.measured import measured_section
+from rockfrag.stages.measured_tests import MEASURED_TABLES
+from rockfrag.stages.shaker import LIMITED
+from rockfrag.study.study import Study
 
 Tables = Mapping[str, pd.DataFrame]
 Pictures = Mapping[str, Picture]
@@ -44,7 +44,7 @@ def supplements(study: Study) -> list[Supplement]:
     if study.more.shaker is not None:
         caption = (
             "Peak up to which each motion fits the shaker (bars), and the peak that overturns each "
-            "lone tower without a limit."
+            "lone object without a limit."
         )
         found.append(Supplement(("shaker",), _shaker, {"shaker_limits": caption}))
     if study.more.sensitivity is not None:
@@ -55,7 +55,7 @@ def supplements(study: Study) -> list[Supplement]:
         }
         if ORDER_FIGURE in captions:
             captions[ORDER_FIGURE] = (
-                "Mean overturning amplitude of lone towers on each floor over the first period of the "
+                "Mean overturning amplitude of lone objects on each floor over the first period of the "
                 "building, by three readings; shaded where the order is the thesis’s."
             )
         names = ("building_sensitivity/tests", "building_sensitivity/margins")
@@ -135,10 +135,10 @@ def _shaker(tables: Tables, pictures: Pictures) -> Section:
     new = ended[~ended["test"].isin(free["test"])]
     names = "; ".join(f"{row['test']}: {row['remark']}" for row in new.to_dict("records"))
     words = (
-        f"With the shaker’s limits {len(new)} of {len(limited)} tests end before the tower overturns: "
+        f"With the shaker’s limits {len(new)} of {len(limited)} tests end before the object overturns: "
         f"{names}."
         if len(new)
-        else "The shaker’s limits end no test before the tower overturns."
+        else "The shaker’s limits end no test before the object overturns."
     )
     return Section(
         "shaker",

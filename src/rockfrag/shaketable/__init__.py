@@ -1,8 +1,15 @@
 """The shaking table: its limits, the protocols of its tests, and tables of measured ones."""
 
-from rockfrag.shaketable.measured import read_measured
-from rockfrag.shaketable.measurement import Accelerometer, Exact, ForceOverMass
+from rockfrag.shaketable.instruments import Accelerometer, Exact, ForceOverMass
+from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.shaketable.protocols import Outcome, Protocol, climb
+from rockfrag.shaketable.readings import (
+    always_overturning,
+    first_overturning,
+    step_protocol,
+    survival_windows,
+    tests_from_sweep,
+)
 from rockfrag.shaketable.settings import make_protocol, make_shaker, read_shaker
 from rockfrag.shaketable.shaker import (
     Demand,
@@ -13,13 +20,6 @@ from rockfrag.shaketable.shaker import (
     shaker_table,
 )
 from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps
-from rockfrag.shaketable.sweeps import (
-    always_overturning,
-    first_overturning,
-    step_protocol,
-    survival_windows,
-    tests_from_sweep,
-)
 
 __all__ = [
     "Accelerometer",

@@ -11,8 +11,8 @@ from rockfrag.motions.filtering import highpass
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Body
+from rockfrag.shaketable.readings import always_overturning, first_overturning
 from rockfrag.shaketable.shaker import FILTER_ORDER
-from rockfrag.shaketable.sweeps import always_overturning, first_overturning
 from rockfrag.units import STANDARD_GRAVITY
 
 

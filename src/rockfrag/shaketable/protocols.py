@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.measurement import Accelerometer, Exact, Measurement
+from rockfrag.shaketable.instruments import Accelerometer, Exact, Measurement
 from rockfrag.shaketable.steps import Steps
 
 Floats = NDArray[np.float64]

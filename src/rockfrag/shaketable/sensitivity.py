@@ -20,9 +20,9 @@ from rockfrag.motions.scaling import scale
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Body
-from rockfrag.shaketable.floor_order import FLOORS, floor_margins
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.sweeps import READINGS, tests_from_sweep
+from rockfrag.shaketable.readings import READINGS, tests_from_sweep
+from rockfrag.thesis.floor_order import FLOORS, floor_margins
 from rockfrag.units import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]
@@ -65,10 +65,10 @@ class Variant:
 
 @dataclass(frozen=True)
 class Specimen:
-    """One configuration on the table: names of tower and configuration, ``P`` or ``NP``, the body."""
+    """One configuration on the table: names of object and configuration, ``P`` or ``NP``, the body."""
 
     configuration: str
-    tower: str
+    object: str
     pedestal: str
     body: Body
 
@@ -143,7 +143,7 @@ def building_sensitivity(
     motions
         Ground motions, with ``event`` in their metadata.
     specimens
-        What stands on the table: each tower with and without its pedestal.
+        What stands on the table: each object with and without its pedestal.
     amplitudes_g
         Amplitudes of the sweeps [g], rising.
     protocol
@@ -218,7 +218,7 @@ class _Ground:
                 pd.DataFrame(
                     {
                         "configuration": specimen.configuration,
-                        "tower": specimen.tower,
+                        "object": specimen.object,
                         "pedestal": specimen.pedestal,
                         "motion": motion.name,
                         "event": motion.metadata.get("event") or motion.metadata["ground_motion"],

@@ -8,7 +8,7 @@ from typing import Any
 import yaml
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.measurement import Accelerometer, Exact, ForceOverMass, Measurement
+from rockfrag.shaketable.instruments import Accelerometer, Exact, ForceOverMass, Measurement
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.shaker import Shaker
 from rockfrag.shaketable.steps import ForceSteps, GeometricSteps, LinearSteps, Steps

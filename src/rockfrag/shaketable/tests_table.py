@@ -5,7 +5,7 @@ limit is reached.
 
 ===============  ==================================================================================
 test             name of the test
-tower, pedestal  tower (``T1``, …); ``P`` on the pedestal, ``NP`` without
+object, pedestal  object (``T1``, …); ``P`` on the pedestal, ``NP`` without
 event, floor     earthquake; ``GF``, ``F3``, ``F5``, …
 motion           name of the input motion
 lower_g          largest amplitude known to be survived [g], 0 if none
@@ -23,7 +23,7 @@ import pandas as pd
 
 COLUMNS = (
     "test",
-    "tower",
+    "object",
     "pedestal",
     "event",
     "floor",

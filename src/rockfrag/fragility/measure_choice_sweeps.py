@@ -1,0 +1,161 @@
+"""Choice of the intensity measure from amplitude sweeps, one body at a time.
+
+A motion scaled up and down gives many verdicts but one capacity, so the measures are compared by
+how well they foretell the bracket of the first overturning: one observation per motion.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.censored import (
+    Brackets,
+    bracket_interval,
+    bracket_likelihoods,
+    brackets_from_table,
+    fit_brackets,
+)
+from rockfrag.fragility.empirical import survival_windows
+from rockfrag.fragility.lognormal import FragilityFit
+from rockfrag.fragility.measure_choice import (
+    MeasureChoice,
+    area_under_curve,
+    dependence_p_value,
+    drawn_rows,
+    ranked,
+    recommendation,
+    share_likeliest,
+)
+from rockfrag.fragility.observations import Floats, outcomes_from_table, positive
+from rockfrag.fragility.sweeps import scale_power, with_measures
+
+
+def recommend_sweep_measure(
+    sweep: pd.DataFrame,
+    measures: pd.DataFrame,
+    columns: Sequence[str],
+    *,
+    given: Sequence[str] = (),
+    event: str | None = "event",
+    level: float = 0.90,
+    replicates: int = 200,
+    seed: int = 0,
+) -> MeasureChoice:
+    """Compare measures on the sweeps of one body and recommend one, in words.
+
+    Parameters
+    ----------
+    sweep
+        One row per motion and amplitude of one body, with ``motion``, ``amplitude_g``,
+        ``overturned``.
+    measures
+        One row per motion as recorded, with ``name`` and ``pga_g``.
+    columns
+        Measures to compare; they must grow with the amplitude.
+    given
+        Further columns of ``measures`` against which sufficiency is tested, for example
+        ``d5_95_s``, ``mean_period_s``, magnitude.
+    event
+        Column of the earthquake in ``sweep``; None resamples motions.
+    level, replicates, seed
+        Of the limits and of the bootstrap.
+
+    Returns
+    -------
+    MeasureChoice
+        Its table has also ``beta_amplitude``: β over the power with which the measure grows with
+        the amplitude, which compares Arias intensity fairly with peaks. ``pair`` is None.
+
+    Raises
+    ------
+    InputError
+        As :func:`rockfrag.fragility.sweeps.with_measures`, and if a measure does not grow with the
+        amplitude.
+    """
+    if not columns:
+        raise InputError("columns: name at least one intensity measure.")
+    powers = {column: scale_power(column) for column in columns}
+    fixed = [column for column, power in powers.items() if power == 0]
+    if fixed:
+        raise InputError(
+            f"measure {fixed[0]!r} does not grow with the amplitude, so no amplitude overturns by "
+            "it; name it among the given columns instead."
+        )
+    keys = ["motion"] if event is None else ["motion", event]
+    windows = survival_windows(sweep, by=keys)
+    amplitude = brackets_from_table(
+        windows, lower="first_lower", upper="first_upper", event=event, measure="amplitude_g"
+    )
+    known = measures.set_index("name")
+    verdicts = with_measures(sweep, measures, columns)
+    extra = {column: _of_motions(known, windows, column) for column in given}
+    pga = positive(known.loc[windows["motion"]], "pga_g", "measures")
+    rows, brackets = [], []
+    for column, power in powers.items():
+        unit_value = positive(known.loc[windows["motion"]], column, "measures") / pga**power
+        outcomes = outcomes_from_table(verdicts, column, event=event, source="sweep")
+        scaled = Brackets(
+            unit_value * amplitude.lower**power,
+            unit_value * amplitude.upper**power,
+            amplitude.motion,
+            amplitude.event,
+            outcomes.name,
+            outcomes.unit,
+        )
+        fit = fit_brackets(scaled)
+        interval = bracket_interval(scaled, level=level)
+        residual, seen = _residuals(scaled, fit)
+        row = {
+            "measure": column,
+            "im": fit.im,
+            "unit": fit.unit,
+            "theta": fit.theta,
+            "beta": fit.beta,
+            "beta_lower": interval.beta[0],
+            "beta_upper": interval.beta[1],
+            "beta_amplitude": fit.beta / power,
+            "aic": fit.aic,
+            "auc": area_under_curve(outcomes),
+        }
+        for name, values in extra.items():
+            row[f"p_{name}"] = dependence_p_value(residual, values[seen], scaled.event[seen])
+        rows.append(row)
+        brackets.append(scaled)
+    table = pd.DataFrame(rows).assign(chosen_share=_chosen_share(brackets, replicates, seed))
+    table = ranked(table, "beta_amplitude")
+    words = recommendation(table, None, given)
+    if (table["theta"].isna() | table["aic"].isna()).all():
+        return MeasureChoice("", "", table, None, words)
+    best = table.iloc[0]
+    return MeasureChoice(str(best["measure"]), str(best["im"]), table, None, words)
+
+
+def _of_motions(known: pd.DataFrame, windows: pd.DataFrame, column: str) -> Floats:
+    if column not in known:
+        raise InputError(f"measures: there is no column {column!r}; correct the name.")
+    values = known.loc[windows["motion"], column].to_numpy(dtype=np.float64)
+    if not np.isfinite(values).all():
+        motion = windows["motion"].iloc[int(np.flatnonzero(~np.isfinite(values))[0])]
+        raise InputError(
+            f"measures, column {column!r}: motion {motion!r} has no value; leave the column out."
+        )
+    return np.asarray(values)
+
+
+def _residuals(brackets: Brackets, fit: FragilityFit) -> tuple[Floats, NDArray[np.bool_]]:
+    """Residual of ln capacity of the motions that overturned above a survived step, and which."""
+    seen = np.isfinite(brackets.upper) & (brackets.lower > 0)
+    middle = 0.5 * np.log(brackets.lower[seen] * brackets.upper[seen])
+    return np.asarray(middle - np.log(fit.theta)), seen
+
+
+def _chosen_share(brackets: Sequence[Brackets], replicates: int, seed: int) -> Floats:
+    """Share of bootstrap samples of events (motions) in which each measure is the likeliest."""
+    weights = drawn_rows(brackets[0].event, replicates, seed)
+    likelihood = np.array([bracket_likelihoods(one, weights) for one in brackets])
+    # samples in which a measure puts all motions into one bracket, or none overturned, decide
+    # nothing
+    return share_likeliest(likelihood[:, np.isfinite(likelihood).all(axis=0)])

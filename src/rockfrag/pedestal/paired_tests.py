@@ -1,0 +1,268 @@
+"""Pairing of tests: the same object and motion, with (P) and without (NP) the pedestal.
+
+The unit of everything that follows is d = ln a_P - ln a_NP of one pair.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.thesis.specimens import THESIS_BODIES
+
+SLENDERNESS: Mapping[str, float] = {
+    name: body.slenderness for name, body in THESIS_BODIES.items() if name != "P"
+}
+"""Height over width of the thesis's objects [-]."""
+
+CENTRE = SLENDERNESS["T2"]
+"""Slenderness at which models are centred, that of T2 [-]."""
+
+FLOORS = ("GF", "F3", "F5")
+KEY = ["object", "event", "floor", "motion"]
+_NEEDED = ("object", "pedestal", "event", "floor", "amplitude_g")
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Tests sorted into pairs.
+
+    Parameters
+    ----------
+    table
+        One row per pair with both amplitudes known: object, event, floor, motion, slenderness, s_c,
+        a_np_g, a_p_g, d.
+    censored
+        One row per pair of which at least one test never overturned: object, event, floor, motion,
+        d_lower, d_upper (infinite where unbounded).
+    unpaired
+        One row per object and motion that was tested on one side only: object, event, floor, motion,
+        missing ("P" or "NP").
+    """
+
+    table: pd.DataFrame
+    censored: pd.DataFrame
+    unpaired: pd.DataFrame
+
+    @property
+    def balanced(self) -> bool:
+        """Whether every object met every floor of every event exactly once."""
+        return is_balanced(self.table)
+
+    def notes(self) -> list[str]:
+        """Say in words what is not among the complete pairs."""
+        notes = []
+        if len(self.censored):
+            names = ", ".join(
+                "/".join(row) for row in self.censored[["object", "motion"]].to_numpy()
+            )
+            notes.append(
+                f"{len(self.censored)} pair(s) left out of the means because a test never "
+                f"overturned ({names}); the interval likelihood uses them"
+            )
+        if len(self.unpaired):
+            names = ", ".join(
+                f"{row.object}/{row.motion} without {row.missing}"
+                for row in self.unpaired.itertuples()
+            )
+            notes.append(f"{len(self.unpaired)} test(s) have no partner and are left out ({names})")
+        return notes
+
+
+def is_balanced(table: pd.DataFrame) -> bool:
+    """Whether pairs fill the grid object x event x floor with one row per cell."""
+    counts = table.groupby(["object", "event", "floor"]).size()
+    cells = int(np.prod([table[name].nunique() for name in ("object", "event", "floor")]))
+    return len(counts) == cells and bool((counts == 1).all())
+
+
+def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
+    """Return a clean copy of a table of tests, or say which row cannot be used.
+
+    Parameters
+    ----------
+    tests
+        One row per test: object, pedestal ("P" or "NP"), event, floor, amplitude_g [g] and, where
+        present, motion, lower_g, upper_g [g], censored ("none" or "right"), repetition, reading.
+
+    Returns
+    -------
+    pandas.DataFrame
+        The same rows with motion, censored, repetition, lower_g, upper_g filled in, sorted so that
+        results do not depend on the order of rows.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, a value is not one of those allowed, an amplitude is not a positive
+        number, a test is given twice, or several readings of one sweep are mixed.
+    """
+    missing = [name for name in _NEEDED if name not in tests.columns]
+    if missing:
+        raise InputError(
+            f"Table of tests: column(s) {', '.join(missing)} missing; "
+            f"it needs {', '.join(_NEEDED)}."
+        )
+    if tests.empty:
+        raise InputError("Table of tests: it has no rows; give at least one test per line.")
+    clean = tests.reset_index(drop=True).copy()
+    for name in ("object", "pedestal", "event", "floor"):
+        bad = clean.index[clean[name].isna()]
+        if len(bad):
+            raise InputError(f"Table of tests, row {bad[0] + 1}: {name} is empty; fill it in.")
+        clean[name] = clean[name].astype(str)
+    if "motion" not in clean:
+        clean["motion"] = clean["event"] + "/" + clean["floor"]
+    if "censored" not in clean:
+        clean["censored"] = "none"
+    clean["censored"] = clean["censored"].fillna("none").astype(str)
+    if "repetition" not in clean:
+        clean["repetition"] = 1
+    for name, allowed in (("pedestal", ("P", "NP")), ("censored", ("none", "right"))):
+        bad = clean.index[~clean[name].isin(allowed)]
+        if len(bad):
+            raise InputError(
+                f"Table of tests, row {bad[0] + 1}: {name} is {clean.loc[bad[0], name]!r}; "
+                f"it must be one of {', '.join(allowed)}."
+            )
+    if "reading" in clean and len(set(clean["reading"].astype(str))) > 1:
+        raise InputError(
+            "Table of tests: several readings of the same sweep are mixed "
+            f"({', '.join(sorted(clean['reading'].astype(str).unique()))}); keep one of them."
+        )
+    _check_amplitudes(clean)
+    _check_duplicates(clean)
+    order = {floor: rank for rank, floor in enumerate(FLOORS)}
+    clean["_rank"] = clean["floor"].map(order).fillna(len(FLOORS))
+    clean = clean.sort_values(
+        ["object", "event", "_rank", "floor", "motion", "pedestal", "repetition"], kind="stable"
+    )
+    return clean.drop(columns="_rank").reset_index(drop=True)
+
+
+def _check_amplitudes(clean: pd.DataFrame) -> None:
+    """Fill bounds in and refuse amplitudes that are no positive numbers."""
+    for name in ("amplitude_g", "lower_g", "upper_g"):
+        if name not in clean:
+            clean[name] = clean["amplitude_g"]
+        numbers = pd.to_numeric(clean[name], errors="coerce")
+        bad = clean.index[numbers.isna() & clean[name].notna()]
+        if len(bad):
+            raise InputError(
+                f"Table of tests, row {bad[0] + 1}: {name} is {clean.loc[bad[0], name]!r}, "
+                "not a number of g."
+            )
+        clean[name] = numbers.astype(float)
+    right = clean["censored"] == "right"
+    clean.loc[~right, "lower_g"] = clean["lower_g"].fillna(clean["amplitude_g"])
+    clean.loc[~right, "upper_g"] = clean["upper_g"].fillna(clean["amplitude_g"])
+    known = clean["amplitude_g"].where(~right, clean["lower_g"])
+    for row in clean.index[~(np.isfinite(known) & (known > 0))]:
+        name = "lower_g" if right[row] else "amplitude_g"
+        raise InputError(
+            f"Table of tests, row {row + 1}: {name} is {known[row]}; give the positive number of g "
+            "at which the test overturned, or censored = right with the largest amplitude survived "
+            "as lower_g."
+        )
+    for row in clean.index[~right & ~(clean["lower_g"] <= clean["upper_g"])]:
+        raise InputError(
+            f"Table of tests, row {row + 1}: lower_g {clean['lower_g'].iloc[row]} exceeds "
+            f"upper_g {clean['upper_g'].iloc[row]}; exchange them."
+        )
+
+
+def _check_duplicates(clean: pd.DataFrame) -> None:
+    key = [*KEY, "pedestal", "repetition"]
+    twice = clean.index[clean.duplicated(key)]
+    if len(twice):
+        row = twice[0]
+        same = (clean[key] == clean.loc[row, key]).all(axis=1)
+        first = int(np.flatnonzero(same)[0])
+        raise InputError(
+            f"Table of tests, row {row + 1}: the same test as row {first + 1} "
+            f"({', '.join(clean.loc[row, ['object', 'motion', 'pedestal']].tolist())}); "
+            "remove one or number them in the column repetition."
+        )
+
+
+def slenderness_of(clean: pd.DataFrame, slenderness: Mapping[str, float]) -> pd.Series:
+    """Slenderness of each row's object [-].
+
+    Raises
+    ------
+    InputError
+        If an object is not in the mapping.
+    """
+    unknown = sorted(set(clean["object"]) - set(slenderness))
+    if unknown:
+        raise InputError(
+            f"Table of tests: the slenderness of object {unknown[0]} is not known; "
+            f"give it (known are {', '.join(slenderness)})."
+        )
+    return clean["object"].map(slenderness).astype(float)
+
+
+def _sides(clean: pd.DataFrame) -> pd.DataFrame:
+    """One row per object, motion and side; repetitions averaged in ln a.
+
+    The mean of repetitions of which one never overturned is only known to lie above the mean of
+    what was survived, so such a side counts as censored.
+    """
+    work = clean.assign(
+        ln_a=np.log(clean["amplitude_g"].where(clean["censored"] == "none", clean["lower_g"])),
+        right=clean["censored"] == "right",
+    )
+    grouped = work.groupby([*KEY, "pedestal"], sort=False)
+    return grouped.agg(ln_a=("ln_a", "mean"), right=("right", "any")).reset_index()
+
+
+def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNESS) -> Pairs:
+    """Pair tests with and without pedestal by object and motion.
+
+    Parameters
+    ----------
+    tests
+        See `check_tests`.
+    slenderness
+        Height over width by object [-].
+
+    Raises
+    ------
+    InputError
+        As `check_tests`; if an object's slenderness is unknown; if there is no complete pair and no
+        censored one.
+    """
+    clean = check_tests(tests)
+    slenderness_of(clean, slenderness)
+    sides = _sides(clean)
+    cells = pd.MultiIndex.from_frame(sides[KEY].drop_duplicates())
+    by_side = {side: rows.set_index(KEY).reindex(cells) for side, rows in sides.groupby("pedestal")}
+    nothing = pd.DataFrame({"ln_a": np.nan, "right": False}, index=cells)
+    with_p, without = by_side.get("P", nothing), by_side.get("NP", nothing)
+    ln_p, ln_np = with_p["ln_a"].astype(float), without["ln_a"].astype(float)
+    right_p, right_np = with_p["right"].eq(True), without["right"].eq(True)
+    both = ln_p.notna() & ln_np.notna()
+    if not both.any():
+        raise InputError(
+            "Table of tests: no object was tested under the same motion with and without pedestal; "
+            "check the columns object, motion and pedestal."
+        )
+    d = ln_p - ln_np
+    frame = pd.DataFrame({"a_np_g": np.exp(ln_np), "a_p_g": np.exp(ln_p), "d": d}).reset_index()
+    frame.insert(4, "slenderness", slenderness_of(frame, slenderness))
+    frame.insert(5, "s_c", frame["slenderness"] - CENTRE)
+    limits = frame[KEY].assign(
+        d_lower=np.where(right_np, -np.inf, d), d_upper=np.where(right_p, np.inf, d)
+    )
+    exact = (both & ~right_p & ~right_np).to_numpy()
+    partly = (both & (right_p | right_np)).to_numpy()
+    alone = frame.loc[~both.to_numpy(), KEY].assign(
+        missing=np.where(ln_p.isna(), "P", "NP")[~both.to_numpy()]
+    )
+    return Pairs(
+        table=frame[exact].reset_index(drop=True),
+        censored=limits[partly].reset_index(drop=True),
+        unpaired=alone.reset_index(drop=True),
+    )

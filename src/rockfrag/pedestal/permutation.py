@@ -1,0 +1,185 @@
+"""Exact tests that need no normal distribution: signed ranks, sign flips, leave one event out."""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+from scipy import stats
+
+from rockfrag.pedestal.cluster_means import Array, Estimate, mean_effect, unit_means
+
+LARGEST_ENUMERATION = 16
+"""Up to this many units all sign patterns are enumerated; beyond it they are drawn."""
+
+DRAWS = 100_000
+
+
+@dataclass(frozen=True)
+class SignedRanks:
+    """Wilcoxon's signed-rank test with the Hodges-Lehmann estimate.
+
+    Parameters
+    ----------
+    p
+        Exact two-sided p value [-].
+    smallest_p
+        The smallest p value that so many units can give [-].
+    estimate
+        Hodges-Lehmann estimate, median of the means of all pairs of values [-].
+    lower, upper
+        Limits from the inverted test [-]; infinite where so few units cannot give the level.
+    units
+        Number of values.
+    """
+
+    p: float
+    smallest_p: float
+    estimate: float
+    lower: float
+    upper: float
+    units: int
+
+
+def _signed_rank_counts(ranks: npt.NDArray[np.int64]) -> Array:
+    """Probability of each value of the sum of doubled ranks of positive sign, by convolution."""
+    total = int(ranks.sum())
+    distribution = np.zeros(total + 1)
+    distribution[0] = 1.0
+    for rank in ranks:
+        shifted = np.zeros_like(distribution)
+        shifted[rank:] = distribution[: total + 1 - rank]
+        distribution = 0.5 * (distribution + shifted)
+    return distribution
+
+
+def wilcoxon_exact(values: npt.ArrayLike, confidence: float = 0.95) -> SignedRanks:
+    """Exact signed-rank test of a centre at zero (Wilcoxon 1945; Hodges and Lehmann 1963).
+
+    Zeros are dropped and ties get their mean rank; the distribution is that of the ranks at hand,
+    so the p value is exact with ties too.
+
+    Parameters
+    ----------
+    values
+        One value per independent unit, here the mean of d of each motion, shape (n,).
+    """
+    x = np.asarray(values, dtype=float)
+    nonzero = x[x != 0]
+    i, j = np.triu_indices(x.size)
+    walsh = np.sort((x[i] + x[j]) / 2)
+    estimate = float(np.median(walsh))
+    if nonzero.size == 0:
+        return SignedRanks(1.0, 1.0, estimate, estimate, estimate, x.size)
+    doubled = np.rint(2 * stats.rankdata(np.abs(nonzero))).astype(np.int64)
+    distribution = _signed_rank_counts(doubled)
+    observed = int(doubled[nonzero > 0].sum())
+    cumulative = np.cumsum(distribution)
+    below = float(cumulative[observed])
+    above = float(distribution[observed:].sum())
+    # the limits invert the test without ties: W counts the Walsh averages above the centre
+    plain = np.cumsum(_signed_rank_counts(2 * np.arange(1, x.size + 1, dtype=np.int64)))[::2]
+    inside = np.flatnonzero(plain <= (1 - confidence) / 2)
+    lower, upper = -math.inf, math.inf
+    if inside.size:
+        k = int(inside[-1])
+        lower, upper = float(walsh[k]), float(walsh[walsh.size - 1 - k])
+    return SignedRanks(
+        p=min(1.0, 2 * min(below, above)),
+        smallest_p=2.0 ** (1 - nonzero.size),
+        estimate=estimate,
+        lower=lower,
+        upper=upper,
+        units=x.size,
+    )
+
+
+@dataclass(frozen=True)
+class SignFlips:
+    """Permutation test by flipping the signs of whole units.
+
+    Parameters
+    ----------
+    p
+        Two-sided p value [-].
+    smallest_p
+        The smallest p value that so many units can give, 2^(1-k) [-].
+    units
+        Number of units, k.
+    exact
+        Whether all 2^k patterns were enumerated; otherwise they were drawn from the seed.
+    """
+
+    p: float
+    smallest_p: float
+    units: int
+    exact: bool
+
+
+def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
+    """Test a mean of zero by flipping the signs of units (Fisher 1935).
+
+    Valid when each unit's distribution is symmetric about zero under the hypothesis.
+
+    Parameters
+    ----------
+    values
+        One value per unit, here the mean of d of each event, shape (k,).
+    seed
+        Of the patterns drawn when k exceeds `LARGEST_ENUMERATION`.
+    """
+    x = np.asarray(values, dtype=float)
+    k = x.size
+    exact = k <= LARGEST_ENUMERATION
+    if exact:
+        signs = np.array(list(itertools.product((-1.0, 1.0), repeat=k)))
+    else:
+        signs = np.random.default_rng(seed).choice([-1.0, 1.0], size=(DRAWS, k))
+    sums = np.abs(signs @ x)
+    observed = abs(float(x.sum()))
+    # equal sums differ by rounding only
+    reached = int(np.count_nonzero(sums >= observed - 1e-9 * float(np.abs(x).sum())))
+    p = reached / len(signs) if exact else (reached + 1) / (len(signs) + 1)
+    return SignFlips(p=p, smallest_p=2.0 ** (1 - k), units=k, exact=exact)
+
+
+def leave_one_event_out(table: pd.DataFrame) -> pd.DataFrame:
+    """Effect without each event in turn.
+
+    Returns
+    -------
+    pandas.DataFrame
+        without, ratio, lower, upper [-], p, largest_change (True for the event that moves the
+        estimate most).
+    """
+    everything = mean_effect(table)
+    rows: list[dict[str, object]] = []
+    shifts: list[float] = []
+    for event in sorted(table["event"].unique()):
+        rest = table[table["event"] != event]
+        if rest.empty:
+            continue
+        one: Estimate = mean_effect(rest)
+        shifts.append(abs(one.mean - everything.mean))
+        rows.append(
+            {
+                "without": event,
+                "ratio": one.ratio,
+                "lower": one.ratio_lower,
+                "upper": one.ratio_upper,
+                "p": one.p,
+            }
+        )
+    result = pd.DataFrame(rows, columns=["without", "ratio", "lower", "upper", "p"])
+    result["largest_change"] = [shift == max(shifts) for shift in shifts]
+    return result
+
+
+def motion_tests(table: pd.DataFrame, seed: int = 0) -> tuple[SignedRanks, SignFlips]:
+    """Signed ranks over the motions' means and sign flips over the events' means."""
+    return (
+        wilcoxon_exact(unit_means(table, "motion")),
+        sign_flip_test(unit_means(table, "event"), seed),
+    )

@@ -1,0 +1,1 @@
+"""Formats of strong-motion records, one module a format."""

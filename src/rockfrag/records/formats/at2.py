@@ -1,0 +1,226 @@
+"""PEER strong-motion records (``.AT2``), in the header dialects of the database's generations.
+
+PEER 1997 to NGA-West2: title, event and station, quantity and unit, then a line with the number of
+points and the interval (``NPTS=  4000, DT= .01000 SEC``, ``4000  .0100  NPTS, DT``, either order,
+any case), then values in rows. The header may be longer and freer in files made from PEER's.
+"""
+
+import os
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from obspy import Stream
+
+from rockfrag.errors import InputError
+from rockfrag.files import write_text
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.quantities import canonical_unit, quantity_of
+from rockfrag.records.formats.text import TextFile
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
+_COUNT = re.compile(rf"\bNPTS\s*[=:]\s*(?P<npts>{_NUMBER})", re.IGNORECASE)
+_STEP = re.compile(rf"\bDT\s*[=:]\s*(?P<dt>{_NUMBER})", re.IGNORECASE)
+_TRAILING = re.compile(
+    rf"^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b",
+    re.IGNORECASE,
+)
+_LEADING = re.compile(
+    rf"\b(?P<names>NPTS\s*[,;\s]\s*DT|DT\s*[,;\s]\s*NPTS)\W*?\s*[=:]?\s*"
+    rf"(?P<first>{_NUMBER})[\s,;]+(?P<second>{_NUMBER})",
+    re.IGNORECASE,
+)
+_WORDS_OF_UNIT = (
+    r"(?P<unit>G(?:'?S)?(?![A-Z0-9/])|G\s*/\s*10\b|M?GALS?\b|"
+    r"(?:[CM]?M|IN\w*)\s*/\s*\(?S\w*(?:\s*/\s*S\w*|\*\*2|\^2)?|[CM]?M\b|IN\b)"
+)
+_UNIT = re.compile(rf"\bUNITS?\s*(?:OF|ARE|IS)?\s*[:=]?\s*[(\[]?\s*{_WORDS_OF_UNIT}", re.IGNORECASE)
+_IN_UNIT = re.compile(
+    rf"\b(?:ACC|VEL|DIS)\w*\.?\s*(?:\bIN\s+|[,(\[]\s*){_WORDS_OF_UNIT}", re.IGNORECASE
+)
+_QUANTITY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*", re.IGNORECASE)
+_HISTORY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*\s+TIME\b", re.IGNORECASE)
+_ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
+_QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
+_MAX_HEADER = 30
+_WIDTH = 15
+_COMPONENT = re.compile(
+    r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|HNE|HNN|HNZ|FN|FP)"
+    r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
+    re.IGNORECASE,
+)
+_AZIMUTH = re.compile(r"\bazimuth\s*=\s*(?P<azimuth>\d{1,3})", re.IGNORECASE)
+
+
+def _size_line(lines: list[str]) -> int:
+    """Return the line that has the number of points and the interval, or -1."""
+    for number, line in enumerate(lines[:_MAX_HEADER]):
+        if _named_pair(line) or (_COUNT.search(line) and _STEP.search(line)):
+            return number
+    return -1
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    size = _size_line(lines)
+    if size < 0:
+        return False
+    header = "\n".join(lines[: size + 1])
+    return bool(
+        re.search(r"\bPEER\b", header, re.IGNORECASE)
+        or _quantity_and_unit(lines[: size + 1]) != ("", "")
+        or name.upper().removesuffix(".GZ").endswith((".AT2", ".VT2", ".DT2"))
+    )
+
+
+def _named_pair(line: str) -> re.Match[str] | None:
+    """Match two numbers named together, before or after them: ``4000 .01 NPTS, DT``."""
+    return _TRAILING.match(line) or _LEADING.search(line)
+
+
+def _size(line: str) -> tuple[int, float]:
+    pair = _named_pair(line)
+    if pair:
+        values = [pair["first"], pair["second"]]
+        if pair["names"].upper().startswith("DT"):
+            values.reverse()
+        npts, dt = values
+    else:
+        count, step = _COUNT.search(line), _STEP.search(line)
+        assert count is not None and step is not None
+        npts, dt = count["npts"], step["dt"]
+    points, interval = (float(word.upper().replace("D", "E")) for word in (npts, dt))
+    if points != int(points) or points < 1:
+        raise ValueError(f"NPTS must be a whole number of samples, not {npts}")
+    if not 0 < interval < np.inf:
+        raise ValueError(f"DT must be a positive number of seconds, not {dt}")
+    return int(points), interval
+
+
+def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
+    """Return the quantity and the canonical unit that the header states, each empty if it does not.
+
+    The line nearest the numbers wins: titles above may quote the history of the file.
+    """
+    quantity = unit = ""
+    for line in reversed(header):
+        found = _UNIT.search(line) or _IN_UNIT.search(line)
+        named = _QUANTITY.search(line)
+        if found and not unit:
+            unit = canonical_unit(found["unit"])
+            if named:
+                quantity = _QUANTITIES[named["quantity"].upper()]
+    if not quantity:
+        history = next((match for line in header if (match := _HISTORY.search(line))), None)
+        quantity = _QUANTITIES[history["quantity"].upper()] if history else quantity_of(unit)
+    return quantity, unit
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    header = text.lines(0, _MAX_HEADER)
+    size = _size_line(header)
+    if size < 0:
+        text.fail("no line with NPTS and DT above the data")
+    header = header[: size + 1]
+    try:
+        npts, dt = _size(header[-1])
+    except (ValueError, OverflowError) as error:
+        text.fail(str(error), size)
+    quantity, unit = _quantity_and_unit(header)
+    quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
+    if quantity not in ("", "acceleration"):
+        text.fail(
+            f"this is a {quantity} history"
+            + (f" in {unit}" if unit else "")
+            + ", not acceleration; give the record's .AT2 file"
+        )
+    facts = _facts(header[:-1])
+    station, component = facts.pop("station"), facts.pop("component")
+    return [
+        Channel(
+            npts=npts,
+            dt=dt,
+            samples=lambda: _samples(text, size + 1, npts),
+            unit=unit,
+            station=station,
+            component=component,
+            details=facts,
+        )
+    ]
+
+
+def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
+    """Return the samples: separated numbers, or PEER's columns of 15 where neighbours touch."""
+    try:
+        return text.counted(start, None, npts)
+    except InputError as error:
+        if len(text.raw(start).rstrip()) != 5 * _WIDTH:
+            raise
+        try:
+            return text.counted(start, None, npts, _WIDTH)
+        except InputError:
+            raise error from None
+
+
+def _facts(header: list[str]) -> dict[str, str]:
+    """Take event, station and component from PEER's line ``event date, station, component``."""
+    title = header[0].strip() if header else ""
+    facts = {"title": title, "event": "", "station": "", "component": "", "agency": ""}
+    rotated = next((found for line in header if (found := _AZIMUTH.search(line))), None)
+    for line in header[1:]:
+        found = _COMPONENT.search(line.strip())
+        before = line.strip()[: found.start()] if found else ""
+        parts = [part.strip() for part in before.split(",") if part.strip()]
+        if found is None or len(parts) < 2:
+            continue
+        # the event's date and hour may be parts of their own: "BORAH PEAK EQ, 10/28/83, 14:06, …"
+        first = 1
+        while first < len(parts) - 1 and re.fullmatch(r"[\d/:.\s]+", parts[first]):
+            first += 1
+        return facts | {
+            "event": ", ".join(parts[:first]).removeprefix("H1 for rotation:").strip(),
+            "station": ", ".join(parts[first:]),
+            "component": rotated["azimuth"] if rotated else found["component"],
+            "agency": (found["agency"] or "").strip(),
+        }
+    return facts | {"description": " ".join(header[1].split()) if header[1:] else ""}
+
+
+FORMAT = Format("AT2", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read
+
+
+def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
+    """Write one trace of acceleration as an AT2 file that reads back to the same samples.
+
+    The unit is ``stats.rockfrag.unit`` (``g`` where the trace does not say). Values have the digits
+    that tell every float64 from its neighbours.
+
+    Raises
+    ------
+    InputError
+        If the stream has more or fewer than one trace, or a sample is not finite.
+    """
+    if len(stream) != 1:
+        raise InputError(f"{filename}: an AT2 file holds one trace, not {len(stream)}; choose one.")
+    trace = stream[0]
+    facts = trace.stats.get("rockfrag", {})
+    samples = np.asarray(trace.data, dtype=np.float64)
+    if samples.size == 0 or not np.isfinite(samples).all():
+        raise InputError(f"{filename}: a record needs at least one sample, and all of them finite.")
+    unit = facts.get("unit") or "g"
+    place = [
+        str(facts.get("event") or "UNKNOWN EVENT"),
+        str(trace.stats.station or "UNKNOWN STATION"),
+        str(facts.get("component") or trace.stats.channel or "UNKNOWN"),
+    ]
+    lines = [
+        "PEER STRONG MOTION DATABASE RECORD. WRITTEN BY ROCKFRAG.",
+        ", ".join(" ".join(words.split()) for words in place),
+        f"ACCELERATION TIME SERIES IN UNITS OF {unit.upper()}",
+        f"NPTS= {samples.size:6d}, DT= {trace.stats.delta:.12g} SEC",
+    ]
+    values = [f"{value:24.16E}" for value in samples.tolist()]
+    lines += ["".join(values[i : i + 5]) for i in range(0, len(values), 5)]
+    write_text("\n".join(lines) + "\n", filename)

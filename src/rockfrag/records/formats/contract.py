@@ -1,0 +1,101 @@
+"""A record format as ObsPy wants it: a test for it and a reader."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from obspy import Stream, UTCDateTime
+
+from rockfrag.errors import InputError
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.text import HEAD_BYTES, Source, name_of, read_head, read_text
+
+_LONGEST = 1_000
+"""Characters of a line that are looked at to recognise a format."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """One record format.
+
+    Attributes
+    ----------
+    name
+        Name of the ObsPy plugin.
+    recognise
+        Tells from the first lines of a file (and its name) whether it is of this format.
+    parse
+        Gives the channels of a file of this format; with ``wants_dt`` also told the sampling
+        interval that the user named.
+    """
+
+    name: str
+    recognise: Callable[[list[str], str], bool]
+    parse: Callable[..., list[Channel]]
+    wants_dt: bool = False
+
+    def is_format(self, source: Source) -> bool:
+        """Tell whether a file is of this format, from a bounded piece of its head; never raises."""
+        lines = head_lines(source)
+        if not lines:
+            return False
+        try:
+            return self.recognise(lines, name_of(source))
+        except (ValueError, IndexError, KeyError, ArithmeticError):
+            return False
+
+    def channels(self, source: Source, dt: float | None = None) -> list[Channel]:
+        """Return the acceleration channels of a file.
+
+        ``dt`` [s] is for plain text that does not state its own.
+
+        Raises
+        ------
+        InputError
+            If the file is broken, or holds something other than acceleration.
+        """
+        text = read_text(source)
+        try:
+            channels = self.parse(text, dt) if self.wants_dt else self.parse(text)
+        except (ValueError, IndexError, KeyError, ArithmeticError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f"{text.name}: not a readable {self.name} file ({error}).") from error
+        if not channels:
+            raise InputError(f"{text.name}: no acceleration in this {self.name} file.")
+        return channels
+
+    def read(
+        self,
+        source: Source,
+        headonly: bool = False,
+        starttime: UTCDateTime | None = None,
+        endtime: UTCDateTime | None = None,
+        nearest_sample: bool = True,
+        dt: float | None = None,
+        **_: Any,
+    ) -> Stream:
+        """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file.
+
+        Raises
+        ------
+        InputError
+            If the file is broken, or holds something other than acceleration.
+        """
+        stream = Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
+        if not headonly and (starttime is not None or endtime is not None):
+            stream.trim(starttime, endtime, nearest_sample=nearest_sample)
+        return stream
+
+
+def head_lines(source: Source) -> list[str]:
+    """Return the first whole lines of a text file; none for a binary file or one it cannot read."""
+    head = read_head(source)
+    if not head or b"\x00" in head:
+        return []
+    text = head.decode("utf-8", errors="replace").removeprefix("\ufeff")
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    if len(head) >= HEAD_BYTES:
+        # the last line of a head is cut anywhere
+        lines = lines[:-1]
+    return [line[:_LONGEST].rstrip() for line in lines]

@@ -1,0 +1,181 @@
+"""CSMIP/CDMG volumes 1 and 2 (California Strong Motion Instrumentation Program).
+
+Each channel has a text header, 100 integers (16I5), 50 or 100 reals (8F10) and its values, and ends
+with a line ``/&``. Volume 2 has acceleration, velocity and displacement below lines such as ``1138
+POINTS OF ACCEL DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)``; volume 1 has one line such
+as ``13200 Accelerogram points at 200 pts/sec in units of g .  Format: (8f9.6)``, and before 1985
+pairs of time and acceleration in g/10.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from obspy import UTCDateTime
+
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.fortran_sections import (
+    QUANTITIES,
+    Section,
+    field_width,
+    positive_step,
+    refuse_others,
+)
+from rockfrag.records.formats.quantities import canonical_unit
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.time_value_pairs import is_pairs_header, read_pairs
+from rockfrag.records.formats.timestamps import american_time
+
+_FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.IGNORECASE)
+_HEAD = re.compile(rb"^[ \t]*(?:UN)?CORRECTED[ \t]+ACC?ELERO(?:GRAM|GRAPH)\b", re.I | re.M)
+_VOLUME_2 = re.compile(
+    r"^\s*(?P<count>\d+)\s+points?\s+of\s+(?P<quantity>accel|veloc|displ)\w*\s+data\s+equally\s+"
+    r"spaced\s+at\s+(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*sec(?P<rest>.*)$",
+    re.IGNORECASE,
+)
+_VOLUME_1 = re.compile(
+    r"^\s*(?P<count>\d+)\s+(?P<quantity>accel|veloc|displ)\w*\s+points?\s+at\s+"
+    r"(?P<rate>[\d.]+)\s*(?:pts|points|samples)\s*/\s*sec(?P<rest>.*)$",
+    re.IGNORECASE,
+)
+_VALUES = re.compile(
+    rb"^[ \t]*\d+[ \t]+(?:points?[ \t]+of[ \t]+(?:accel|veloc|displ)\w*[ \t]+data[ \t]+equally"
+    rb"|(?:accel|veloc|displ)\w*[ \t]+points?[ \t]+at\s)",
+    re.I | re.M,
+)
+_END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M)
+_UNIT = re.compile(
+    r"(?:units?\s*(?::|of|are|=)|\bin)\s*(?P<unit>[CM]*M\s*/\s*S\w*(?:\s*/\s*S\w*)?\d?|CM|G\s*/\s*10|"
+    r"1/10\s*G|G)(?![A-Z])",
+    re.IGNORECASE,
+)
+_DEFAULT_UNITS = {"acceleration": "cm/s2", "velocity": "cm/s", "displacement": "cm"}
+_MAX_HEADER = 60
+
+
+@dataclass(frozen=True)
+class _Words:
+    """What the text header of a channel says."""
+
+    network: str
+    station: str
+    station_name: str
+    component: str
+    event: str
+    start_time: UTCDateTime | None
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    header = lines[:_MAX_HEADER]
+    return (
+        bool(_FIRST.match(lines[0]))
+        and any(re.match(r"\s*station\s+(?:no|id)\b", line, re.IGNORECASE) for line in header)
+        and any(re.match(r"\s*chan\s*\d+\s*:", line, re.IGNORECASE) for line in header)
+        and not any("RENADIC" in line.upper() for line in header)
+    )
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    channels: list[Channel] = []
+    quantities: list[str] = []
+    for first, stop in _channel_lines(text):
+        words = _words(text, first, stop)
+        at_values = text.find(_VALUES, first, stop)
+        if at_values < 0 and is_pairs_header(text, first):
+            pairs = read_pairs(text, first, stop)
+            quantities.append("acceleration")
+            channels.append(_channel(words, pairs.channel()))
+        elif at_values < 0:
+            text.fail("no line with the number of samples below; the file is cut short", first)
+        while at_values >= 0:
+            section, dt, unit = _section(text, at_values, stop)
+            quantities.append(section.quantity)
+            samples = section.samples(text)
+            if section.quantity == "acceleration":
+                plain = Channel(section.count, dt, samples.copy, unit)
+                channels.append(_channel(words, plain))
+            at_values = text.find(_VALUES, section.stop, stop)
+    refuse_others(text, quantities)
+    return channels
+
+
+def _channel_lines(text: TextFile) -> Iterator[tuple[int, int]]:
+    """Yield the first line of each channel and the line after its last."""
+    end = re.compile(rb"^[ \t]*/&", re.M)
+    first = text.find(_HEAD)
+    while first >= 0:
+        stop = text.until(end, first)
+        yield first, stop
+        first = text.find(_HEAD, stop + 1) if stop < len(text) else -1
+
+
+def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]:
+    words = text.line(line)
+    match = _VOLUME_2.match(words) or _VOLUME_1.match(words)
+    if match is None:
+        text.fail("number of samples, interval or rate cannot be read here", line)
+    stated = match.groupdict()
+    quantity = QUANTITIES[match["quantity"].upper()]
+    dt = float(stated["dt"]) if stated.get("dt") else 1 / float(stated["rate"])
+    unit = _UNIT.search(match["rest"])
+    width = field_width(match["rest"])
+    if width is None:
+        width = 10 if _VOLUME_2.match(words) else 9
+    section = Section(
+        quantity, int(match["count"]), line + 1, min(stop, text.until(_END, line + 1)), width
+    )
+    if unit:
+        stated_unit = canonical_unit(unit["unit"]).replace("1/10g", "g/10")
+    else:
+        stated_unit = _DEFAULT_UNITS[quantity] if _VOLUME_2.match(words) else ""
+    return section, positive_step(text, dt, line), stated_unit
+
+
+def _words(text: TextFile, first: int, stop: int) -> _Words:
+    """Read the text header: the line below the station's number has its name."""
+    lines = text.lines(first, min(stop, first + _MAX_HEADER))
+    network = station = name = component = ""
+    start = None
+    for number, line in enumerate(lines):
+        found = re.match(r"\s*station\s+(?:no|id)\.?\s*(\w+)?(?=\s|$)", line, re.IGNORECASE)
+        if found and not station and not name:
+            station = found[1] or ""
+            name = re.split(r"\s{3,}", lines[number + 1].strip())[0] if lines[number + 1 :] else ""
+        found = re.match(
+            r"\s*chan\s*\d+\s*:\s*(.*?)\s*(?:\(|location|from\s*$|$)", line, re.IGNORECASE
+        )
+        if found and not component:
+            component = re.sub(r"\s*deg\w*\.?$", "", found[1], flags=re.IGNORECASE)
+        found = re.match(r"\s*\d+\.(\w\w)\.\w+\.[\w-]{2}\.", line)
+        if found and not network:
+            network = found[1]
+        found = re.search(r"(?:start|trigger)\s+time\s*:(.*)$", line, re.IGNORECASE)
+        if found and start is None:
+            start = american_time(found[1])
+    return _Words(network, station, name, component, _event(lines), start)
+
+
+def _event(lines: list[str]) -> str:
+    """Return the earthquake's name and the time of it or of the record, from lines 2 to 4."""
+    words = [re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]]
+    words = [word for word in words if word and not word.upper().startswith("UNCORRECTED")]
+    return ", ".join(words[:2])
+
+
+def _channel(words: _Words, values: Channel) -> Channel:
+    return Channel(
+        npts=values.npts,
+        dt=values.dt,
+        samples=values.samples,
+        unit=values.unit,
+        start_time=words.start_time,
+        network=words.network,
+        station=words.station,
+        component=words.component,
+        details={"station_name": words.station_name, "event": words.event, **values.details},
+    )
+
+
+FORMAT = Format("CSMIP", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

@@ -1,0 +1,105 @@
+"""Central Weather Administration of Taiwan (CWA, formerly CWB): ``#Key: value`` lines, four columns.
+
+The columns are time and, in the order of ``#DataSequence``, up, north and east in gal; times are
+local (UTC+8) where the key says ``GMT+08``.
+"""
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+from obspy import UTCDateTime
+
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.fortran_sections import field_width, positive_step
+from rockfrag.records.formats.quantities import canonical_unit
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.timestamps import clock_time, step_of_times
+
+_KEY = re.compile(r"^\s*#\s*(?P<key>[^:(]+?)\s*(?:\((?P<note>[^)]*)\))?\s*:\s*(?P<value>.*)$")
+_TIME = re.compile(
+    r"(?P<y>\d{4})/(?P<m>\d\d?)/(?P<d>\d\d?)[- T]+(?P<h>\d\d?):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)"
+)
+_MAX_HEADER = 60
+_ORDER = ("U", "N", "E")
+
+
+def _header(lines: list[str]) -> tuple[dict[str, tuple[str, str]], int]:
+    """Return value and note of each key, and the number of lines above the samples."""
+    facts: dict[str, tuple[str, str]] = {}
+    for number, line in enumerate(lines[:_MAX_HEADER]):
+        if line.strip() and not line.lstrip().startswith("#"):
+            return facts, number
+        match = _KEY.match(line)
+        if match:
+            facts.setdefault(match["key"].lower(), (match["value"].strip(), match["note"] or ""))
+    return facts, min(len(lines), _MAX_HEADER)
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    if not re.match(r"^\s*#\s*Earthquake Information", lines[0], re.IGNORECASE):
+        return False
+    facts, _ = _header(lines)
+    return "stationcode" in facts and "samplerate" in facts
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    facts, start = _header(text.lines(0, _MAX_HEADER))
+
+    def value(key: str) -> str:
+        return facts.get(key, ("", ""))[0]
+
+    unit = canonical_unit(value("amplitudeunit").split(".")[0])
+    order = re.findall(r"\b([UNEZ])\s*\(", value("datasequence")) or list(_ORDER)
+    table = _table(text, start, value("data"), len(order) + 1)
+    try:
+        rate = float(value("samplerate"))
+    except ValueError:
+        text.fail("#SampleRate is not a number")
+    dt = positive_step(text, 1 / rate if rate > 0 else 0.0, 0)
+    if table.shape[0] > 1:
+        measured = step_of_times(table[:, 0], text, start)
+        if abs(measured - dt) > 1e-6:
+            text.fail(f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start)
+    return [
+        Channel(
+            npts=table.shape[0],
+            dt=dt,
+            samples=table[:, column].copy,
+            unit=unit,
+            start_time=_time(facts.get("starttime")),
+            network="TW",
+            station=value("stationcode"),
+            component=direction,
+            details={
+                "station_name": value("stationname"),
+                "event": f"{value('origin time')} M {value('magnitude')}".strip(" M"),
+                "instrument": value("instrumentkind"),
+            },
+        )
+        for column, direction in enumerate(order, start=1)
+    ]
+
+
+def _table(text: TextFile, start: int, words: str, columns: int) -> NDArray[np.float64]:
+    width = field_width(f"({words})") or 10
+    values = text.numbers(start, None, width)
+    if values.size == 0 or values.size % columns:
+        text.fail(
+            f"{values.size} values do not fill rows of {columns}; the file is cut short", start
+        )
+    return values.reshape(-1, columns)
+
+
+def _time(stated: tuple[str, str] | None) -> UTCDateTime | None:
+    match = _TIME.search(stated[0]) if stated else None
+    if match is None or stated is None:
+        return None
+    start = clock_time(match["y"], match["m"], match["d"], match["h"], match["min"], match["s"])
+    zone = re.search(r"(?:GMT|UTC)\s*([+-]\d+)", stated[1])
+    return None if start is None else start - 3600.0 * (int(zone[1]) if zone else 0)
+
+
+FORMAT = Format("CWA", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

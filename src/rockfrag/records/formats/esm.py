@@ -1,0 +1,134 @@
+"""ESM/ITACA ASCII (header format DYNA): lines ``KEY: value``, then one sample a line.
+
+The Turkish networks write the same header with other notations of date and time.
+"""
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+from obspy import UTCDateTime
+
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.fortran_sections import positive_step
+from rockfrag.records.formats.quantities import canonical_unit, quantity_of
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.timestamps import clock_time
+
+_KEY = re.compile(r"^(?P<key>[A-Z][A-Z0-9_/^ ]*?)\s*:(?P<value>.*)$")
+_NEEDED = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS")
+_MAX_HEADER = 120
+_SAMPLE_TIME = "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"
+_TIMES = (
+    re.compile(
+        r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<s>\d\d(?:\.\d*)?)$"
+    ),
+    re.compile(
+        r"^(?P<d>\d{1,2})[/.-](?P<m>\d{1,2})[/.-](?P<y>\d{4})[ T_]+"
+        r"(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
+    ),
+    re.compile(
+        r"^(?P<y>\d{4})[/.-](?P<m>\d{1,2})[/.-](?P<d>\d{1,2})[ T_]+"
+        r"(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
+    ),
+)
+
+
+def _header(lines: list[str]) -> tuple[dict[str, str], int]:
+    """Return the keys and the number of lines above the samples."""
+    facts: dict[str, str] = {}
+    for number, line in enumerate(lines):
+        match = _KEY.match(line)
+        if match is None:
+            return facts, number
+        facts[match["key"]] = match["value"].strip()
+    return facts, len(lines)
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    facts, _ = _header(lines[:_MAX_HEADER])
+    return all(key in facts for key in _NEEDED) and "STATION_CODE" in facts
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    facts, start = _header(text.lines(0, _MAX_HEADER))
+    for key in _NEEDED:
+        if not facts.get(key):
+            text.fail(f"the header gives no {key}")
+    unit = canonical_unit(facts["UNITS"])
+    kind = facts.get("DATA_TYPE", "").lower() or quantity_of(unit)
+    if re.search("vel|dis|spectr", kind) or quantity_of(unit) != "acceleration":
+        text.fail(
+            f"this file holds {kind or 'no acceleration'} in {facts['UNITS']}, not acceleration"
+        )
+    try:
+        count, dt = int(facts["NDATA"]), float(facts["SAMPLING_INTERVAL_S"])
+    except ValueError:
+        text.fail("NDATA or SAMPLING_INTERVAL_S is not a number")
+    if count < 1:
+        text.fail(f"the header promises {count} samples")
+
+    def samples() -> NDArray[np.float64]:
+        return text.counted(start, None, count)
+
+    return [
+        Channel(
+            npts=count,
+            dt=positive_step(text, dt, 0),
+            samples=samples,
+            unit=unit,
+            start_time=_time(facts.get(_SAMPLE_TIME, "")),
+            network=facts.get("NETWORK", ""),
+            station=facts.get("STATION_CODE", ""),
+            location=_location(facts.get("LOCATION", "")),
+            code=facts.get("STREAM", ""),
+            component=facts.get("STREAM") or facts.get("COMPONENT", ""),
+            details=_details(facts),
+        )
+    ]
+
+
+def _time(words: str) -> UTCDateTime | None:
+    for pattern in _TIMES:
+        match = pattern.match(words)
+        if match:
+            return clock_time(
+                match["y"], match["m"], match["d"], match["h"], match["min"], match["s"]
+            )
+    return None
+
+
+def _location(words: str) -> str:
+    """Return the SEED location; the Turkish variant has a place name here."""
+    return words if len(words) <= 2 else ""
+
+
+def _details(facts: dict[str, str]) -> dict[str, object]:
+    event = " ".join(
+        facts[key]
+        for key in ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS")
+        if facts.get(key)
+    )
+    details: dict[str, object] = {
+        "event": event,
+        "station_name": facts.get("STATION_NAME", ""),
+        "processing": facts.get("PROCESSING", ""),
+        "licence": facts.get("DATA_LICENSE", ""),
+    }
+    numbers = {
+        "magnitude": facts.get("MAGNITUDE_W") or facts.get("MAGNITUDE_L"),
+        "distance_km": facts.get("EPICENTRAL_DISTANCE_KM"),
+        "latitude": facts.get("STATION_LATITUDE_DEGREE"),
+        "longitude": facts.get("STATION_LONGITUDE_DEGREE"),
+    }
+    for key, words in numbers.items():
+        try:
+            details[key] = float(words) if words else None
+        except ValueError:
+            details[key] = None
+    return details
+
+
+FORMAT = Format("ESM", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

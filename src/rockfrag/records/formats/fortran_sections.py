@@ -1,0 +1,94 @@
+"""Pieces that Fortran-written formats share: headers in columns and sections of values."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.records.formats.text import TextFile
+
+QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
+"""First letters of a quantity's name in a header, and the quantity."""
+
+_FORTRAN = re.compile(
+    r"\(\s*\d*\s*\(?\s*(?:\d+P\s*,?\s*\d*)?\s*[FEGID]S?\s*(?P<width>\d+)", re.IGNORECASE
+)
+
+
+@dataclass(frozen=True)
+class Section:
+    """One run of values in a file: ``count`` samples of a quantity below the line ``line``."""
+
+    quantity: str
+    count: int
+    start: int
+    stop: int
+    width: int | None
+
+    def samples(self, text: TextFile) -> NDArray[np.float64]:
+        """Return the values, shape (count,), checked against the count of the header."""
+        return text.counted(self.start, self.stop, self.count, self.width)
+
+
+def integers(text: TextFile, start: int, stop: int, width: int, count: int) -> list[int]:
+    """Return the whole numbers of header lines ``start`` up to ``stop`` (columns of ``width``).
+
+    Raises
+    ------
+    InputError
+        If fewer than ``count`` are there, or one is not a whole number.
+    """
+    values = text.numbers(start, stop, width)
+    if values.size < count:
+        text.fail(f"{count} whole numbers are expected in this header, not {values.size}", start)
+    if (values != np.round(values)).any():
+        text.fail("the header has a fraction where whole numbers are expected", start)
+    return [int(value) for value in values]
+
+
+def reals(text: TextFile, start: int, stop: int, width: int, count: int) -> list[float]:
+    """Return the numbers of header lines ``start`` up to ``stop`` (columns of ``width``).
+
+    Raises
+    ------
+    InputError
+        If fewer than ``count`` are there.
+    """
+    values = text.numbers(start, stop, width)
+    if values.size < count:
+        text.fail(f"{count} numbers are expected in this header, not {values.size}", start)
+    return [float(value) for value in values]
+
+
+def field_width(words: str) -> int | None:
+    """Return the field width that a Fortran format such as ``(8F10.5)`` gives, or None."""
+    match = _FORTRAN.search(words)
+    return int(match["width"]) if match and 1 <= int(match["width"]) <= 40 else None
+
+
+def refuse_others(text: TextFile, quantities: Iterable[str]) -> None:
+    """Refuse a file that has values, but of acceleration none.
+
+    Raises
+    ------
+    InputError
+        Naming what it holds instead.
+    """
+    held = sorted(set(quantities))
+    if held and "acceleration" not in held:
+        text.fail(f"this file holds {' and '.join(held)}, not acceleration")
+
+
+def positive_step(text: TextFile, dt: float, line: int) -> float:
+    """Return a sampling interval [s] that can be one.
+
+    Raises
+    ------
+    InputError
+        If it is not a positive number of seconds.
+    """
+    if not (np.isfinite(dt) and 0 < dt < 3600):
+        text.fail(f"the header gives {dt:g} s as sampling interval", line)
+    return dt

@@ -1,0 +1,62 @@
+"""RENADIC (University of Chile) volume 1: pairs of time and acceleration, three channels.
+
+The header has no station; the files are named by the station and the record's number, which is the
+second line.
+"""
+
+import re
+from pathlib import PurePath
+
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.time_value_pairs import read_pairs
+from rockfrag.records.formats.timestamps import american_time
+
+_FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.IGNORECASE)
+_HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)
+_END = re.compile(rb"^[ \t]*/&", re.M)
+_HEADER = 13
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    header = "\n".join(lines[:_HEADER]).upper()
+    return bool(_FIRST.match(lines[0])) and "RENADIC" in header
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    channels = []
+    first = text.find(_HEAD)
+    while first >= 0:
+        stop = text.until(_END, first)
+        pairs = read_pairs(text, first, stop)
+        channels.append(_channel(text, first, pairs.channel()))
+        first = text.find(_HEAD, stop + 1) if stop < len(text) else -1
+    return channels
+
+
+def _channel(text: TextFile, first: int, values: Channel) -> Channel:
+    lines = text.lines(first, first + _HEADER)
+    header = "\n".join(lines)
+    component = re.search(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header, re.M | re.I)
+    trigger = re.search(r"TRIGGER\s+TIME\s*:(.*)$", header, re.M | re.I)
+    number = lines[1].strip()
+    stem = PurePath(text.name).name.split(".")[0]
+    return Channel(
+        npts=values.npts,
+        dt=values.dt,
+        samples=values.samples,
+        unit=values.unit,
+        start_time=american_time(trigger[1]) if trigger else None,
+        station=stem.removesuffix(number) if number and stem.endswith(number) else "",
+        component=component[1] if component else "",
+        details={
+            "event": re.split(r"\s*\(ORIGIN", " ".join(lines[2].split()))[0],
+            "record": number,
+            **values.details,
+        },
+    )
+
+
+FORMAT = Format("RENADIC", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

@@ -1,0 +1,83 @@
+"""SeismoSoft accelerograms: four lines of description, ``Time[s] Accel[g]``, then two columns."""
+
+import re
+
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.quantities import canonical_unit, quantity_of
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.timestamps import step_of_times
+
+_COLUMNS = re.compile(
+    r"^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"
+    r"(?P<quantity>accel\w*|veloc\w*|displ\w*)\.?\s*[\[(](?P<unit>[^\])]+)[\])]\s*$",
+    re.IGNORECASE,
+)
+_MAX_HEADER = 40
+
+
+def _find_columns(lines: list[str]) -> int:
+    for number, line in enumerate(lines[:_MAX_HEADER]):
+        if _COLUMNS.match(line):
+            return number
+    return -1
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    # the titles of the columns alone are a plain two-column file
+    columns = _find_columns(lines)
+    return columns > 0 and any(
+        re.match(r"\s*(recording station|source|frequency range)\s*:", line, re.IGNORECASE)
+        for line in lines[:columns]
+    )
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    columns = _find_columns(text.lines(0, _MAX_HEADER))
+    if columns < 0:
+        text.fail("no line 'Time[s] Accel[g]' above the data")
+    titles = _COLUMNS.match(text.line(columns))
+    assert titles is not None
+    unit = canonical_unit(titles["unit"])
+    if quantity_of(unit) != "acceleration":
+        text.fail(
+            f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration", columns
+        )
+    header = {"event": text.line(0)}
+    for line in text.lines(0, columns):
+        key, colon, value = line.partition(":")
+        if colon:
+            header[key.strip().lower()] = value.strip()
+    table = text.table(columns + 1, 2)
+    station, component = _station_and_component(header.get("recording station", ""))
+    return [
+        Channel(
+            npts=table.shape[0],
+            dt=step_of_times(table[:, 0], text, columns + 1),
+            samples=lambda: table[:, 1].copy(),
+            unit=unit,
+            station=station,
+            component=component,
+            details={
+                "event": header["event"].rstrip("."),
+                "source": header.get("source", ""),
+                "frequency_range": header.get("frequency range", ""),
+                "recording_station": header.get("recording station", ""),
+            },
+        )
+    ]
+
+
+def _station_and_component(words: str) -> tuple[str, str]:
+    """Split ``TOLMEZZO(000)`` or ``090 CDMG STATION 47381``."""
+    bracketed = re.match(r"^(?P<station>[^()]+)\((?P<component>[^()]+)\)\s*$", words)
+    if bracketed:
+        return bracketed["station"].strip(), bracketed["component"].strip()
+    leading = re.match(r"^(?P<component>\d{3})\s+(?P<station>\D.*)$", words)
+    if leading:
+        return leading["station"].strip(), leading["component"]
+    return words, ""
+
+
+FORMAT = Format("SEISMOSOFT", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

@@ -1,0 +1,137 @@
+"""USGS SMC files (National Strong-Motion Program): one component, corrected or uncorrected.
+
+Eleven lines of text, 48 integers (8I10), 50 reals (5E15.7), as many lines of comment as the 16th
+integer says (each begins with ``|``), then as many samples as the 17th integer says, in cm/s². The
+fields are 8(1PE10.4E1), which need no blank between them, or 5E14.7 where the 47th integer is 8.
+Where the header has no sampling rate, the values are pairs of time [s] and acceleration.
+"""
+
+import re
+
+import numpy as np
+from obspy import UTCDateTime
+
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.fortran_sections import Section, integers, positive_step, reals
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.time_value_pairs import pairs_of
+
+_TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
+_FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES
+_KINDS = re.compile(
+    r"^\s*(?:[0-5]\s+)?(?P<kind>UNKNOWN|UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|"
+    r"DISPLACEMENT|RESPONSE SPECTRA|FOURIER)\b|^\s*\*",
+    re.IGNORECASE,
+)
+_FIRST_FIELD = re.compile(rb"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
+_HIGH_PRECISION = 8
+
+# places in the headers, counted from zero
+_MISSING, _YEAR, _VERTICAL, _HORIZONTAL, _COMMENTS, _COUNT, _PRECISION = 0, 1, 12, 13, 15, 16, 46
+_MISSING_REAL, _RATE, _LATITUDE, _LONGITUDE = 0, 1, 10, 11
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    if len(lines) < _FIRST_DATA or not _KINDS.match(lines[0]):
+        return False
+    whole = lines[_TEXT_LINES : _TEXT_LINES + _INTEGER_LINES]
+    fields = [line[i : i + 10] for line in whole for i in range(0, 80, 10)]
+    return all(re.fullmatch(r"\s*-?\d+\s*", field) for field in fields)
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    words = text.lines(0, _TEXT_LINES)
+    kind = _KINDS.match(words[0])
+    if kind is None or len(text) <= _FIRST_DATA:
+        text.fail("the SMC header has 27 lines; the file is cut short")
+    held = (kind["kind"] or "").upper()
+    if held and "ACCELEROGRAM" not in held and held != "UNKNOWN":
+        text.fail(f"this file holds {held.lower()}, not acceleration", 0)
+    at_reals = _TEXT_LINES + _INTEGER_LINES
+    whole = integers(text, _TEXT_LINES, at_reals, 10, 48)
+    numbers = reals(text, at_reals, _FIRST_DATA, 15, 50)
+    count, comments = whole[_COUNT], whole[_COMMENTS]
+    if count < 1 or not 0 <= comments < len(text):
+        text.fail(f"the header promises {count} samples and {comments} comments", _TEXT_LINES + 1)
+    start = _FIRST_DATA + comments
+    section = Section("acceleration", count, start, len(text), _width(text, start, whole))
+    rate = numbers[_RATE]
+    if rate == numbers[_MISSING_REAL]:
+        # without a rate the values are pairs of time and acceleration
+        values = pairs_of(section.samples(text), "cm/s2", text, start).channel()
+    else:
+        step = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
+        dt = positive_step(text, step, at_reals)
+        values = Channel(count, dt, lambda: section.samples(text), "cm/s2")
+    station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
+    missing = whole[_MISSING]
+    return [
+        Channel(
+            npts=values.npts,
+            dt=values.dt,
+            samples=values.samples,
+            unit=values.unit,
+            start_time=_start(whole),
+            station=_station_code(words[2], whole, missing),
+            component=_component(whole, station[2].strip() if station else ""),
+            details={
+                "station_name": station[1] if station else "",
+                "event": " ".join(words[3].split()),
+                "corrected": held.startswith("CORRECTED"),
+                **_place(numbers),
+                **values.details,
+            },
+        )
+    ]
+
+
+def _width(text: TextFile, start: int, whole: list[int]) -> int:
+    """Return the field width: the first number ends where the first field does."""
+    first = _FIRST_FIELD.match(text.raw(start))
+    stated = 14 if whole[_PRECISION] == _HIGH_PRECISION else 10
+    return first.end() if first and first.end() > stated else stated
+
+
+def _start(whole: list[int]) -> UTCDateTime | None:
+    year, day, hour, minute, second, millisecond = whole[_YEAR : _YEAR + 6]
+    missing = whole[_MISSING]
+    if missing in (year, day, hour, minute) or year <= 0:
+        return None
+    try:
+        start = UTCDateTime(year=year, julday=day, hour=hour, minute=minute)
+    except (ValueError, OverflowError):
+        return None
+    seconds = 0 if second == missing else second
+    return start + seconds + (0 if millisecond == missing else millisecond / 1000)
+
+
+def _station_code(line: str, whole: list[int], missing: int) -> str:
+    """Return the code of the third line: four characters, a fifth names the channel."""
+    code = line[:4].strip().strip("\x00*")
+    number = whole[29]
+    return code or ("" if number == missing else str(number))
+
+
+def _component(whole: list[int], words: str) -> str:
+    """Return the azimuth of the header, ``UP`` or ``DOWN`` of a vertical one, else its words."""
+    missing = whole[_MISSING]
+    vertical, horizontal = whole[_VERTICAL], whole[_HORIZONTAL]
+    if vertical in (0, 180) and vertical != missing:
+        return "UP" if vertical == 0 else "DOWN"
+    if horizontal != missing and 0 <= horizontal <= 360:
+        return f"{horizontal:03d}"
+    return words
+
+
+def _place(numbers: list[float]) -> dict[str, float]:
+    place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
+    return {
+        key: value
+        for key, value in place.items()
+        if value != numbers[_MISSING_REAL] and np.isfinite(value)
+    }
+
+
+FORMAT = Format("SMC", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

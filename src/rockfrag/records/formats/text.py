@@ -1,0 +1,351 @@
+"""A text file held in memory, within bounds, that can say where in it something is wrong."""
+
+import gzip
+import os
+import re
+import zlib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import IO, Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.records.formats.number_fields import NumberError, parse_columns, parse_separated
+
+HEAD_BYTES = 16_384
+"""How much of a file is looked at to recognise its format."""
+
+MAX_BYTES = 256 * 2**20
+"""No record is larger: three components of a day at 200 Hz are a third of it."""
+
+MAX_LINE = 8_192
+"""No line of a known format is longer, comments and citations included."""
+
+_BLOCK = 2**20
+
+Source = str | os.PathLike[str] | IO[bytes]
+
+
+def name_of(source: Source) -> str:
+    """Return the name to use for a file in messages."""
+    if isinstance(source, (str, os.PathLike)):
+        return str(source)
+    name = getattr(source, "name", None)
+    return name if isinstance(name, str) else "<file object>"
+
+
+def read_head(source: Source, size: int = HEAD_BYTES) -> bytes:
+    """Return the first bytes of a file, or nothing if it cannot be read; never raises.
+
+    A file object is left where it was.
+    """
+    try:
+        if isinstance(source, (str, os.PathLike)):
+            if not os.path.isfile(source):
+                return b""
+            unpacking = str(source).lower().endswith(".gz")
+            with gzip.open(source, "rb") if unpacking else open(source, "rb") as file:
+                return bytes(file.read(size))
+        position = source.tell()
+        try:
+            head = source.read(size)
+        finally:
+            source.seek(position)
+        return head if isinstance(head, bytes) else b""
+    except (OSError, EOFError, ValueError, AttributeError, TypeError, zlib.error):
+        return b""
+
+
+@dataclass(frozen=True)
+class TextFile:
+    r"""The bytes of a text file with Unix line ends, read through numbered lines.
+
+    Attributes
+    ----------
+    name
+        Name for messages.
+    data
+        All bytes, UTF-8, ``\n`` line ends.
+    """
+
+    name: str
+    data: bytes
+
+    @cached_property
+    def _ends(self) -> NDArray[np.int64]:
+        """Offset of the end of each line."""
+        ends = np.flatnonzero(np.frombuffer(self.data, dtype=np.uint8) == ord("\n"))
+        if not self.data.endswith(b"\n"):
+            ends = np.append(ends, len(self.data))
+        return ends
+
+    def __len__(self) -> int:
+        """Return the number of lines."""
+        return int(self._ends.size)
+
+    def offset(self, line: int) -> int:
+        """Return where a line (from zero) starts."""
+        if line <= 0:
+            return 0
+        return min(int(self._ends[min(line, len(self)) - 1]) + 1, len(self.data))
+
+    def raw(self, line: int) -> bytes:
+        """Return the bytes of one line (from zero); empty past the end."""
+        if line >= len(self):
+            return b""
+        return self.data[self.offset(line) : int(self._ends[line])]
+
+    def line(self, line: int) -> str:
+        """Return one line (from zero) without blanks at its end; empty past the end."""
+        try:
+            return self.raw(line).decode("utf-8").rstrip()
+        except UnicodeDecodeError as error:
+            self.fail(
+                f"byte {error.object[error.start]:#04x} is not UTF-8 text; save the file as UTF-8",
+                line,
+            )
+
+    def lines(self, start: int, stop: int) -> list[str]:
+        """Return lines ``start`` up to ``stop`` (from zero), as many as there are."""
+        return [self.line(i) for i in range(start, min(stop, len(self)))]
+
+    def find(self, pattern: re.Pattern[bytes], start: int = 0, stop: int | None = None) -> int:
+        """Return the first line from ``start`` (before ``stop``) that has the pattern, or -1."""
+        end = len(self.data) if stop is None else self.offset(stop)
+        match = pattern.search(self.data, self.offset(start), end)
+        if match is None:
+            return -1
+        return int(np.searchsorted(self._ends, match.start(), side="left"))
+
+    def until(self, pattern: re.Pattern[bytes], start: int) -> int:
+        """Return the first line from ``start`` that has the pattern, or the number of lines."""
+        found = self.find(pattern, start)
+        return len(self) if found < 0 else found
+
+    def fail(self, what: str, line: int | None = None) -> NoReturn:
+        """Raise an :class:`InputError` about a line (from zero) or the whole file."""
+        where = self.name if line is None else f"{self.name}, line {line + 1}"
+        raise InputError(f"{where}: {what.rstrip('.')}.")
+
+    def numbers(
+        self, start: int, stop: int | None = None, width: int | None = None
+    ) -> NDArray[np.float64]:
+        """Parse lines ``start`` up to ``stop`` as numbers, shape (n,).
+
+        With ``width`` the lines are first taken as Fortran fields of that width; where they do not
+        fit it (blanks edited away), as separated numbers.
+
+        Raises
+        ------
+        InputError
+            Naming the line of the first thing that is not a finite number.
+        """
+        stop = len(self) if stop is None else min(stop, len(self))
+        body = self.data[self.offset(start) : self.offset(stop)]
+        if width is not None:
+            try:
+                return parse_columns(body.split(b"\n"), width)
+            except NumberError as error:
+                in_columns = error
+            try:
+                return parse_separated(body)
+            except NumberError:
+                self.fail(str(in_columns), start + in_columns.line)
+        try:
+            return parse_separated(body)
+        except NumberError as error:
+            self.fail(str(error), start + error.line)
+
+    def counted(
+        self, start: int, stop: int | None, count: int, width: int | None = None
+    ) -> NDArray[np.float64]:
+        """Parse lines as numbers and check that there are ``count`` of them, shape (count,).
+
+        Raises
+        ------
+        InputError
+            As :meth:`numbers`, and if there are more or fewer values than the header says.
+        """
+        values = self.numbers(start, stop, width)
+        if values.size != count and width is not None:
+            # columns that are not where the format puts them may still be separated numbers
+            separated = self.numbers(start, stop)
+            values = separated if separated.size == count else values
+        if values.size != count:
+            self.fail(
+                f"the header promises {count} samples but {values.size} follow; "
+                "the file is cut short, or its header is wrong",
+                start,
+            )
+        return values
+
+    def table(self, start: int, columns: int, stop: int | None = None) -> NDArray[np.float64]:
+        """Parse lines as rows of numbers, shape (rows, columns); blank lines at the end do not count.
+
+        Columns are separated by blanks, tabs, commas or semicolons; a comma beside semicolons is a
+        decimal comma.
+
+        Raises
+        ------
+        InputError
+            Naming the line of the first thing that is not a number or the first row that has
+            another number of columns.
+        """
+        stop = len(self) if stop is None else min(stop, len(self))
+        body = self.data[self.offset(start) : self.offset(stop)].rstrip()
+        if not body:
+            self.fail("no data below the header; the file is cut short", start)
+        body = body.replace(b",", b".") if b";" in body else body.replace(b",", b" ")
+        body = body.replace(b";", b" ").replace(b"\t", b" ")
+        widths = _tokens_by_line(body)
+        wrong = np.flatnonzero(widths != columns)
+        try:
+            values = parse_separated(body)
+        except NumberError as error:
+            if not wrong.size or error.line <= int(wrong[0]):
+                self.fail(str(error), start + error.line)
+            values = np.empty(0)
+        if wrong.size:
+            first = int(wrong[0])
+            self.fail(
+                f"{widths[first]} columns here, {columns} in the rows above; "
+                "the file is cut short or damaged",
+                start + first,
+            )
+        return values.reshape(-1, columns)
+
+
+def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
+    """Return the number of blank-separated tokens of each line, shape (lines,)."""
+    characters = np.frombuffer(body, dtype=np.uint8)
+    filled = characters > ord(" ")
+    starts = filled.copy()
+    starts[1:] &= ~filled[:-1]
+    ends = np.append(np.flatnonzero(characters == ord("\n")), characters.size - 1)
+    widths: NDArray[np.int64] = np.diff(np.cumsum(starts)[ends], prepend=0)
+    return widths
+
+
+def read_text(source: Source) -> TextFile:
+    """Read a text file within the bounds of size and line length.
+
+    A file whose name ends in ``.gz`` is unpacked.
+
+    Raises
+    ------
+    InputError
+        If it is not a readable file, is empty, too large or has a line too long for any record.
+    """
+    name = name_of(source)
+    data = read_bytes(source)
+    if b"\n" not in data[:HEAD_BYTES] and b"\r" in data[:HEAD_BYTES]:
+        data = data.replace(b"\r", b"\n")
+    elif b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b" ")
+    if data.startswith(b"\xef\xbb\xbf"):
+        data = data[3:]
+    text = TextFile(name, data.rstrip(b"\x1a\x00"))
+    if not text.data.strip():
+        raise InputError(f"{name}: the file is empty.")
+    return text
+
+
+def check_file(path: str | os.PathLike[str]) -> None:
+    """Check that a path leads to a file of a size that a record can have.
+
+    Raises
+    ------
+    InputError
+        If it does not, saying what it is instead.
+    """
+    file = Path(path)
+    try:
+        if file.is_symlink() and not file.exists():
+            raise InputError(f"{path}: the symbolic link leads to nothing.")
+        if file.is_dir():
+            raise InputError(f"{path}: this is a folder, not a record.")
+        if not file.is_file():
+            raise InputError(f"{path}: there is no such file.")
+        size = file.stat().st_size
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}).") from None
+    if size == 0:
+        raise InputError(f"{path}: the file is empty.")
+    if size > MAX_BYTES:
+        raise InputError(
+            f"{path}: {size / 2**20:.0f} MiB are too many for a record "
+            f"(at most {MAX_BYTES // 2**20})."
+        )
+
+
+def check_unpacked(path: Path) -> None:
+    """Check that a ``.gz`` file unpacks to no more than a record can have.
+
+    Raises
+    ------
+    InputError
+        If it does not, or is damaged.
+    """
+    if path.suffix.lower() != ".gz":
+        return
+    total = 0
+    try:
+        with gzip.open(path, "rb") as unpacked:
+            while block := unpacked.read(_BLOCK):
+                total += len(block)
+                if total > MAX_BYTES:
+                    raise InputError(f"{path}: unpacks to more than {MAX_BYTES // 2**20} MiB.")
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{path}: cannot be unpacked ({error}).") from None
+
+
+def read_bytes(source: Source) -> bytes:
+    """Read all bytes of a text file, refusing early what is too large or has too long a line.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_text`.
+    """
+    name = name_of(source)
+    if not isinstance(source, (str, os.PathLike)):
+        return _read_blocks(source, name)
+    path = Path(source)
+    check_file(path)
+    try:
+        if path.suffix.lower() == ".gz":
+            with gzip.open(path, "rb") as unpacked:
+                return _read_blocks(unpacked, name)
+        with path.open("rb") as file:
+            return _read_blocks(file, name)
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{name}: cannot be read ({error}).") from None
+
+
+def _read_blocks(file: Any, name: str) -> bytes:
+    blocks: list[bytes] = []
+    total = lines = open_line = 0
+    while block := file.read(_BLOCK):
+        if not isinstance(block, bytes):
+            raise InputError(f"{name}: open the file in binary mode.")
+        total += len(block)
+        if total > MAX_BYTES:
+            raise InputError(f"{name}: more than {MAX_BYTES // 2**20} MiB are no record.")
+        breaks = np.frombuffer(block, dtype=np.uint8)
+        ends = np.flatnonzero((breaks == ord("\n")) | (breaks == ord("\r")))
+        lengths = np.diff(ends, prepend=-1 - open_line) - 1
+        open_line = len(block) - int(ends[-1]) - 1 if ends.size else open_line + len(block)
+        too_long = np.flatnonzero(lengths > MAX_LINE)
+        if too_long.size or open_line > MAX_LINE:
+            here = int(too_long[0]) if too_long.size else int(ends.size)
+            number = lines + int(np.count_nonzero(breaks[ends[:here]] == ord("\n"))) + 1
+            raise InputError(
+                f"{name}, line {number}: the line is longer than {MAX_LINE} characters, "
+                "which no record format has."
+            )
+        lines += int(np.count_nonzero(breaks == ord("\n")))
+        blocks.append(block)
+    return b"".join(blocks)

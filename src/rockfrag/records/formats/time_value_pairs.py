@@ -1,0 +1,125 @@
+"""Volume 1 of the Caltech tradition: pairs of time and acceleration below a header in columns.
+
+Text header, 100 integers, 50 reals, then five pairs a line. The 28th integer and the line ``NO. OF
+POINTS`` have the number of pairs; ``UNITS … SEC AND G/10`` the unit. Film records were digitised at
+uneven intervals; they are interpolated linearly to 200 samples a second.
+"""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.fortran_sections import reals
+from rockfrag.records.formats.number_fields import NumberError, parse_columns, parse_separated
+from rockfrag.records.formats.quantities import canonical_unit
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.timestamps import UNEVEN_STEP, check_rising, step_of_times
+
+_POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.IGNORECASE)
+_UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.IGNORECASE)
+_NUMBERS_ONLY = re.compile(r"^[\s\d.+\-]+$")
+_FIELD = 7
+_MAX_HEADER = 30
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Times [s] and accelerations of one channel, shape (n,) each."""
+
+    times: NDArray[np.float64]
+    values: NDArray[np.float64]
+    dt: float
+    even: bool
+    unit: str
+
+    def channel(self) -> Channel:
+        """Return them as a channel of equally spaced samples."""
+        if self.even:
+            return Channel(self.values.size, self.dt, self.values.copy, self.unit)
+        count = int(np.floor((self.times[-1] - self.times[0]) / self.dt * (1 + 1e-12))) + 1
+        even = np.interp(self.times[0] + np.arange(count) * self.dt, self.times, self.values)
+        step = {
+            "step": "interpolate linearly to even intervals",
+            "dt_s": self.dt,
+            "digitised_points": int(self.times.size),
+        }
+        return Channel(count, self.dt, even.copy, self.unit, details={"steps": (step,)})
+
+
+def is_pairs_header(text: TextFile, first: int) -> bool:
+    """Tell whether a header states pairs of time and acceleration."""
+    return any(_UNITS.search(line) for line in text.lines(first, first + _MAX_HEADER))
+
+
+def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
+    """Read the channel whose header starts at line ``first`` and which ends before ``stop``.
+
+    Raises
+    ------
+    InputError
+        If the header states no count or unit, the number of pairs is another, or times do not rise.
+    """
+    header = text.lines(first, first + _MAX_HEADER)
+    count = unit = None
+    at_numbers = 0
+    for number, line in enumerate(header):
+        points, units = _POINTS.search(line), _UNITS.search(line)
+        count = int(points["count"]) if points and count is None else count
+        unit = canonical_unit(units["unit"]) if units and unit is None else unit
+        if number > 8 and line.strip() and _NUMBERS_ONLY.match(line):
+            at_numbers = first + number
+            break
+    if count is None or unit is None or not at_numbers:
+        text.fail("no number of points, unit or numeric header below this line", first)
+    # 100 integers (16I5) and 50 reals (8F10) are seven lines each
+    reals(text, at_numbers + 7, at_numbers + 14, 10, 50)
+    values = _flat(text, at_numbers + 14, stop, 2 * count)
+    return pairs_of(values, unit, text, at_numbers + 14)
+
+
+def pairs_of(values: NDArray[np.float64], unit: str, text: TextFile, line: int) -> Pairs:
+    """Split times and accelerations that alternate, and tell whether the times are even.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two pairs, or a time is before the one above it.
+    """
+    times, accelerations = values[0::2], values[1::2]
+    if times.size < 2 or times.size != accelerations.size:
+        text.fail("a record needs at least two pairs of time and acceleration", line)
+    if (np.diff(times) < 0).any():
+        # rounding may make neighbours equal, never reverse them
+        check_rising(times, text, line)
+    try:
+        return Pairs(times, accelerations, step_of_times(times, text, line), True, unit)
+    except InputError:
+        return Pairs(times, accelerations, UNEVEN_STEP, False, unit)
+
+
+def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
+    """Return ``count`` numbers of fields that may touch: 10F7.3, the first one wider by a blank."""
+    body = text.data[text.offset(start) : text.offset(stop)]
+    try:
+        values = parse_separated(body)
+    except NumberError:
+        values = np.empty(0)
+    if values.size != count:
+        lines = [line.rstrip() for line in body.split(b"\n")]
+        longest = max((len(line) for line in lines), default=0)
+        shift = longest % _FIELD
+        try:
+            values = parse_columns([line[shift:] for line in lines], _FIELD)
+        except NumberError as error:
+            text.fail(str(error), start + error.line)
+    if values.size != count:
+        text.fail(
+            f"the header promises {count // 2} points but {values.size / 2:g} follow; "
+            "the file is cut short, or its header is wrong",
+            start,
+        )
+    return values

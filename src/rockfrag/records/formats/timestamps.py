@@ -1,0 +1,157 @@
+"""Time columns and dates: what they say about the sampling interval and the first sample."""
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+from obspy import UTCDateTime
+
+from rockfrag.records.formats.text import TextFile
+
+_SHARE_OF_STEP = 1e-4
+"""Share of a step by which a time may be off beyond the rounding of its print."""
+
+_FINEST_DIGITS = 9
+
+UNEVEN_STEP = 0.005
+"""Sampling interval [s] that unevenly digitised film records are interpolated to (200 Hz)."""
+
+_HOURS_BEHIND = {
+    "UTC": 0,
+    "UT": 0,
+    "GMT": 0,
+    "Z": 0,
+    "EST": 5,
+    "EDT": 4,
+    "CST": 6,
+    "CDT": 5,
+    "MST": 7,
+    "MDT": 6,
+    "PST": 8,
+    "PDT": 7,
+    "AKST": 9,
+    "AKDT": 8,
+    "AST": 9,
+    "HST": 10,
+}
+"""Hours that the time zones of American networks are behind UTC (AST is Alaska's, as they use it)."""
+
+_LAST_YEAR_OF_2000S = 30
+
+
+def step_of_times(times: NDArray[np.float64], text: TextFile, first_line: int) -> float:
+    """Return the sampling interval [s] of a column of equally spaced times.
+
+    The times may be rounded to the digits they are printed with: each must be within half a unit
+    of its last digit (and a ten-thousandth of a step) of ``t0 + i dt``.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two times, they do not rise, they are not equally spaced, or the
+        step looks itself like a rounded one.
+    """
+    if times.size < 2:
+        text.fail("one time alone says nothing about the sampling interval", first_line)
+    check_rising(times, text, first_line)
+    resolution = resolution_of(times)
+    mean = float((times[-1] - times[0]) / (times.size - 1))
+    dt = _shortest_decimal(mean, resolution / (times.size - 1))
+    off = np.abs(times - times[0] - np.arange(times.size) * dt)
+    wrong = np.flatnonzero(off > 0.5 * resolution * (1 + 1e-9) + _SHARE_OF_STEP * dt)
+    if wrong.size:
+        bad, steps = int(wrong[0]), np.diff(times)
+        text.fail(
+            f"times are not equally spaced: {times[bad]:g} s stands where "
+            f"{times[0] + bad * dt:g} s is expected (steps of {steps.min():g} to "
+            f"{steps.max():g} s)",
+            first_line + bad,
+        )
+    rate = 1 / dt
+    if dt < 9.5 * resolution and abs(rate - round(rate)) > 1e-6 * rate:
+        text.fail(
+            f"the time column steps by {dt:g} s, which is {rate:.2f} samples a second and looks "
+            f"like a step rounded to {resolution:g} s (from anything between "
+            f"{dt - resolution / 2:g} and {dt + resolution / 2:g} s); give the true interval "
+            "with dt=",
+            first_line,
+        )
+    return dt
+
+
+def check_rising(times: NDArray[np.float64], text: TextFile, first_line: int) -> None:
+    """Check that each time is later than the one before.
+
+    Raises
+    ------
+    InputError
+        At the first that is not.
+    """
+    falls = np.flatnonzero(np.diff(times) <= 0)
+    if falls.size:
+        bad = int(falls[0])
+        text.fail(
+            f"time falls or stands still from {times[bad]:g} s to {times[bad + 1]:g} s",
+            first_line + bad + 1,
+        )
+
+
+def resolution_of(times: NDArray[np.float64]) -> float:
+    """Return the coarsest decimal unit [s] that all times are multiples of, from 1 to 1e-9."""
+    for digits in range(_FINEST_DIGITS):
+        scaled = times * 10.0**digits
+        if bool((np.abs(scaled - np.round(scaled)) <= 1e-6 + 1e-12 * np.abs(scaled)).all()):
+            return float(10.0**-digits)
+    return float(10.0**-_FINEST_DIGITS)
+
+
+def _shortest_decimal(value: float, tolerance: float) -> float:
+    """Return the decimal of fewest digits within the tolerance of a value."""
+    for digits in range(1, 16):
+        rounded = float(f"{value:.{digits}g}")
+        if abs(rounded - value) <= max(tolerance, 1e-12 * value):
+            return rounded
+    return value
+
+
+def clock_time(
+    year: str, month: str, day: str, hour: str, minute: str, second: str, zone: str = "UTC"
+) -> UTCDateTime | None:
+    """Return a date and time as UTC, or None if it is no time or its zone is not known.
+
+    Years of two digits are those of 1931 to 2030.
+    """
+    behind = _HOURS_BEHIND.get(zone.strip().upper() or "UTC")
+    if behind is None:
+        return None
+    full = int(year)
+    if full < 100:
+        full += 2000 if full <= _LAST_YEAR_OF_2000S else 1900
+    try:
+        start = UTCDateTime(full, int(month), int(day), int(hour), int(minute))
+    except (ValueError, OverflowError):
+        return None
+    return start + float(second) + 3600.0 * behind
+
+
+_AMERICAN = re.compile(
+    r"(?P<month>\d{1,2})\s*/\s*(?P<day>\d{1,2})\s*/\s*(?P<year>\d{2,4})\s*,?\s+"
+    r"(?P<hour>\d{1,2}):(?P<minute>\d{1,2}):(?P<second>\d{1,2}(?:\.\d*)?)\s*(?P<zone>[A-Z]{1,4})?"
+)
+
+
+def american_time(words: str) -> UTCDateTime | None:
+    """Return the time in words as ``05/02/83, 16:42:48.2 PDT``, or None."""
+    match = _AMERICAN.search(words)
+    if match is None:
+        return None
+    parts = match.groupdict()
+    return clock_time(
+        parts["year"],
+        parts["month"],
+        parts["day"],
+        parts["hour"],
+        parts["minute"],
+        parts["second"],
+        parts["zone"] or "",
+    )

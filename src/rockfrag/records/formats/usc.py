@@ -1,0 +1,63 @@
+"""University of Southern California volume 1: pairs of time and acceleration digitised from film.
+
+Each text line has its length in columns 73 and 74, which tells the format from its relatives.
+"""
+
+import re
+
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.contract import Format
+from rockfrag.records.formats.text import TextFile
+from rockfrag.records.formats.time_value_pairs import read_pairs
+
+_FIRST = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME\s+I\b", re.IGNORECASE)
+_HEAD = re.compile(
+    rb"^.*OF[ \t]+UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA[ \t]+OF[ \t]+VOLUME", re.I | re.M
+)
+_HEADER = 13
+_LENGTH = slice(72, 76)
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    return (
+        len(lines) > _HEADER
+        and bool(_FIRST.search(lines[0]))
+        and all(line[_LENGTH].strip().isdigit() for line in lines[3:11])
+    )
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    channels = []
+    first = text.find(_HEAD)
+    while first >= 0:
+        following = text.find(_HEAD, first + 1)
+        stop = len(text) if following < 0 else following
+        last = text.find(re.compile(rb"^[ \t]*/&", re.M), first, stop)
+        pairs = read_pairs(text, first, stop if last < 0 else last)
+        channels.append(_channel(text, first, pairs.channel()))
+        first = following
+    return channels
+
+
+def _channel(text: TextFile, first: int, values: Channel) -> Channel:
+    lines = [line[: _LENGTH.start].strip() for line in text.lines(first, first + _HEADER)]
+    station = component = name = ""
+    for number, line in enumerate(lines):
+        found = re.match(r"STATION\s+(?:\w+\s*#)?\s*(\d+)", line, re.IGNORECASE)
+        if found and not station:
+            station, name = found[1], lines[number + 1] if lines[number + 1 :] else ""
+        found = re.match(r"COMP\w*\s+(\S+)", line, re.IGNORECASE)
+        component = found[1] if found and not component else component
+    return Channel(
+        npts=values.npts,
+        dt=values.dt,
+        samples=values.samples,
+        unit=values.unit,
+        station=station,
+        component=component,
+        details={"station_name": name, "event": ", ".join(lines[1:3]), **values.details},
+    )
+
+
+FORMAT = Format("USC", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

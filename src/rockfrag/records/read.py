@@ -1,0 +1,267 @@
+"""Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, not guessed."""
+
+import hashlib
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.records.formats.channel import Channel
+from rockfrag.records.formats.known import identify
+from rockfrag.records.formats.obspy_native import RECORDER_FORMATS, obspy_channels
+from rockfrag.records.formats.quantities import ASKED_UNITS, TO_SI, asked_unit
+from rockfrag.records.formats.text import check_file
+from rockfrag.records.motion import Motion
+from rockfrag.units import STANDARD_GRAVITY
+
+_GRAVITY_SHARE = 0.05
+"""A mean within this share of g is the weight of the sensor's mass, not motion."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """The acceleration channels of one file."""
+
+    name: str
+    format: str
+    sha256: str
+    channels: tuple[Channel, ...]
+
+
+def read_record(path: str | os.PathLike[str], dt: float | None = None) -> Record:
+    """Return what is in a file, before units are settled.
+
+    Parameters
+    ----------
+    path
+        File of any known format; ``.gz`` is unpacked.
+    dt
+        Sampling interval [s] for plain text that does not state it or states it wrongly.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is of no known format, or holds no acceleration.
+    """
+    check_file(path)
+    found = identify(path)
+    if found is not None:
+        name, channels = found.name, found.channels(path, dt)
+    else:
+        name, channels = obspy_channels(Path(path))
+    if dt is not None and any(channel.dt != dt for channel in channels):
+        raise InputError(
+            f"{path}: the file states dt = {channels[0].dt:g} s, not {dt:g} s; leave dt out."
+        )
+    return Record(str(path), name, _sha256(path), tuple(channels))
+
+
+def read_motion(
+    path: str | os.PathLike[str],
+    unit: str | None = None,
+    channel: str | None = None,
+    dt: float | None = None,
+) -> Motion:
+    """Read one component of acceleration from a record of any known format.
+
+    Parameters
+    ----------
+    path
+        The file.
+    unit
+        Unit of the samples (``g``, ``m/s2``, ``cm/s2``, ``gal``, ``mm/s2``); wanted where the file
+        does not state its own, and checked against it where it does.
+    channel
+        Which channel, by name, orientation or number from 1; wanted where there are several.
+    dt
+        Sampling interval [s]; wanted where plain text does not state it.
+
+    Returns
+    -------
+    Motion
+        Acceleration in m/s² (1 g = 9.81 m/s²). The metadata has ``station``, ``start_time`` (ISO
+        8601, UTC, or None), ``event``, ``component``, ``format`` and ``unit`` (as stored); the
+        provenance has the file, its SHA-256 and every change made to its numbers.
+
+    Raises
+    ------
+    InputError
+        If the file is broken or unknown, its unit or channel is not settled, or it does not hold
+        acceleration.
+    """
+    record = read_record(path, dt)
+    return motion_of(record, choose_channel(record, channel), unit)
+
+
+def choose_channel(record: Record, wanted: str | None) -> Channel:
+    """Return the channel of a record with a name, orientation or number.
+
+    Raises
+    ------
+    InputError
+        If none or several channels answer to it, listing those there are.
+    """
+    channels = record.channels
+    if wanted is None:
+        if len(channels) == 1:
+            return channels[0]
+        raise InputError(
+            f"{record.name}: the file has several channels, {_listed(record)}; "
+            "choose one with channel=."
+        )
+    for answers in (_same_name, _same_orientation, _same_ending):
+        found = [channel for channel in channels if answers(channel, wanted)]
+        if len(found) == 1:
+            return found[0]
+        if len(found) > 1:
+            break
+    if wanted.isdigit() and not found and 1 <= int(wanted) <= len(channels):
+        return channels[int(wanted) - 1]
+    problem = "several channels answer" if found else "no channel answers"
+    raise InputError(f"{record.name}: {problem} to {wanted!r}; there are {_listed(record)}.")
+
+
+def motion_of(record: Record, channel: Channel, unit: str | None = None) -> Motion:
+    """Return one channel of a record as a motion in m/s².
+
+    Raises
+    ------
+    InputError
+        If the unit is neither stated nor given, or given otherwise than stated.
+    """
+    samples = channel.samples()
+    stored = _settled_unit(record, channel, samples, unit)
+    factor = TO_SI[stored]
+    acceleration = samples * factor
+    steps: list[dict[str, Any]] = [
+        {
+            "step": "read",
+            "file": Path(record.name).name,
+            "sha256": record.sha256,
+            "format": record.format,
+            "channel": channel.label,
+            "unit": stored,
+            "unit_stated": bool(channel.unit),
+            "factor_to_m_s2": factor,
+        },
+        *channel.details.get("steps", ()),
+    ]
+    offset = _zero_level(record.format, acceleration)
+    if offset:
+        acceleration = acceleration - offset
+        steps.append({"step": "remove zero level", "offset_m_s2": offset})
+    stem = Path(record.name).name.removesuffix(".gz").rsplit(".", 1)[0]
+    several = len(record.channels) > 1
+    return Motion(
+        acceleration=acceleration,
+        dt=channel.dt,
+        name=f"{stem} {channel.label}".strip() if several else stem,
+        metadata=_metadata(record, channel, stored),
+        provenance=tuple(steps),
+    )
+
+
+def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
+    start = channel.start_time
+    facts = {
+        "network": channel.network,
+        "station": channel.station,
+        "location": channel.location,
+        "channel": channel.label,
+        "component": channel.component or channel.code,
+        "event": channel.details.get("event", ""),
+        "start_time": None if start is None else str(start),
+        "format": record.format,
+        "unit": unit,
+    }
+    more = {k: v for k, v in channel.details.items() if k != "steps" and v not in ("", None)}
+    return {**more, **facts}
+
+
+def _settled_unit(
+    record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
+) -> str:
+    asked = None if unit is None else asked_unit(unit)
+    if channel.unit:
+        if channel.unit not in TO_SI:
+            raise InputError(
+                f"{record.name}: samples in {channel.unit!r} are no acceleration known here."
+            )
+        if asked is not None and asked != channel.unit:
+            raise InputError(
+                f"{record.name}: the file states its unit as {channel.unit}, not {unit}; "
+                "leave unit= out."
+            )
+        return channel.unit
+    if asked is not None:
+        return asked
+    peak = float(np.abs(samples - samples.mean()).max())
+    candidates = ", ".join(
+        f"{peak * TO_SI[asked_unit(name)] / STANDARD_GRAVITY:.3g} g if {name}"
+        for name in ASKED_UNITS
+    )
+    raise InputError(
+        f"{record.name}: the file does not state its unit; give unit= "
+        f"({', '.join(ASKED_UNITS)}): the peak about the mean would be {candidates}."
+    )
+
+
+def _zero_level(format_name: str, acceleration: NDArray[np.float64]) -> float:
+    """Return the constant [m/s²] that is the sensor's zero or gravity, not motion; 0 if none."""
+    mean = float(acceleration.mean())
+    if format_name in RECORDER_FORMATS:
+        return mean
+    weight = abs(abs(mean) - STANDARD_GRAVITY) < _GRAVITY_SHARE * STANDARD_GRAVITY
+    return mean if weight else 0.0
+
+
+def _listed(record: Record) -> str:
+    names = []
+    for number, channel in enumerate(record.channels, start=1):
+        both = " ".join(dict.fromkeys(word for word in (channel.code, channel.component) if word))
+        names.append(f"{number}: {both}" if both else str(number))
+    return "; ".join(names)
+
+
+def _same_name(channel: Channel, wanted: str) -> bool:
+    names = {channel.code, channel.component, f"{channel.code} {channel.component}"}
+    return _plain(wanted) in {_plain(name) for name in names if name}
+
+
+def _same_orientation(channel: Channel, wanted: str) -> bool:
+    azimuths = [_azimuth(channel.component), _azimuth(wanted)]
+    return None not in azimuths and azimuths[0] == azimuths[1]
+
+
+def _same_ending(channel: Channel, wanted: str) -> bool:
+    return len(wanted) == 1 and wanted.isalpha() and channel.code.upper().endswith(wanted.upper())
+
+
+def _plain(words: str) -> str:
+    return re.sub(r"[\s_.-]+", "", words).upper()
+
+
+def _azimuth(words: str) -> float | None:
+    """Return the azimuth [deg] of ``090``, ``90 DEG``, ``N10E``, ``EW``, …, or None."""
+    plain = _plain(words).removesuffix("DEGREES").removesuffix("DEG")
+    if re.fullmatch(r"\d+(?:\.\d*)?", plain):
+        return float(plain) % 360
+    named = {"N": 0.0, "NS": 0.0, "NORTH": 0.0, "E": 90.0, "EW": 90.0, "EAST": 90.0}
+    named |= {"S": 180.0, "SOUTH": 180.0, "W": 270.0, "WEST": 270.0, "SN": 180.0, "WE": 90.0}
+    if plain in named:
+        return named[plain]
+    quadrant = re.fullmatch(r"(?P<from>[NS])(?P<angle>\d+)(?P<to>[EW])", plain)
+    if quadrant is None:
+        return None
+    turn = float(quadrant["angle"]) * (1 if quadrant["to"] == "E" else -1)
+    return (turn if quadrant["from"] == "N" else 180 - turn) % 360
+
+
+def _sha256(path: str | os.PathLike[str]) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

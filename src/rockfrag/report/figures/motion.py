@@ -1,0 +1,37 @@
+"""Figure 3.4 of the thesis: acceleration histories of the ground motions."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rockfrag.records.motion import Motion
+from rockfrag.report.figures.style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
+from rockfrag.units import STANDARD_GRAVITY
+
+MOST_PANELS = 8
+"""More motions than this do not fit one figure; the first are drawn."""
+
+
+def acceleration_histories(motions: Sequence[Motion]) -> Figure:
+    """Draw the acceleration of each motion over time, one panel a motion, on the same scales.
+
+    The peak is marked. No more than ``MOST_PANELS`` motions are drawn.
+    """
+    shown = motions[:MOST_PANELS]
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 0.5 + 1.15 * len(shown))
+        panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        highest = 1.12 * max(motion.pga for motion in shown) / STANDARD_GRAVITY
+        for panel, motion in zip(panels, shown, strict=True):
+            values = motion.acceleration / STANDARD_GRAVITY
+            peak = int(np.abs(values).argmax())
+            panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
+            panel.plot(motion.time, values, color=BLUE, linewidth=0.5)
+            panel.plot(motion.time[peak], values[peak], "o", color=RED, markersize=3)
+            panel.set_ylim(-highest, highest)
+            panel.set_title(f"{motion.name}: peak {abs(values[peak]):.3f} g", loc="left", pad=2)
+        panels[-1].set_xlabel("Time [s]")
+        panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
+        figure.supylabel("Acceleration [g]", fontsize=8)
+        return figure

@@ -1,0 +1,74 @@
+"""One response: the ground's acceleration, the rotations, and the pattern of rocking."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rockfrag.report.figures.style import (
+    BLACK,
+    BLUE,
+    COLUMN_WIDTH,
+    OKABE_ITO,
+    ORANGE,
+    RED,
+    figure_style,
+    new_figure,
+)
+from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.response import Response
+from rockfrag.units import STANDARD_GRAVITY
+
+_PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b")
+
+
+def response_figure(response: Response, title: str) -> Figure:
+    """Draw acceleration [g], rotations over the critical angle, and the pattern over time."""
+    body = response.body
+    single = isinstance(body, Block)
+    critical = [body.alpha] if isinstance(body, Block) else [body.glued().alpha, body.statue.alpha]
+    names = ["body"] if single else ["pedestal", "statue"]
+    colours = [BLUE] if single else [ORANGE, BLUE]
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 4.2)
+        ground, rotation, pattern = figure.subplots(
+            3, 1, sharex=True, gridspec_kw={"height_ratios": [2, 3, 2]}
+        )
+        ground.plot(
+            response.time, response.ground_acceleration / STANDARD_GRAVITY, color=BLACK, lw=0.5
+        )
+        ground.set_ylabel("Ground [g]")
+        ground.set_title(title, loc="left")
+        for i, name in enumerate(names):
+            rotation.plot(
+                response.time,
+                response.theta[:, i] / critical[i],
+                color=colours[i],
+                lw=0.8,
+                label=name,
+            )
+        rotation.axhline(1, color="#999999", lw=0.6, ls="--")
+        rotation.axhline(-1, color="#999999", lw=0.6, ls="--")
+        largest = float(np.abs(response.theta / critical).max())
+        rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
+        rotation.set_ylabel("Rotation / critical [-]")
+        if not single:
+            rotation.legend(loc="upper right", ncols=2)
+        if response.overturned:
+            for panel in (ground, rotation, pattern):
+                panel.axvline(response.overturning_time, color=RED, lw=0.8)
+        _patterns(pattern, response)
+        pattern.set_xlabel("Time [s]")
+        pattern.set_xlim(0, response.time[-1])
+        return figure
+
+
+def _patterns(panel: Axes, response: Response) -> None:
+    """Mark at which times each pattern of rocking is there."""
+    labels = response.pattern
+    seen = [name for name in _PATTERNS if (labels == name).any()]
+    for row, name in enumerate(seen):
+        times = response.time[labels == name]
+        panel.plot(times, np.full(times.size, row), "|", color=OKABE_ITO[row], ms=6, mew=0.6)
+    panel.set_yticks(range(len(seen)), seen)
+    panel.set_ylim(-0.6, max(len(seen), 1) - 0.4)
+    panel.set_ylabel("Pattern")

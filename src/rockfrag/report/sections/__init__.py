@@ -1,0 +1,1 @@
+"""Sections of the report: table, figure, caption and words of one part each."""

@@ -1,0 +1,212 @@
+"""Three readings of one amplitude sweep, as tables of tests.
+
+The step protocol of the laboratory, the first overturning and the amplitude above which the
+specimen always overturns are three different figures; between the last two lie survival windows.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.shaketable.protocols import Outcome, Protocol, climb, measured
+from rockfrag.shaketable.tests_table import as_tests_table
+
+Floats = NDArray[np.float64]
+Verdicts = NDArray[np.bool_]
+
+READINGS = ("step_protocol", "first_overturning", "always_overturning")
+
+_NEEDED = (
+    "configuration",
+    "object",
+    "pedestal",
+    "motion",
+    "event",
+    "floor",
+    "amplitude_g",
+    "overturned",
+    "overturned_body",
+)
+
+
+def first_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
+    """Bounds of the least amplitude that overturns.
+
+    Parameters
+    ----------
+    amplitudes
+        Amplitudes [g], rising, shape (n,).
+    overturned
+        Whether each overturned, shape (n,).
+    """
+    _check_sweep(amplitudes, overturned, "sweep")
+    return climb(amplitudes, dict(zip(amplitudes, overturned, strict=True)).__getitem__)
+
+
+def always_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
+    """Bounds of the amplitude above which every amplitude of the sweep overturns.
+
+    Censored if the largest amplitude was survived; parameters as of :func:`first_overturning`.
+    """
+    _check_sweep(amplitudes, overturned, "sweep")
+    survived = np.flatnonzero(~overturned)
+    if survived.size == 0:
+        return Outcome(0.0, float(amplitudes[0]), "overturned at the first step")
+    last = int(survived[-1])
+    if last == amplitudes.size - 1:
+        return Outcome(float(amplitudes[-1]), math.nan, "limit reached")
+    return Outcome(float(amplitudes[last]), float(amplitudes[last + 1]))
+
+
+def survival_windows(amplitudes: Floats, overturned: Verdicts) -> list[tuple[float, float]]:
+    """First and last amplitude [g] of each run of survivals above the first overturning.
+
+    Parameters as of :func:`first_overturning`.
+    """
+    _check_sweep(amplitudes, overturned, "sweep")
+    if not overturned.any():
+        return []
+    first = int(np.argmax(overturned))
+    survived = np.concatenate([[False], ~overturned[first:], [False]])
+    starts = np.flatnonzero(~survived[:-1] & survived[1:])
+    ends = np.flatnonzero(survived[:-1] & ~survived[1:])
+    return [
+        (float(amplitudes[first + start]), float(amplitudes[first + end - 1]))
+        for start, end in zip(starts, ends, strict=True)
+    ]
+
+
+def step_protocol(
+    amplitudes: Floats,
+    overturned: Verdicts,
+    protocol: Protocol,
+    limit_g: float | None = None,
+    repetition: int = 1,
+) -> Outcome:
+    """Climb the protocol's ladder on a sweep, each rung at the nearest amplitude of the sweep.
+
+    Parameters
+    ----------
+    amplitudes, overturned
+        As of :func:`first_overturning`.
+    protocol
+        Protocol; rungs beyond the end of the sweep are not climbed.
+    limit_g
+        Limit of the shaker for this motion [g], if it has one; no rung is above it.
+    repetition
+        Number of the repetition, from 1.
+    """
+    _check_sweep(amplitudes, overturned, "sweep")
+    rungs = protocol.amplitudes(limit_g, repetition)
+    spacing = float(np.diff(amplitudes[-2:])[0]) if amplitudes.size > 1 else 0.0
+    rungs = rungs[rungs <= amplitudes[-1] + spacing / 2]
+    above = np.searchsorted(amplitudes, rungs).clip(1, amplitudes.size - 1)
+    if amplitudes.size == 1:
+        above = np.zeros(rungs.size, dtype=np.intp)
+    else:
+        above -= rungs - amplitudes[above - 1] < amplitudes[above] - rungs
+    nearest = np.unique(above)
+    limit = protocol.limit_g if limit_g is None else min(limit_g, protocol.limit_g)
+    nearest = nearest[amplitudes[nearest] <= limit * (1 + 1e-9)]
+    verdict = dict(zip(amplitudes, overturned, strict=True))
+    return climb(amplitudes[nearest], verdict.__getitem__)
+
+
+def tests_from_sweep(
+    sweep: pd.DataFrame,
+    protocol: Protocol,
+    *,
+    readings: Sequence[str] = READINGS,
+    limits_g: Mapping[str, float] | None = None,
+) -> pd.DataFrame:
+    """Read every sweep of a table as tests.
+
+    Parameters
+    ----------
+    sweep
+        Columns ``configuration``, ``object``, ``pedestal``, ``motion``, ``event``, ``floor``,
+        ``amplitude_g``, ``overturned``, ``overturned_body``; in any order of rows.
+    protocol
+        Protocol of the laboratory; its repetitions concern the step protocol, its reading and its
+        measurement concern all readings.
+    readings
+        Which of ``step_protocol``, ``first_overturning`` and ``always_overturning`` to take.
+    limits_g
+        Limit of the shaker [g] for each motion that has one. The step protocol stops there; the
+        other two readings are of the specimen and not of the laboratory, and use the whole sweep.
+
+    Returns
+    -------
+    Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
+    the sweeps first appear, then by reading and repetition.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, a reading is unknown, or an amplitude occurs twice.
+    """
+    for column in _NEEDED:
+        if column not in sweep.columns:
+            raise InputError(f"sweep: column {column!r} is missing; it needs {', '.join(_NEEDED)}.")
+    for reading in readings:
+        if reading not in READINGS:
+            raise InputError(f"protocol: reading {reading!r} is not one of {', '.join(READINGS)}.")
+    rows: list[dict[str, object]] = []
+    for _, group in sweep.groupby(["configuration", "motion"], sort=False):
+        one = group.sort_values("amplitude_g")
+        limit = None if limits_g is None else limits_g.get(str(one["motion"].iloc[0]))
+        for reading in readings:
+            rows.extend(_rows(one, protocol, reading, limit))
+    return as_tests_table(rows)
+
+
+def _rows(
+    one: pd.DataFrame, protocol: Protocol, reading: str, limit_g: float | None
+) -> list[dict[str, object]]:
+    amplitudes = one["amplitude_g"].to_numpy(dtype=np.float64)
+    overturned = one["overturned"].to_numpy(dtype=bool)
+    bodies = dict(zip(amplitudes, one["overturned_body"], strict=True))
+    head = one.iloc[0]
+    name = f"{head['configuration']} {head['motion']}"
+    _check_sweep(amplitudes, overturned, name)
+    outcomes = []
+    if reading == "step_protocol":
+        for repetition in range(1, protocol.repetitions + 1):
+            outcomes.append(step_protocol(amplitudes, overturned, protocol, limit_g, repetition))
+    elif reading == "first_overturning":
+        outcomes.append(first_overturning(amplitudes, overturned))
+    else:
+        outcomes.append(always_overturning(amplitudes, overturned))
+    rows = []
+    for repetition, true in enumerate(outcomes, start=1):
+        shown = measured(true, protocol.measurement, str(head["configuration"]))
+        rows.append(
+            {
+                "test": name,
+                **{key: head[key] for key in ("object", "pedestal", "event", "floor", "motion")},
+                "lower_g": shown.lower_g,
+                "upper_g": shown.upper_g,
+                "amplitude_g": protocol.report(shown),
+                "censored": "right" if shown.censored else "none",
+                "overturned_body": bodies.get(true.upper_g, ""),
+                "repetition": repetition,
+                "remark": shown.remark,
+                "reading": reading,
+            }
+        )
+    return rows
+
+
+def _check_sweep(amplitudes: Floats, overturned: Verdicts, name: str) -> None:
+    if amplitudes.size == 0 or amplitudes.shape != overturned.shape:
+        raise InputError(f"{name}: a sweep needs amplitudes and as many verdicts.")
+    if not (
+        np.isfinite(amplitudes).all() and amplitudes[0] > 0 and (np.diff(amplitudes) > 0).all()
+    ):
+        raise InputError(
+            f"{name}: amplitudes must be positive, rise, and occur once; check the sweep's rows."
+        )

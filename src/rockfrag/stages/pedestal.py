@@ -1,0 +1,50 @@
+"""The pedestal's effect, for each reading of the tests, as tidy tables."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.pedestal import study_pedestal
+
+PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "mixed", "notes")
+"""Tables of :func:`pedestal_tables`, each written under ``pedestal/``."""
+
+
+def pedestal_tables(
+    tests: pd.DataFrame, seed: int, slenderness: Mapping[str, float]
+) -> dict[str, pd.DataFrame]:
+    """Estimate the pedestal's effect once per reading of the tests.
+
+    Parameters
+    ----------
+    tests
+        Table of tests with the column ``reading``.
+    seed
+        Seed of the bootstrap.
+    slenderness
+        Height over width of each object [-].
+
+    Returns
+    -------
+    The tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with
+    the column ``reading`` first.
+    """
+    if tests.empty:
+        raise InputError("tests: there is no row; the pedestal's effect needs tests.")
+    parts: dict[str, list[pd.DataFrame]] = {name: [] for name in PEDESTAL_TABLES}
+    for reading, rows in tests.groupby("reading", sort=False):
+        found = study_pedestal(rows, seed=seed, slenderness=slenderness)
+        for name, table in {
+            "pairs": found.pairs.table,
+            "effects": found.effects,
+            "whole": found.whole,
+            "without_event": found.without_event,
+            "ranks": found.ranks,
+            "mixed": found.mixed,
+            "notes": pd.DataFrame({"note": list(found.notes)}),
+        }.items():
+            labelled = table.copy()
+            labelled.insert(0, "reading", reading)
+            parts[name].append(labelled)
+    return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}

@@ -1,0 +1,60 @@
+"""The step protocol as far as a shaker's limits allow, beside the one without limits."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from rockfrag.records.motion import Motion
+from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.readings import tests_from_sweep
+from rockfrag.shaketable.settings import read_shaker
+from rockfrag.shaketable.shaker import shaker_table
+from rockfrag.study.configurations import Configuration
+from rockfrag.study.study import Study
+
+LIMITED = "step_protocol_shaker"
+"""Reading of the step protocol that stops at the shaker's limit."""
+
+
+def heaviest(configurations: Sequence[Configuration]) -> float:
+    """Mass of the heaviest specimen [kg], the payload for which limits are computed."""
+    bodies = [one.body for one in configurations]
+    return max(body.mass for body in bodies)
+
+
+def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
+    """What each motion asks of the study's shaker, see :func:`rockfrag.shaketable.shaker_table`."""
+    if study.more.shaker is None:
+        raise ValueError("the study has no shaker")
+    return shaker_table(read_shaker(study.more.shaker), motions, heaviest(study.configurations))
+
+
+def limited_tests(sweeps: pd.DataFrame, protocol: Protocol, limits: pd.DataFrame) -> pd.DataFrame:
+    """Read the step protocol with the shaker's limits.
+
+    Parameters
+    ----------
+    sweeps
+        Sweeps of all configurations.
+    protocol
+        Protocol of the laboratory.
+    limits
+        As :func:`limits_table` returns them.
+
+    Returns
+    -------
+    Table of tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
+    """
+    known = limits.set_index("motion")
+    largest = dict(zip(limits["motion"], limits["limit_g"].astype(float), strict=True))
+    tests = tests_from_sweep(sweeps, protocol, readings=["step_protocol"], limits_g=largest)
+    remarks = []
+    for test in tests.to_dict("records"):
+        limit = known.loc[test["motion"]]
+        ended = test["censored"] == "right" and limit["limit_g"] < protocol.limit_g
+        remarks.append(
+            f"shaker's {limit['limited_by']} reached at {limit['limit_g']:.3f} g"
+            if ended
+            else test["remark"]
+        )
+    return tests.assign(remark=remarks, reading=LIMITED)

@@ -1,0 +1,74 @@
+"""Every configuration under every motion at every amplitude: what all statistics start from."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.records.motion import Motion
+from rockfrag.rocking import overturns
+from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.configurations import Configuration
+from rockfrag.units import STANDARD_GRAVITY
+
+FALLEN = ("", "pedestal", "statue")
+
+
+def sweep(
+    configuration: Configuration,
+    motions: Sequence[Motion],
+    amplitudes: Amplitudes,
+    threads: int = 1,
+) -> pd.DataFrame:
+    """Shake one configuration by every motion, scaled to every amplitude.
+
+    Parameters
+    ----------
+    configuration
+        What stands on the table.
+    motions
+        Motions of the table; each is scaled so that its peak is the amplitude.
+    amplitudes
+        Peaks of the motion.
+    threads
+        Threads to use; the result does not depend on it.
+
+    Returns
+    -------
+    One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
+    ``motion``, ``event``, ``floor``, ``amplitude_g``, ``overturned``, ``overturned_body``,
+    ``overturning_time_s``, ``peak_rotation_statue``, ``peak_rotation_pedestal`` (|θ| over the
+    critical angle), ``impacts``, ``closest_approach`` (small where the verdict nearly flipped).
+    """
+    values = amplitudes.values_g
+    scales = np.array([values * STANDARD_GRAVITY / motion.pga for motion in motions])
+    result = overturns(
+        [configuration.body],
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        scales,
+        threads=threads,
+    )
+    each = len(values)
+    return pd.DataFrame(
+        {
+            "configuration": configuration.name,
+            "object": configuration.object,
+            "pedestal": configuration.label,
+            "motion": np.repeat([motion.name for motion in motions], each),
+            "event": np.repeat([_about(motion, "event", motion.name) for motion in motions], each),
+            "floor": np.repeat([_about(motion, "floor", "GF") for motion in motions], each),
+            "amplitude_g": np.tile(values, len(motions)),
+            "overturned": result.overturned[0].ravel(),
+            "overturned_body": np.take(FALLEN, result.overturned_body[0].ravel()),
+            "overturning_time_s": result.overturning_time[0].ravel(),
+            "peak_rotation_statue": result.peak_rotation[0].ravel(),
+            "peak_rotation_pedestal": result.peak_rotation_pedestal[0].ravel(),
+            "impacts": result.impacts[0].ravel(),
+            "closest_approach": result.closest_approach[0].ravel(),
+        }
+    )
+
+
+def _about(motion: Motion, key: str, default: str) -> str:
+    return str(motion.metadata.get(key) or default)

@@ -1,5 +1,0 @@
-"""Studies: what is to be computed, read from a configuration file and checked first.
-
-:func:`rockfrag.studies.loading.load_study` reads and checks; the workflow's jobs use
-:func:`rockfrag.studies.study.study_from`, which loads less.
-"""

@@ -1,0 +1,126 @@
+"""The bodies of a study: a table of blocks and a table of which block stands on which."""
+
+import os
+from dataclasses import dataclass
+
+from rockfrag.errors import InputError
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.study.tables import Row, read_rows
+
+CENTIMETRES_PER_METRE = 100.0
+GRAMS_PER_KILOGRAM = 1000.0
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """One arrangement to be tested: an object alone, or an object on a pedestal.
+
+    Attributes
+    ----------
+    name
+        Its name in tables, for example ``P&T1``.
+    object, pedestal
+        Names of the blocks; ``pedestal`` is empty where the object stands on the ground.
+    body
+        What the mechanics see.
+    """
+
+    name: str
+    object: str
+    pedestal: str
+    body: Body
+
+    @property
+    def label(self) -> str:
+        """``P`` with and ``NP`` without a pedestal."""
+        return "P" if self.pedestal else "NP"
+
+    @property
+    def statue(self) -> Block:
+        """The object's block."""
+        return self.body.statue if isinstance(self.body, Stack) else self.body
+
+    @property
+    def slug(self) -> str:
+        """The name as a file name: letters, digits, ``-``, ``_`` and ``.`` only."""
+        return "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in self.name)
+
+
+def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
+    """Read a table of blocks.
+
+    Columns: ``name``, ``width_cm``, ``height_cm``, ``mass_g`` and, where the block is not a
+    uniform rectangle, ``inertia_kg_m2`` (about the centre of gravity), ``cg_height_cm`` and
+    ``cg_offset_cm``.
+
+    Raises
+    ------
+    InputError
+        If the file, a column or a cell is not as expected, or a name is given twice.
+    """
+    rows = read_rows(
+        path,
+        ["name", "width_cm", "height_cm", "mass_g"],
+        ["inertia_kg_m2", "cg_height_cm", "cg_offset_cm"],
+    )
+    blocks: dict[str, Block] = {}
+    for row in rows:
+        name = row.text("name")
+        if name in blocks:
+            raise row.error("name", f"{name} is given twice")
+        blocks[name] = _block(row)
+    return blocks
+
+
+def _block(row: Row) -> Block:
+    def has(column: str) -> bool:
+        return bool(row.cells.get(column))
+
+    values = {
+        "width": row.positive("width_cm") / CENTIMETRES_PER_METRE,
+        "height": row.positive("height_cm") / CENTIMETRES_PER_METRE,
+        "mass": row.positive("mass_g") / GRAMS_PER_KILOGRAM,
+    }
+    if has("inertia_kg_m2"):
+        values["inertia"] = row.positive("inertia_kg_m2")
+    if has("cg_height_cm"):
+        values["cg_height"] = row.positive("cg_height_cm") / CENTIMETRES_PER_METRE
+    if has("cg_offset_cm"):
+        values["cg_offset"] = row.number("cg_offset_cm") / CENTIMETRES_PER_METRE
+    try:
+        return Block(**values)
+    except InputError as error:
+        raise InputError(f"{row.path}, line {row.line}: {error}") from error
+
+
+def read_configurations(
+    path: str | os.PathLike[str], blocks: dict[str, Block]
+) -> list[Configuration]:
+    """Read which block stands on which: columns ``name``, ``object``, ``pedestal`` (may be empty).
+
+    Raises
+    ------
+    InputError
+        If the file or a cell is not as expected, a name is given twice, a block is not known, or
+        the object does not fit on the pedestal.
+    """
+    found: dict[str, Configuration] = {}
+    slugs: dict[str, str] = {}
+    for row in read_rows(path, ["name", "object", "pedestal"]):
+        name, object_name, pedestal = row.text("name"), row.text("object"), row.cells["pedestal"]
+        for column, block in (("object", object_name), ("pedestal", pedestal)):
+            if block and block not in blocks:
+                known = ", ".join(blocks)
+                raise row.error(column, f"expected one of the specimens {known}, found {block}")
+        if name in found:
+            raise row.error("name", f"{name} is given twice")
+        try:
+            statue = blocks[object_name]
+            body = Stack(blocks[pedestal], statue) if pedestal else statue
+        except InputError as error:
+            raise InputError(f"{row.path}, line {row.line}: {error}") from error
+        one = Configuration(name, object_name, pedestal, body)
+        if slugs.setdefault(one.slug, name) != name:
+            raise row.error("name", f"{name} and {slugs[one.slug]} would share a file name")
+        found[name] = one
+    return list(found.values())

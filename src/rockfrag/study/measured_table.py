@@ -1,0 +1,87 @@
+"""A study of somebody's own table of tests: overturned yes or no, with intensity measures."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rockfrag.errors import InputError
+from rockfrag.study.validation import check_schema, read_schema
+
+TABLE_KEY = "table"
+"""Key that only a study of a measured table has."""
+
+
+@dataclass(frozen=True)
+class MeasuredTable:
+    """Everything that the configuration of a measured table says, checked.
+
+    Attributes
+    ----------
+    name, title, seed
+        Folder under ``results/``, heading of the report, seed of every random number.
+    source
+        The configuration file.
+    table
+        CSV with one row per test.
+    measures
+        For each intensity measure the columns and numbers whose product it is.
+    overturned, motion, event, given
+        Columns: verdict, input motion, earthquake, and those against which sufficiency is tested.
+    confidence
+        Level of the intervals.
+    replicates
+        Number of bootstrap samples.
+    """
+
+    name: str
+    title: str
+    seed: int
+    source: Path
+    table: Path
+    measures: Mapping[str, tuple[str | float, ...]]
+    overturned: str
+    motion: str | None
+    event: str | None
+    given: tuple[str, ...]
+    confidence: float
+    replicates: int
+
+
+def is_measured_table(content: Mapping[str, Any]) -> bool:
+    """Say whether a configuration is one of a measured table and not of a simulated study."""
+    return TABLE_KEY in content
+
+
+def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> MeasuredTable:
+    """Make a study of a measured table from a configuration that was read from ``path``.
+
+    Raises
+    ------
+    InputError
+        One sentence with the file, the key, what was expected and what was found.
+    """
+    source = Path(path)
+    check_schema(content, read_schema("measured.schema.json"), str(source))
+    table = Path(os.path.normpath(source.parent / content[TABLE_KEY]))
+    if not table.is_file():
+        raise InputError(
+            f"{source}: key {TABLE_KEY}: there is no {table}; put a CSV file with one row per test "
+            "there, or name yours."
+        )
+    columns = content["columns"]
+    return MeasuredTable(
+        name=content["study"],
+        title=content["title"],
+        seed=content["seed"],
+        source=source,
+        table=table,
+        measures={name: tuple(factors) for name, factors in content["measures"].items()},
+        overturned=columns["overturned"],
+        motion=columns.get("motion"),
+        event=columns.get("event"),
+        given=tuple(columns.get("given", ())),
+        confidence=content["confidence"],
+        replicates=content.get("replicates", 200),
+    )

@@ -1,0 +1,1 @@
+"""All that belongs to one thesis, “Rocking instability of rigid blocks atop a small pedestal”."""
