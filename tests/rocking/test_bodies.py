@@ -98,7 +98,7 @@ def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
 
 
 @pytest.mark.parametrize(
-    ("object", "restitution", "p"),
+    ("statue", "restitution", "p"),
     [
         (Block(0.124, 0.372, 2.172), 0.8289, 5.092),
         (T2, 0.8809, 4.631),
@@ -106,8 +106,8 @@ def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
     ],
     ids=["T1", "T2", "T3"],
 )
-def test_stack_as_one_body(object_name: Block, restitution: float, p: float) -> None:
-    one = Stack(P, object_name).glued()
+def test_stack_as_one_body(statue: Block, restitution: float, p: float) -> None:
+    one = Stack(P, statue).glued()
     assert one.momentum_restitution() == pytest.approx(restitution, abs=5e-4)
     assert one.frequency() == pytest.approx(p, abs=5e-4)
 

@@ -30,12 +30,12 @@ def test_restitution_and_frequency_of_the_specimens(block: Block, e: float, p: f
 
 
 @pytest.mark.parametrize(
-    ("object", "e", "p"), [(T1, 0.8289, 5.092), (T2, 0.8809, 4.631), (T3, 0.9138, 4.2655)]
+    ("statue", "e", "p"), [(T1, 0.8289, 5.092), (T2, 0.8809, 4.631), (T3, 0.9138, 4.2655)]
 )
 def test_restitution_and_frequency_of_the_stacks_as_one_body(
-    object_name: Block, e: float, p: float
+    statue: Block, e: float, p: float
 ) -> None:
-    whole = Stack(P, object_name).glued()
+    whole = Stack(P, statue).glued()
     assert whole.momentum_restitution() == pytest.approx(e, abs=5e-4)
     assert whole.frequency() == pytest.approx(p, abs=5e-4)
 

@@ -29,11 +29,11 @@ def peaks(response: ReferenceResponse) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize("object", TOWERS)
-def test_a_released_block_comes_down_after_the_exact_quarter_period(object_name: Block) -> None:
-    theta0 = 0.5 * object_name.alpha
-    response = simulate_reference(object_name, STILL, 0.01, theta0=theta0, duration=0.5)
-    expected = quarter_period(theta0, object_name.alpha, object_name.frequency())
+@pytest.mark.parametrize("statue", TOWERS)
+def test_a_released_block_comes_down_after_the_exact_quarter_period(statue: Block) -> None:
+    theta0 = 0.5 * statue.alpha
+    response = simulate_reference(statue, STILL, 0.01, theta0=theta0, duration=0.5)
+    expected = quarter_period(theta0, statue.alpha, statue.frequency())
     assert response.events[0].time == pytest.approx(expected, rel=1e-10)
 
 
