@@ -90,7 +90,9 @@ def factor_cases(
             try:
                 cases.append(Case(factor, level, object_name, *build(stack, level)))
             except InputError as error:
-                raise InputError(f"explanation.{factor}, {level:g}, {object_name}: {error}") from error
+                raise InputError(
+                    f"explanation.{factor}, {level:g}, {object_name}: {error}"
+                ) from error
     return cases
 
 
