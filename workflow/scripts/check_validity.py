@@ -4,7 +4,7 @@ import pandas as pd
 
 from rockfrag.files import write_table
 from rockfrag.records.motion import read_motion_set
-from rockfrag.report.findings import READING
+from rockfrag.shaketable.readings import READING
 from rockfrag.stages.log import logged
 from rockfrag.stages.validity import validity_table
 from rockfrag.study.study import study_from

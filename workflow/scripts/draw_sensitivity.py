@@ -6,9 +6,8 @@ import pandas as pd
 
 from rockfrag.report.figures.building import floor_order, floor_statements
 from rockfrag.report.figures.style import save_figure
-from rockfrag.report.findings import READING
 from rockfrag.report.supplements import ORDER_FIGURE, STATEMENTS_FIGURE, sensitivity_figures
-from rockfrag.shaketable.readings import READINGS
+from rockfrag.shaketable.readings import READING, READINGS
 from rockfrag.stages.log import logged
 from rockfrag.study.study import study_from
 

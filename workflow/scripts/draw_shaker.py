@@ -4,7 +4,7 @@ import pandas as pd
 
 from rockfrag.report.figures.building import shaker_limits
 from rockfrag.report.figures.style import save_figure
-from rockfrag.report.findings import READING
+from rockfrag.shaketable.readings import READING
 from rockfrag.stages.log import logged
 
 with logged(snakemake.log[0], "shaker figure") as log:

@@ -3,8 +3,8 @@
 import pandas as pd
 
 from rockfrag.files import write_table
-from rockfrag.report.findings import READING
 from rockfrag.shaketable.laboratory_table import read_measured
+from rockfrag.shaketable.readings import READING
 from rockfrag.stages.log import logged
 from rockfrag.stages.measured_tests import measured_tables
 from rockfrag.study.study import study_from

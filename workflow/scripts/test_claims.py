@@ -3,7 +3,7 @@
 import pandas as pd
 
 from rockfrag.files import write_table
-from rockfrag.report.findings import READING
+from rockfrag.shaketable.readings import READING
 from rockfrag.stages.log import logged
 from rockfrag.study.study import study_from
 from rockfrag.thesis.statements import Evidence, contradictions, ledger

@@ -20,8 +20,8 @@ from rockfrag.report.figures.pedestal import (
     slenderness_figure,
 )
 from rockfrag.report.figures.sweep import verdict_map
-from rockfrag.report.findings import READING
 from rockfrag.report.page import Picture
+from rockfrag.shaketable.readings import READING
 from rockfrag.study.study import Study
 
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-READING = "step_protocol"
-"""The reading of the sweeps that resembles the laboratory's."""
+from rockfrag.shaketable.readings import READING
 
 FLOOR_NAMES = {"GF": "the ground floor", "F3": "the 3rd floor", "F5": "the 5th floor"}
 

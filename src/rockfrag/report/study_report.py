@@ -6,9 +6,10 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.report.estimate_columns import EFFECT, with_limits
-from rockfrag.report.findings import READING, Finding, all_findings
+from rockfrag.report.findings import Finding, all_findings
 from rockfrag.report.page import Column, Picture, Section, comparison_html, render, table_html
 from rockfrag.report.supplements import supplement_sections
+from rockfrag.shaketable.readings import READING
 from rockfrag.study.study import Study
 from rockfrag.thesis.ledger_html import ledger_html
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pandas as pd
 
 from rockfrag.report.figures.building import AXIS_NAMES
-from rockfrag.report.findings import READING
 from rockfrag.report.page import Column, Picture, Section, table_html
 from rockfrag.report.sections.explanation import explanation_section
 from rockfrag.report.sections.measured import measured_section
+from rockfrag.shaketable.readings import READING
 from rockfrag.stages.measured_tests import MEASURED_TABLES
 from rockfrag.stages.shaker import LIMITED
 from rockfrag.study.study import Study

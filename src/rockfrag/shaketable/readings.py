@@ -20,6 +20,9 @@ Verdicts = NDArray[np.bool_]
 
 READINGS = ("step_protocol", "first_overturning", "always_overturning")
 
+READING = "step_protocol"
+"""The reading that resembles a laboratory's: statistics rest on it, the others stand beside."""
+
 _NEEDED = (
     "configuration",
     "object",
