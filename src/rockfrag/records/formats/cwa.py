@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.fortran_sections import field_width, positive_step
-from rockfrag.records.formats.quantities import canonical_unit
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.timestamps import clock_time, step_of_times
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import field_width, positive_step
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import clock_time, step_of_times
 
 _KEY = re.compile(r"^\s*#\s*(?P<key>[^:(]+?)\s*(?:\((?P<note>[^)]*)\))?\s*:\s*(?P<value>.*)$")
 _TIME = re.compile(

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.fortran_sections import positive_step
-from rockfrag.records.formats.quantities import canonical_unit, quantity_of
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.timestamps import clock_time
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import clock_time
 
 _KEY = re.compile(r"^(?P<key>[A-Z][A-Z0-9_/^ ]*?)\s*:(?P<value>.*)$")
 _NEEDED = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS")

@@ -9,11 +9,11 @@ import re
 
 from obspy import UTCDateTime
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.fortran_sections import Section, integers, positive_step, reals
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.timestamps import clock_time
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import Section, integers, positive_step, reals
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import clock_time
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected accelerogram\s+\S+", re.IGNORECASE)
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES, _A_LINE, _WIDTH = 16, 4, 6, 10, 8

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from obspy import Inventory, Trace, read_inventory
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import head_lines
 from rockfrag.records.formats.plain import first_odd_row
-from rockfrag.records.formats.text import HEAD_BYTES, MAX_LINE, check_unpacked, read_head
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import head_lines
+from rockfrag.records.parsing.text_file import HEAD_BYTES, MAX_LINE, check_unpacked, read_head
 
 RECORDER_FORMATS = frozenset({"MSEED", "SAC", "KNET", "KINEMETRICS_EVT"})
 """Formats of raw recordings, whose mean is the zero of the sensor, gravity and tilt included."""

@@ -28,12 +28,12 @@ from rockfrag.records.formats import (
     smc,
     usc,
 )
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.fortran_sections import positive_step
-from rockfrag.records.formats.quantities import TO_SI, canonical_unit, quantity_of
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.timestamps import check_rising, step_of_times
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import check_rising, step_of_times
 
 _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[EeDd][+-]?\d+)?"
 _TOKEN = re.compile(_NUMBER)

@@ -7,11 +7,11 @@ second line.
 import re
 from pathlib import PurePath
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.time_value_pairs import read_pairs
-from rockfrag.records.formats.timestamps import american_time
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.time_value_pairs import read_pairs
+from rockfrag.records.parsing.timestamps import american_time
 
 _FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.IGNORECASE)
 _HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)

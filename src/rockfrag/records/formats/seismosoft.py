@@ -2,11 +2,11 @@
 
 import re
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.quantities import canonical_unit, quantity_of
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.timestamps import step_of_times
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import step_of_times
 
 _COLUMNS = re.compile(
     r"^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"

@@ -11,11 +11,11 @@ import re
 import numpy as np
 from obspy import UTCDateTime
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.fortran_sections import Section, integers, positive_step, reals
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.time_value_pairs import pairs_of
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import Section, integers, positive_step, reals
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.time_value_pairs import pairs_of
 
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES

@@ -5,10 +5,10 @@ Each text line has its length in columns 73 and 74, which tells the format from 
 
 import re
 
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.time_value_pairs import read_pairs
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.time_value_pairs import read_pairs
 
 _FIRST = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME\s+I\b", re.IGNORECASE)
 _HEAD = re.compile(

@@ -9,7 +9,7 @@ import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.records.sources.fetching import sha256_of
+from rockfrag.records.sources.wheel import sha256_of
 from rockfrag.units import STANDARD_GRAVITY
 
 _EQUAL = 1e-9

@@ -13,8 +13,8 @@ from rockfrag.records.formats import (
     smc,
     usc,
 )
-from rockfrag.records.formats.contract import Format
-from rockfrag.records.formats.text import Source
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.text_file import Source
 
 FORMATS: tuple[Format, ...] = tuple(
     module.FORMAT

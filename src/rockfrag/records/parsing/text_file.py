@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.number_fields import NumberError, parse_columns, parse_separated
+from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 
 HEAD_BYTES = 16_384
 """How much of a file is looked at to recognise its format."""

@@ -7,8 +7,8 @@ from typing import Any
 from obspy import Stream, UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.text import HEAD_BYTES, Source, name_of, read_head, read_text
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.text_file import HEAD_BYTES, Source, name_of, read_head, read_text
 
 _LONGEST = 1_000
 """Characters of a line that are looked at to recognise a format."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.records.formats.text import TextFile
+from rockfrag.records.parsing.text_file import TextFile
 
 QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
 """First letters of a quantity's name in a header, and the quantity."""

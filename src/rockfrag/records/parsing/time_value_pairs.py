@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.channel import Channel
-from rockfrag.records.formats.fortran_sections import reals
-from rockfrag.records.formats.number_fields import NumberError, parse_columns, parse_separated
-from rockfrag.records.formats.quantities import canonical_unit
-from rockfrag.records.formats.text import TextFile
-from rockfrag.records.formats.timestamps import UNEVEN_STEP, check_rising, step_of_times
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.fortran_sections import reals
+from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import UNEVEN_STEP, check_rising, step_of_times
 
 _POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.IGNORECASE)
 _UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.IGNORECASE)

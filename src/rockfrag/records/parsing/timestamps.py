@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.formats.text import TextFile
+from rockfrag.records.parsing.text_file import TextFile
 
 _SHARE_OF_STEP = 1e-4
 """Share of a step by which a time may be off beyond the rounding of its print."""

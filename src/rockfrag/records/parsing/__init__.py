@@ -1,0 +1,1 @@
+"""What readers of text formats share: lines, numbers, times, units, channels."""
