@@ -35,6 +35,8 @@ _NEEDED = (
     "overturned_body",
 )
 
+_ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
+
 
 def first_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
     """Bounds of the least amplitude that overturns.
@@ -190,7 +192,7 @@ def _rows(
         rows.append(
             {
                 "test": name,
-                **{key: head[key] for key in ("object", "pedestal", "event", "floor", "motion")},
+                **{key: head[key] for key in _ABOUT},
                 "lower_g": shown.lower_g,
                 "upper_g": shown.upper_g,
                 "amplitude_g": protocol.report(shown),

@@ -5,6 +5,7 @@ limit is reached.
 
 ===============  ==================================================================================
 test             name of the test
+configuration    what was tested: the object, and the pedestal that it stood on, if any
 object, pedestal  object (``T1``, …); ``P`` on the pedestal, ``NP`` without
 event, floor     earthquake; ``GF``, ``F3``, ``F5``, …
 motion           name of the input motion
@@ -23,6 +24,7 @@ import pandas as pd
 
 COLUMNS = (
     "test",
+    "configuration",
     "object",
     "pedestal",
     "event",
@@ -44,8 +46,15 @@ BODIES = ("", "statue", "pedestal")
 
 
 def as_tests_table(rows: list[dict[str, object]]) -> pd.DataFrame:
-    """Return rows as a table with the columns and types of the schema, also if there are none."""
-    table = pd.DataFrame(rows, columns=list(COLUMNS))
+    """Return rows as a table with the columns and types of the schema, also if there are none.
+
+    Rows without a ``configuration`` are of the object alone, or of the object on its one pedestal.
+    """
+    named = [
+        {"configuration": f"P&{row['object']}" if row["pedestal"] == "P" else row["object"], **row}
+        for row in rows
+    ]
+    table = pd.DataFrame(named, columns=list(COLUMNS))
     for column in COLUMNS:
         if column.endswith("_g"):
             table[column] = table[column].astype("float64")

@@ -1,0 +1,76 @@
+"""Mean overturning amplitudes that may be compared: over the same motions, all of them overturning.
+
+A test that never overturned has no amplitude. Left out of one mean and not of another, it would make
+objects, floors or sides look different that were merely tested by other motions.
+"""
+
+import numpy as np
+import pandas as pd
+
+COLUMNS = ("by", "configuration", "object", "pedestal", "floor", "mean_g", "motions", "of")
+
+_ALL = ""
+
+
+def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
+    """Geometric means of what is compared, over the motions that overturned all that is compared.
+
+    Parameters
+    ----------
+    tests
+        Tests of one reading: ``configuration``, ``object``, ``pedestal``, ``event``, ``floor``,
+        ``motion``, ``amplitude_g`` [g], missing where the test has none.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per mean. ``by``: what is compared, all configurations over the same motions
+        (``configuration``), the floors by side over the same records and objects (``floor``), or the
+        same for each object (``object_floor``); ``configuration``, ``object``, ``pedestal``,
+        ``floor``: of what, empty where all are taken together; ``mean_g``: geometric mean [g],
+        missing where no motion overturned all that is compared; ``motions``: how many did, ``of`` how
+        many. Repetitions are averaged in the logarithm, and count only if each of them overturned.
+    """
+    known = tests.assign(
+        ln_a=np.log(tests["amplitude_g"]),
+        # the same record on another floor has another name: that of the record and the floor's
+        record=[
+            motion.removesuffix(f"_{floor}")
+            for motion, floor in tests[["motion", "floor"]].itertuples(index=False)
+        ],
+    )
+    rows = _means("configuration", known, ["configuration"], ["record", "floor"])
+    rows += _means("floor", known, ["pedestal", "floor"], ["record", "object"])
+    for _, one in known.groupby("object", sort=False):
+        rows += _means("object_floor", one, ["pedestal", "floor"], ["record"])
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _means(
+    by: str, tests: pd.DataFrame, compared: list[str], units: list[str]
+) -> list[dict[str, object]]:
+    """Means of each of ``compared`` over the ``units`` in which all of them are known."""
+    names = ["configuration", "object", "pedestal", "floor"]
+    groups = tests[compared].drop_duplicates()
+    cells = tests.groupby([*units, *compared])["ln_a"].agg(lambda values: values.mean(skipna=False))
+    table = cells.unstack(compared)
+    complete = table.dropna()
+    rows: list[dict[str, object]] = []
+    for key in groups.itertuples(index=False, name=None):
+        own = tests[(tests[compared] == key).all(axis=1)]
+        column = key if len(compared) > 1 else key[0]
+        rows.append(
+            {
+                "by": by,
+                **{name: _common(own, name) for name in names},
+                "mean_g": float(np.exp(complete[column].mean())) if len(complete) else np.nan,
+                "motions": len(complete),
+                "of": len(table),
+            }
+        )
+    return rows
+
+
+def _common(rows: pd.DataFrame, column: str) -> str:
+    values = rows[column].unique()
+    return str(values[0]) if len(values) == 1 else _ALL
