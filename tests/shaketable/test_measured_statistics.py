@@ -26,7 +26,9 @@ def simulated():
                     sweeps.append(
                         pd.DataFrame(
                             {
-                                "configuration": f"{object_name} {pedestal}",
+                                "configuration": f"P&{object_name}"
+                                if pedestal == "P"
+                                else object_name,
                                 "object": object_name,
                                 "pedestal": pedestal,
                                 "motion": f"{event}_{floor}",

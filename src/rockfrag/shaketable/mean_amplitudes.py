@@ -7,7 +7,8 @@ objects, floors or sides look different that were merely tested by other motions
 import numpy as np
 import pandas as pd
 
-COLUMNS = ("by", "configuration", "object", "pedestal", "floor", "mean_g", "motions", "of")
+_LABELS = ("configuration", "object", "pedestal", "floor")
+COLUMNS = ("by", *_LABELS, "mean_g", "motions", "of")
 
 _ALL = ""
 
@@ -50,25 +51,22 @@ def _means(
     by: str, tests: pd.DataFrame, compared: list[str], units: list[str]
 ) -> list[dict[str, object]]:
     """Means of each of ``compared`` over the ``units`` in which all of them are known."""
-    names = ["configuration", "object", "pedestal", "floor"]
-    groups = tests[compared].drop_duplicates()
-    cells = tests.groupby([*units, *compared])["ln_a"].agg(lambda values: values.mean(skipna=False))
-    table = cells.unstack(compared)
+    parts = [part for _, part in tests.groupby(compared, sort=False)]
+    ln_a = [
+        part.groupby(units)["ln_a"].agg(lambda values: values.mean(skipna=False)) for part in parts
+    ]
+    table = pd.concat(ln_a, axis=1)
     complete = table.dropna()
-    rows: list[dict[str, object]] = []
-    for key in groups.itertuples(index=False, name=None):
-        own = tests[(tests[compared] == key).all(axis=1)]
-        column = key if len(compared) > 1 else key[0]
-        rows.append(
-            {
-                "by": by,
-                **{name: _common(own, name) for name in names},
-                "mean_g": float(np.exp(complete[column].mean())) if len(complete) else np.nan,
-                "motions": len(complete),
-                "of": len(table),
-            }
-        )
-    return rows
+    return [
+        {
+            "by": by,
+            **{name: _common(part, name) for name in _LABELS},
+            "mean_g": float(np.exp(complete.iloc[:, column].mean())) if len(complete) else np.nan,
+            "motions": len(complete),
+            "of": len(table),
+        }
+        for column, part in enumerate(parts)
+    ]
 
 
 def _common(rows: pd.DataFrame, column: str) -> str:
