@@ -37,6 +37,7 @@ from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.fragility.sweeps import (
     fragility_row,
     fragility_table,
+    fragility_tables,
     record_set_hash,
     table_hash,
     with_measures,
@@ -75,6 +76,7 @@ __all__ = [
     "fragility_of",
     "fragility_row",
     "fragility_table",
+    "fragility_tables",
     "goodness_of_fit",
     "interval_over_motions",
     "isotonic_share",

@@ -2,12 +2,14 @@
 
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.drawn_curves import curve_points, verdict_bins
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import outcomes_from_table, positive
 from rockfrag.records.motion import Motion
@@ -146,6 +148,24 @@ def fragility_row(
     }
 
 
+@dataclass(frozen=True)
+class FragilityTables:
+    """Fragility of every configuration, as tables.
+
+    Attributes
+    ----------
+    curves
+        See :func:`fragility_table`.
+    bands, bins
+        What figures draw of the curves of mean probability, see
+        :mod:`rockfrag.fragility.drawn_curves`.
+    """
+
+    curves: pd.DataFrame
+    bands: pd.DataFrame
+    bins: pd.DataFrame
+
+
 def fragility_table(
     sweep: pd.DataFrame,
     columns: Sequence[str] = ("amplitude_g",),
@@ -183,13 +203,30 @@ def fragility_table(
         ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``, ``link``,
         ``method``, ``n``, ``n_overturned``, ``n_motions``, ``record_set_sha256``, ``warnings``.
     """
+    return fragility_tables(
+        sweep, columns, by=by, event=event, record_set=record_set, level=level
+    ).curves
+
+
+def fragility_tables(
+    sweep: pd.DataFrame,
+    columns: Sequence[str] = ("amplitude_g",),
+    *,
+    by: Sequence[str] = ("configuration",),
+    event: str | None = "event",
+    record_set: str = "",
+    level: float = 0.90,
+) -> FragilityTables:
+    """Fit as :func:`fragility_table` does, and keep the points of the curves for drawing too."""
     for column in by:
         if column not in sweep:
             raise InputError(f"sweep: there is no column {column!r}; correct the name.")
-    rows = []
+    rows: list[dict[str, Any]] = []
+    bands, bins = [], []
     for key, part in sweep.groupby(list(by), sort=True):
         labels = dict(zip(by, key, strict=True))
         for column in columns:
+            outcomes = outcomes_from_table(part, column, event=event, source="sweep")
             if column in ("amplitude_g", "pga_g"):
                 result = fit_incremental(part, amplitude=column, event=event, level=level)
                 readings = {
@@ -198,10 +235,15 @@ def fragility_table(
                     "always_overturning": result.always,
                 }
             else:
-                outcomes = outcomes_from_table(part, column, event=event, source="sweep")
                 readings = {"mean_probability": fragility_of(outcomes, level=level)}
+            bands.append(curve_points(labels, readings["mean_probability"], outcomes))
+            bins.append(verdict_bins(labels, readings["mean_probability"], outcomes))
             rows += [
                 fragility_row(fragility, labels, name, record_set)
                 for name, fragility in readings.items()
             ]
-    return pd.DataFrame(rows)
+    return FragilityTables(
+        pd.DataFrame(rows),
+        pd.concat(bands, ignore_index=True),
+        pd.concat(bins, ignore_index=True),
+    )

@@ -1,0 +1,72 @@
+"""Points of fragility curves for drawing: the curve with its band, and the verdicts that it is fitted to."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.fragility.empirical import local_share, share_in_bins
+from rockfrag.fragility.estimators import Fragility
+from rockfrag.fragility.observations import Outcomes
+
+POINTS = 120
+"""Points of a curve, in equal ratios."""
+
+_TAIL = 2.6
+"""Standard deviations on either side of the median within which a curve is drawn: 0.5 to 99.5 %."""
+
+
+def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes) -> pd.DataFrame:
+    """Points of one curve over the range of its data.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``labels``; ``im``, ``unit``; ``x``: the measure, rising; ``probability`` of overturning, with
+        ``lower`` and ``upper`` at the interval's level (missing where there is no interval); ``local``:
+        share of overturned tests near x, which may fall where the curve cannot (missing where all
+        tests are at one value). Without a curve ``probability`` is missing.
+    """
+    fit = item.fit
+    low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
+    if np.isfinite(fit.theta):
+        # a nearly flat curve may not stretch the range, nor amplitudes far above it
+        low = max(low, fit.theta * np.exp(-_TAIL * fit.beta))
+        high = min(high, fit.theta * np.exp(_TAIL * fit.beta))
+    if not low < high:
+        low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
+    x = np.geomspace(low, high, POINTS)
+    nothing = np.full(POINTS, np.nan)
+    lower, upper = item.interval.band(x) if np.isfinite(fit.theta) else (nothing, nothing)
+    inside = (x >= outcomes.im.min()) & (x <= outcomes.im.max()) & (np.ptp(outcomes.log_im) > 0)
+    local = nothing.copy()
+    if inside.any():
+        local[inside] = local_share(outcomes, x[inside])
+    return pd.DataFrame(
+        {
+            **labels,
+            "im": fit.im,
+            "unit": fit.unit,
+            "x": x,
+            "probability": fit.probability(x) if np.isfinite(fit.theta) else nothing,
+            "lower": lower,
+            "upper": upper,
+            "local": local,
+        }
+    )
+
+
+def verdict_bins(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes) -> pd.DataFrame:
+    """Shares of overturned tests in bins, under the labels of their curve.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``labels``, ``im``, ``unit``, and the columns of
+        :func:`rockfrag.fragility.empirical.share_in_bins`, where the measure is called ``x``.
+    """
+    names = {"im": "x", "im_lower": "x_lower", "im_upper": "x_upper"}
+    table = share_in_bins(outcomes).rename(columns=names)
+    about = pd.DataFrame({**labels, "im": item.fit.im, "unit": item.fit.unit}, index=table.index)
+    return pd.concat([about, table], axis=1)

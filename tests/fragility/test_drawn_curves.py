@@ -1,0 +1,48 @@
+"""Points for drawing are those of the fitted curve, its band and its verdicts."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.fragility import fragility_tables
+
+
+def sweep_of(thresholds: list[float]) -> pd.DataFrame:
+    """Sweeps of motions that overturn from their threshold [g] on."""
+    levels = np.geomspace(0.1, 1.6, 30)
+    parts = [
+        pd.DataFrame(
+            {
+                "configuration": "vase",
+                "motion": f"m{k}",
+                "event": f"e{k}",
+                "amplitude_g": levels,
+                "overturned": levels > threshold,
+            }
+        )
+        for k, threshold in enumerate(thresholds)
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def test_the_points_pass_through_the_median_between_the_limits_of_the_band():
+    found = fragility_tables(sweep_of([0.3, 0.4, 0.5, 0.7, 0.9]))
+    theta = found.curves.set_index("estimator").loc["mean_probability", "theta"]
+    points = found.bands
+    assert np.interp(theta, points["x"], points["probability"]) == pytest.approx(0.5, abs=0.01)
+    assert (points["lower"] <= points["probability"]).all()
+    assert (points["probability"] <= points["upper"]).all()
+    assert found.bins["tests"].sum() == 5 * 30
+
+
+def test_where_nothing_overturned_there_is_no_curve_but_there_are_verdicts():
+    found = fragility_tables(sweep_of([9.0, 9.0]))
+    assert found.bands["probability"].isna().all()
+    assert (found.bands["local"].dropna() == 0).all()
+    assert (found.bins["share"] == 0).all()
+
+
+def test_one_motion_has_a_curve_without_a_band():
+    found = fragility_tables(sweep_of([0.5]))
+    assert found.bands["lower"].isna().all()
+    assert np.isfinite(found.bands["local"]).any()
