@@ -54,7 +54,7 @@ def test_the_thesis_has_72_tests():
         (lambda c: c["motions"].update(processing=[{"step": "smooth"}]), ["smooth", "highpass"]),
         (lambda c: c["motions"].update(processing=[{"step": "highpass"}]), ["corner_hz"]),
         (lambda c: c.update(building="no.yaml"), ["building", "no.yaml"]),
-        (lambda c: c.update(printed="nowhere"), ["printed", "table_3_1.csv"]),
+        (lambda c: c.update(compare_with="nobody"), ["compare_with", "thesis", "nobody"]),
         (lambda c: c.update(study="../elsewhere"), ["study", "lower-case"]),
         (lambda c: c.update(seed=1.5), ["seed", "whole number"]),
         (lambda c: c.update(seed=True), ["seed", "whole number"]),

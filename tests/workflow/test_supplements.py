@@ -50,9 +50,10 @@ def full_study(folder: Path) -> Path:
         {
             **content,
             "building": "building.yaml",
+            "compare_with": "thesis",
             "shaker": "shaker.yaml",
             "measured_tests": "tests.csv",
-            "building_sensitivity": {"first_period_s": [0.5], "levels": [[3, 6]]},
+            "building_sensitivity": {"first_period_s": [0.5], "floors": [{"F3": 3, "F5": 6}]},
             "explanation": EXPLANATION,
         },
     )
@@ -64,7 +65,8 @@ def full_study(folder: Path) -> Path:
         ({"shaker": "no.yaml"}, ["key shaker", "no.yaml"]),
         ({"measured_tests": "no.csv"}, ["key measured_tests", "no.csv"]),
         ({"building_sensitivity": {"periods": [1]}}, ["building_sensitivity.periods"]),
-        ({"building_sensitivity": {"levels": [[3, 9]]}}, ["levels", "up to 6", "[3, 9]"]),
+        ({"building_sensitivity": {"floors": [{"F5": 9}]}}, ["floors[0].F5", "up to 6", "9"]),
+        ({"building_sensitivity": {"floors": [{"attic": 6}]}}, ["floors[0].attic", "GF, F3, F5"]),
         ({"explanation": {**EXPLANATION, "replicates": 0}}, ["explanation.replicates"]),
         ({"building": None}, ["building"]),
         (
@@ -101,11 +103,10 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
     beside = pd.read_csv(results / "measured" / "beside.csv")
     assert len(beside) == 4
     assert beside["ratio"].notna().sum() == 3
-    notes = pd.read_csv(results / "measured" / "notes.csv")["note"]
-    assert notes.str.startswith("No statement tested").any()
+    assert pd.read_parquet(results / "measured" / "claims.parquet").empty
 
     margins = pd.read_csv(results / "building_sensitivity" / "margins.csv")
-    assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels 3 and 6"}
+    assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels F3 3, F5 6"}
     effects = pd.read_csv(results / "explanation" / "effects.csv")
     assert effects["factor"].nunique() == 11
 

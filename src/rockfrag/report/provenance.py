@@ -29,6 +29,6 @@ def provenance(study: Study, tables: Mapping[str, pd.DataFrame]) -> dict[str, st
         "Records": records,
         "Motions, SHA-256": ", ".join(hashes),
         "Seed": str(study.seed),
-        "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('report')}",
+        "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('rockfrag.guests')}",
         "Libraries": libraries,
     }

@@ -84,7 +84,7 @@ def _findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
         tables.get("pedestal/effects"),
         tables["survival_windows"],
         tables["validity"],
-        [tables[name] for name in COMPARISONS],
+        [tables[name] for name in COMPARISONS if name in tables],
         tables.get("claims"),
     )
 
@@ -102,7 +102,11 @@ def _bodies(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture])
             "conserved in impacts unless the study says otherwise."
         ],
         [
-            *(comparison_html(tables[name], _CAPTIONS[name]) for name in COMPARISONS[::2]),
+            *(
+                comparison_html(tables[name], _CAPTIONS[name])
+                for name in COMPARISONS[::2]
+                if name in tables
+            ),
             *_chosen(pictures, "bodies"),
         ],
     )
@@ -127,7 +131,7 @@ def _motions(tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture]
             "the thesis does not describe. What is said of floors is said of that building."
         ],
         [
-            comparison_html(tables["table_3_3"], _CAPTIONS["table_3_3"]),
+            *(comparison_html(tables[n], _CAPTIONS[n]) for n in ("table_3_3",) if n in tables),
             *_chosen(pictures, "figure_3_4", "building", "floor"),
             table_html(
                 tables["measures"], columns, "Intensity of every motion, before it is scaled."

@@ -47,7 +47,7 @@ def supplements(study: Study) -> list[Supplement]:
             "lone object without a limit."
         )
         found.append(Supplement(("shaker",), _shaker, {"shaker_limits": caption}))
-    if study.more.sensitivity is not None:
+    if study.more.sensitivity is not None and study.compare_with == "thesis":
         captions = {
             name: "By how much each statement on floors holds (positive) or fails; dots: by more than "
             f"2 %. {AXIS_NAMES.get(name.removeprefix(STATEMENTS_FIGURE), '')}."
@@ -62,7 +62,10 @@ def supplements(study: Study) -> list[Supplement]:
         found.append(Supplement(names, _sensitivity, captions))
     if study.more.measured_tests is not None:
         caption = "Measured over simulated amplitude of the same test; arrows are lower bounds."
-        found.append(Supplement(MEASURED_TABLES, measured_section, {"measured_beside": caption}))
+        claims = ("measured/claims",) if study.compare_with == "thesis" else ()
+        found.append(
+            Supplement((*MEASURED_TABLES, *claims), measured_section, {"measured_beside": caption})
+        )
     return found
 
 

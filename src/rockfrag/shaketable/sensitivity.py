@@ -1,4 +1,4 @@
-"""The building as an axis: overturning amplitudes and floor statements along its assumptions.
+"""The building as an axis: overturning amplitudes along its assumptions.
 
 One assumption is varied at a time around the building of a YAML file.
 """
@@ -21,20 +21,15 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Body
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.readings import READINGS, tests_from_sweep
-from rockfrag.thesis.floor_order import FLOORS, floor_margins
+from rockfrag.shaketable.readings import tests_from_sweep
 from rockfrag.units import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]
 
-AXES = ("first_period_s", "damping_ratio", "base_shear", "ground_scale", "levels")
+AXES = ("first_period_s", "damping_ratio", "base_shear", "ground_scale", "floors")
 """Assumptions that can be varied: first period and damping of the elastic model, shear strength over
-weight of the hysteretic one and the factor on the ground motion that it feels, and the levels called
-3rd and 5th floor."""
-
-
-TIE = 1e-9
-"""Margins below this are ties up to rounding: the amplitudes of two tests are the same of the sweep."""
+weight of the hysteretic one and the factor on the ground motion that it feels, and the level of each
+labelled floor."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +41,7 @@ class Variant:
     axis
         Assumption that differs from the reference, one of ``AXES``, or ``reference``.
     value
-        Its value; the level called 3rd floor for ``levels``.
+        Its value; for ``floors`` the level of the highest floor.
     label
         The same for a reader.
     building
@@ -83,7 +78,8 @@ def building_variants(
     settings
         Mapping of the reference building, as :func:`rockfrag.building.settings.make_building` takes.
     axes
-        Values for any of ``AXES``; each of ``levels`` is a pair such as ``[3, 5]``.
+        Values for any of ``AXES``; each of ``floors`` is a mapping from labels of the building to
+        levels, in place of those that the building gives them.
     source
         Where the mapping comes from, for messages.
 
@@ -108,10 +104,10 @@ def _variant(settings: Mapping[str, Any], axis: str, value: Any, source: str) ->
         kept = {k: v for k, v in settings.items() if k != "storey_stiffnesses_N_m"}
         return make_building(kept | changes, source)
 
-    if axis == "levels":
-        third, fifth = value
-        building = changed(floors={"GF": 0, "F3": third, "F5": fifth})
-        return Variant(axis, float(third), f"levels {third} and {fifth}", building)
+    if axis == "floors":
+        levels = {**settings.get("floors", {}), **value}
+        named = ", ".join(f"{label} {level}" for label, level in value.items())
+        return Variant(axis, float(max(value.values())), f"levels {named}", changed(floors=levels))
     if axis == "first_period_s":
         return Variant(axis, value, f"first period {value:g} s", changed(first_period_s=value))
     if axis == "damping_ratio":
@@ -133,13 +129,13 @@ def building_sensitivity(
     protocol: Protocol,
     threads: int = 1,
     progress: Callable[[int], None] = lambda done: None,
-) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Overturning amplitudes and margins of the floor statements for every variant.
+) -> pd.DataFrame:
+    """Overturning amplitudes for every variant.
 
     Parameters
     ----------
     variants
-        Buildings, each with floors ``GF``, ``F3``, ``F5``.
+        Buildings, each with the floors that are to be shaken.
     motions
         Ground motions, with ``event`` in their metadata.
     specimens
@@ -155,36 +151,21 @@ def building_sensitivity(
 
     Returns
     -------
-    tests
-        Table of tests of all variants and readings, with the variant's ``axis``, ``value``, ``label``.
-    margins
-        One row per variant, reading and statement: ``axis``, ``value``, ``label``, ``reading``,
-        ``statement``, ``margin``, ``holds``, ``credible`` (whether the building's model is to be
-        believed under all motions).
+    Table of tests of all variants and readings, with the variant's ``axis``, ``value`` and ``label``,
+    and ``credible``, whether the building's model is to be believed under all motions.
     """
     tables: list[pd.DataFrame] = []
-    rows: list[dict[str, object]] = []
     ground = _Ground(specimens, amplitudes_g, threads)
     for done, variant in enumerate(variants, start=1):
         sweep, credible = _sweep(variant, motions, ground)
         tests = tests_from_sweep(sweep, protocol)
-        about = {"axis": variant.axis, "value": variant.value, "label": variant.label}
-        tables.append(tests.assign(axis=variant.axis, value=variant.value, label=variant.label))
-        for reading in READINGS:
-            margins = floor_margins(tests[tests["reading"] == reading])
-            rows.extend(
-                {
-                    **about,
-                    "reading": reading,
-                    "statement": statement,
-                    "margin": margin,
-                    "holds": margin > TIE,
-                    "credible": credible,
-                }
-                for statement, margin in margins.items()
+        tables.append(
+            tests.assign(
+                axis=variant.axis, value=variant.value, label=variant.label, credible=credible
             )
+        )
         progress(done)
-    return pd.concat(tables, ignore_index=True), pd.DataFrame(rows)
+    return pd.concat(tables, ignore_index=True)
 
 
 class _Ground:
@@ -198,7 +179,7 @@ class _Ground:
 
     def sweep(self, motion: Motion) -> pd.DataFrame:
         """Sweep of a motion, from memory if it is one of the ground."""
-        if motion.metadata["floor"] != "GF":
+        if motion.metadata["level"] != 0:
             return self._shake(motion)
         if motion.name not in self.known:
             self.known[motion.name] = self._shake(motion)
@@ -244,6 +225,8 @@ def _sweep(
         felt = scale(motion, variant.ground_scale)
         response = respond(variant.building, felt)
         credible &= judge_drift(variant.building, response).credible
-        for floor in response_motions(variant.building, felt, response, FLOORS):
+        for floor in response_motions(
+            variant.building, felt, response, list(variant.building.floors)
+        ):
             tables.append(ground.sweep(floor))
     return pd.concat(tables, ignore_index=True), credible

@@ -1,42 +1,104 @@
-"""A fingerprint of the package's source, so that an edit makes the workflow compute again."""
+"""A fingerprint of source, so that an edit makes the workflow compute again what depends on it."""
 
+import ast
 import hashlib
+from functools import cache
 from pathlib import Path
 
-STAGES = (
-    "records",
-    "motions",
-    "building",
-    "rocking",
-    "shaketable",
-    "fragility",
-    "pedestal",
-    "thesis",
-    "study",
-    "stages",
-    "report",
-)
-"""The package's folders in the order in which data flow; each imports from those before it only."""
+PACKAGE = "rockfrag"
+ROOT = Path(__file__).resolve().parents[1]
 
 
-def source_digest(last: str) -> str:
-    """Return a digest of every source file that a result of the stage ``last`` can depend on.
+@cache
+def source_digest(module: str) -> str:
+    """Return a digest of the source of a module and of all that it imports from this package.
 
-    These are the modules at the package's top level, the reading of studies, and the folders up to
-    and including ``last``. An edit in the report thus leaves the response histories alone.
+    Parameters
+    ----------
+    module
+        Dotted name, such as ``rockfrag.stages.sweep``.
     """
-    root = Path(__file__).resolve().parents[1]
-    folders = [*STAGES[: STAGES.index(last) + 1], "study", "stages"]
-    files = [path for path in root.iterdir() if path.is_file() and path.name != "cli.py"]
-    for folder in folders:
-        files += [
-            path
-            for path in (root / folder).rglob("*")
-            if path.is_file() and "__pycache__" not in path.parts
-        ]
     digest = hashlib.sha256()
-    for path in sorted(set(files)):
-        digest.update(path.relative_to(root).as_posix().encode())
+    for path in source_files(module):
+        digest.update(path.relative_to(ROOT).as_posix().encode())
         digest.update(b"\0")
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
+
+
+@cache
+def source_files(module: str) -> tuple[Path, ...]:
+    """Files that a module is made of: itself, what it imports at any depth, and data beside them.
+
+    Imports within functions count too. A package's ``__init__`` is among the files, but what it
+    imports only where a module imports that from it: loading is lazy there.
+    """
+    found: set[str] = set()
+    waiting = [module]
+    while waiting:
+        name = waiting.pop()
+        if name in found:
+            continue
+        found.add(name)
+        waiting += _imports(name)
+    sources = {_file(name) for name in found}
+    sources |= {_file(parent) for name in found for parent in _packages(name)}
+    folders = {path.parent for path in sources} - {ROOT}
+    data = {path for folder in folders for path in _data(folder)}
+    return tuple(sorted(sources | data))
+
+
+def _packages(name: str) -> list[str]:
+    parts = name.split(".")
+    return [".".join(parts[:count]) for count in range(1, len(parts))]
+
+
+def _file(name: str) -> Path:
+    """Return the file of a module, that of a package being its ``__init__``."""
+    place = ROOT.joinpath(*name.split(".")[1:])
+    return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+
+
+def _data(folder: Path) -> list[Path]:
+    """Files beside modules that are not source: schemas, templates, tables."""
+    inside = [folder, *(one for one in folder.iterdir() if one.is_dir() and _is_data(one))]
+    return [
+        path
+        for place in inside
+        for path in place.iterdir()
+        if path.is_file() and path.suffix not in (".py", ".pyc", ".typed")
+    ]
+
+
+def _is_data(folder: Path) -> bool:
+    return folder.name != "__pycache__" and not (folder / "__init__.py").is_file()
+
+
+@cache
+def _parsed(name: str) -> ast.Module:
+    return ast.parse(_file(name).read_text(encoding="utf-8"))
+
+
+def _imports(name: str) -> list[str]:
+    """Modules of this package that one imports."""
+    found = []
+    for node in ast.walk(_parsed(name)):
+        if isinstance(node, ast.Import):
+            found += [one.name for one in node.names if one.name.split(".")[0] == PACKAGE]
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == PACKAGE:
+            found += [_home(str(node.module), one.name) for one in node.names]
+    return found
+
+
+def _home(module: str, name: str) -> str:
+    """Module in which ``from module import name`` finds the name: a package may pass it on."""
+    inner = f"{module}.{name}"
+    if _file(inner).is_file():
+        return inner
+    if _file(module).name == "__init__.py":
+        for node in ast.walk(_parsed(module)):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                for one in node.names:
+                    if (one.asname or one.name) == name:
+                        return _home(node.module, one.name)
+    return module

@@ -6,20 +6,30 @@ from dataclasses import asdict
 import numpy as np
 import pandas as pd
 
-from rockfrag.pedestal.explanation import explain
-from rockfrag.pedestal.simulated_explanation import (
-    REFERENCE,
-    Case,
-    case_ratios,
-    factor_cases,
-    mass_error_rows,
-    perturbed_cases,
-    with_references,
-)
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Stack
 from rockfrag.stages.protocol import protocol_of
+from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield the ratio P/NP for every departure from the ideal model, and effects."""
+    ratios, effects = explanation_tables(
+        job.study,
+        job.motions("motions/floors"),
+        job.threads,
+        lambda done, of: job.log.info("%d of at most %d bodies", done, of),
+    )
+    yield "explanation/ratios", ratios
+    yield "explanation/effects", effects
+    levels = effects[["factor", "level"]].drop_duplicates()
+    job.log.info(
+        "%d ratios at %d levels of %d factors",
+        len(ratios),
+        len(levels),
+        effects["factor"].nunique(),
+    )
 
 
 def explanation_tables(
@@ -49,6 +59,16 @@ def explanation_tables(
     effects
         See :func:`rockfrag.pedestal.explanation.explain`, levels in rising order.
     """
+    from rockfrag.pedestal.explanation import explain
+    from rockfrag.pedestal.simulated_explanation import (
+        Case,
+        case_ratios,
+        factor_cases,
+        mass_error_rows,
+        perturbed_cases,
+        with_references,
+    )
+
     settings = study.more.explanation
     if settings is None:
         raise ValueError("the study asks for no explanation")
@@ -94,7 +114,21 @@ def tested_stacks(study: Study) -> dict[str, Stack]:
 
 def _in_order(effects: pd.DataFrame) -> pd.DataFrame:
     """Sort the levels of a factor as numbers, the reference first; factors stay as they are."""
+    from rockfrag.pedestal.simulated_explanation import REFERENCE
+
     number = [-np.inf if level == REFERENCE else float(level) for level in effects["level"]]
     table = effects.assign(number=number, place=pd.factorize(effects["factor"])[0])
     table = table.sort_values(["place", "number"], kind="stable", ignore_index=True)
     return table.drop(columns=["number", "place"])
+
+
+STAGE = Stage(
+    name="explanation",
+    run=run,
+    wanted=lambda study: study.more.explanation is not None,
+    inputs=("motions/floors.parquet",),
+    files=lambda study: study.body_files,
+    outputs=("explanation/ratios", "explanation/effects"),
+    settings=("explanation", "bodies", "amplitudes", "protocol", "seed"),
+    parallel=True,
+)

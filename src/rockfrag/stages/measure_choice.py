@@ -1,18 +1,9 @@
 """Which intensity measure foretells the overturning of each configuration, and curves for export."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
-
-from rockfrag.fragility import (
-    fragility_table,
-    recommend_sweep_measure,
-    with_measures,
-    write_nrml,
-    write_simcenter,
-)
 
 CANDIDATES = ("pga_g", "pgv_cm_s", "pgd_cm", "sa_0_3s_g", "sa_1_0s_g", "housner_cm", "arias_m_s")
 """Measures that are compared; all grow with the amplitude."""
@@ -22,8 +13,6 @@ GIVEN = ("mean_period_s", "d5_95_s")
 
 NRML_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g")
 SIMCENTER_MEASURES = ("pga_g", "pgv_cm_s")
-
-GROUND = "GF"
 
 
 def measure_choice(
@@ -46,6 +35,8 @@ def measure_choice(
     :class:`rockfrag.fragility.measure_choice.MeasureChoice`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.
     """
+    from rockfrag.fragility import recommend_sweep_measure
+
     parts = []
     for name, rows in sweep.groupby("configuration", sort=False):
         choice = recommend_sweep_measure(
@@ -59,22 +50,33 @@ def measure_choice(
 
 
 def ground_curves(
-    sweep: pd.DataFrame, measures: pd.DataFrame, record_set: str, level: float
+    sweep: pd.DataFrame, measures: pd.DataFrame, record_set: str, level: float, ground: str
 ) -> pd.DataFrame:
     """Fragility of every configuration on the ground floor, in measures of the ground motion.
+
+    Parameters
+    ----------
+    sweep, measures, level
+        As of :func:`measure_choice`.
+    record_set
+        Digest of the motions, which goes into the table.
+    ground
+        Label of the floor that moves as the ground does.
 
     Returns
     -------
     Table of :func:`rockfrag.fragility.sweeps.fragility_table` with the columns ``floor`` and
     ``measure``; all verdicts count (``mean_probability``).
     """
-    ground = sweep[sweep["floor"] == GROUND]
+    from rockfrag.fragility import fragility_table, with_measures
+
+    on_ground = sweep[sweep["floor"] == ground]
     parts = []
     for column in NRML_MEASURES:
-        rows = with_measures(ground, measures, [column])
+        rows = with_measures(on_ground, measures, [column])
         table = fragility_table(rows, [column], record_set=record_set, level=level)
         table = table[table["estimator"] == "mean_probability"]
-        parts.append(table.assign(floor=GROUND, measure=column))
+        parts.append(table.assign(floor=ground, measure=column))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -84,9 +86,12 @@ def export_curves(curves: pd.DataFrame, folder: Path) -> list[str]:
     One file per measure, as both formats take one curve per object. Configurations without a curve
     are left out, and a measure without any has no file.
     """
+    from rockfrag.fragility import write_nrml, write_simcenter
+
     written = []
     for column in NRML_MEASURES:
-        usable = _usable(curves, column)
+        # the formats know the ground by an empty floor, whatever its user calls it
+        usable = _usable(curves, column).assign(floor="")
         stem = f"fragility_{column.rpartition('_')[0] if column != 'pgv_cm_s' else 'pgv'}"
         if len(usable):
             write_nrml(usable, folder / f"{stem}.xml", identifier=stem)
@@ -102,9 +107,3 @@ def _usable(curves: pd.DataFrame, column: str) -> pd.DataFrame:
     found = rows[["theta", "beta"]].to_numpy(dtype=float)
     usable: pd.DataFrame = rows.loc[(np.isfinite(found) & (found > 0)).all(axis=1)]
     return usable
-
-
-def recommended_names(choice: pd.DataFrame, configurations: Sequence[str]) -> dict[str, str]:
-    """Recommended measure by configuration, empty where none rises."""
-    rows = choice[choice["recommended"]].set_index("configuration")["im"]
-    return {name: str(rows.get(name, "")) for name in configurations}

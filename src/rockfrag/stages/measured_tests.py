@@ -5,17 +5,15 @@ from collections.abc import Mapping
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.fragility import fit_step_tests, fragility_row, table_hash
-from rockfrag.rocking.bodies import Block
 from rockfrag.stages.pedestal import pedestal_tables
-from rockfrag.thesis.statements import ledger
+from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.study.study import Study
 
 MEASURED_TABLES = (
     "measured/tests",
     "measured/beside",
     "measured/fragility",
     "measured/effects",
-    "measured/claims",
     "measured/notes",
 )
 """Tables of :func:`measured_tables`."""
@@ -24,15 +22,34 @@ _KEY = ("object", "pedestal", "event", "floor")
 _CURVES = ("configuration", "im", "unit", "theta", "theta_lower", "theta_upper", "beta")
 
 
+def run(job: Job[Study]) -> Results:
+    """Yield the laboratory's tests, and what their statistics say."""
+    from rockfrag.shaketable.laboratory_table import read_measured
+    from rockfrag.shaketable.readings import READING
+
+    study = job.study
+    if study.more.measured_tests is None:
+        raise ValueError("the study has no measured tests")
+    simulated = job.table("tests")
+    found = measured_tables(
+        read_measured(study.more.measured_tests),
+        simulated[simulated["reading"] == READING],
+        {name: block.slenderness for name, block in study.specimens.items()},
+        study.seed,
+        study.fragility.confidence,
+    )
+    yield from found.items()
+    job.log.info("%d measured tests", len(found["measured/tests"]))
+
+
 def measured_tables(
     measured: pd.DataFrame,
     simulated: pd.DataFrame,
-    measures: pd.DataFrame,
-    blocks: Mapping[str, Block],
+    slenderness: Mapping[str, float],
     seed: int,
     level: float,
 ) -> dict[str, pd.DataFrame]:
-    """Fit fragility, the pedestal's effect and the statements to measured tests.
+    """Fit fragility and the pedestal's effect to measured tests.
 
     Parameters
     ----------
@@ -40,10 +57,8 @@ def measured_tables(
         Table of tests as :func:`rockfrag.shaketable.read_measured` returns it.
     simulated
         Tests of one reading of the simulation.
-    measures
-        Intensity measures of the motions.
-    blocks
-        Blocks by the ledger's names.
+    slenderness
+        Height over width of each object [-].
     seed
         Seed of the bootstrap.
     level
@@ -55,8 +70,7 @@ def measured_tables(
     in ``measured/notes``.
     """
     notes: list[str] = []
-    slenderness = {name: block.slenderness for name, block in blocks.items()}
-    effects, claims = pd.DataFrame(columns=["reading", "scope"]), pd.DataFrame(columns=["number"])
+    effects = pd.DataFrame(columns=["reading", "scope"])
     if measured.empty:
         notes.append("The table of measured tests has no rows yet.")
     try:
@@ -65,33 +79,14 @@ def measured_tables(
         notes += list(found["notes"]["note"])
     except InputError as error:
         notes.append(f"No effect of the pedestal: {error}")
-    if _compares_objects(measured):
-        claims = ledger(measured, basis="measured", seed=seed, measures=measures, bodies=blocks)
-    else:
-        notes.append(
-            "No statement tested: they compare objects, so they need two objects overturned by the same "
-            "motions, with and without pedestal, in two events."
-        )
     curves = _curves(measured, level, notes)
     return {
         "measured/tests": measured,
         "measured/beside": beside(measured, simulated),
         "measured/fragility": curves,
         "measured/effects": effects,
-        "measured/claims": claims,
         "measured/notes": pd.DataFrame({"note": notes}, dtype=str),
     }
-
-
-def _compares_objects(measured: pd.DataFrame) -> bool:
-    """Whether two objects overturned by the same motion on each side, in two events or more."""
-    known = measured[measured["amplitude_g"].notna()]
-    for side in ("P", "NP"):
-        rows = known[known["pedestal"] == side]
-        objects = rows.groupby(["event", "motion"])["object"].nunique()
-        if objects[objects > 1].reset_index()["event"].nunique() < 2:
-            return False
-    return True
 
 
 def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
@@ -111,6 +106,8 @@ def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
 
 
 def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFrame:
+    from rockfrag.fragility import fit_step_tests, fragility_row, table_hash
+
     rows = []
     digest = table_hash(measured)
     for (object_name, side), tests in measured.groupby(["object", "pedestal"], sort=True):
@@ -122,3 +119,14 @@ def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFr
             continue
         rows.append(fragility_row(fit, {"configuration": name}, "step_tests", digest))
     return pd.DataFrame(rows) if rows else pd.DataFrame(columns=list(_CURVES))
+
+
+STAGE = Stage(
+    name="measured_tests",
+    run=run,
+    wanted=lambda study: study.more.measured_tests is not None,
+    inputs=("tests",),
+    files=lambda study: [str(study.more.measured_tests), *study.body_files],
+    outputs=MEASURED_TABLES,
+    settings=("measured_tests", "fragility", "seed", "bodies"),
+)

@@ -5,10 +5,20 @@ from collections.abc import Mapping
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal import study_pedestal
+from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.study.study import Study
 
 PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "mixed", "notes")
 """Tables of :func:`pedestal_tables`, each written under ``pedestal/``."""
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield the pedestal's effect in every form."""
+    slenderness = {name: block.slenderness for name, block in job.study.specimens.items()}
+    found = pedestal_tables(job.table("tests"), job.study.seed, slenderness)
+    for name, table in found.items():
+        yield f"pedestal/{name}", table
+    job.log.info("%d pairs with and without pedestal", len(found["pairs"]))
 
 
 def pedestal_tables(
@@ -30,6 +40,8 @@ def pedestal_tables(
     The tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with
     the column ``reading`` first.
     """
+    from rockfrag.pedestal import study_pedestal
+
     if tests.empty:
         raise InputError("tests: there is no row; the pedestal's effect needs tests.")
     parts: dict[str, list[pd.DataFrame]] = {name: [] for name in PEDESTAL_TABLES}
@@ -48,3 +60,14 @@ def pedestal_tables(
             labelled.insert(0, "reading", reading)
             parts[name].append(labelled)
     return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}
+
+
+STAGE = Stage(
+    name="pedestal",
+    run=run,
+    wanted=lambda study: study.has_pairs,
+    inputs=("tests",),
+    files=lambda study: study.body_files,
+    outputs=[f"pedestal/{name}" for name in PEDESTAL_TABLES],
+    settings=("bodies", "seed"),
+)

@@ -6,9 +6,6 @@ import pandas as pd
 
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.protocols import Protocol
-from rockfrag.shaketable.readings import tests_from_sweep
-from rockfrag.shaketable.settings import read_shaker
-from rockfrag.shaketable.shaker import shaker_table
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
 
@@ -24,6 +21,9 @@ def heaviest(configurations: Sequence[Configuration]) -> float:
 
 def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
     """What each motion asks of the study's shaker, see :func:`rockfrag.shaketable.shaker_table`."""
+    from rockfrag.shaketable.settings import read_shaker
+    from rockfrag.shaketable.shaker import shaker_table
+
     if study.more.shaker is None:
         raise ValueError("the study has no shaker")
     return shaker_table(read_shaker(study.more.shaker), motions, heaviest(study.configurations))
@@ -45,9 +45,11 @@ def limited_tests(sweeps: pd.DataFrame, protocol: Protocol, limits: pd.DataFrame
     -------
     Table of tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
     """
+    from rockfrag.shaketable.readings import READING, tests_from_sweep
+
     known = limits.set_index("motion")
     largest = dict(zip(limits["motion"], limits["limit_g"].astype(float), strict=True))
-    tests = tests_from_sweep(sweeps, protocol, readings=["step_protocol"], limits_g=largest)
+    tests = tests_from_sweep(sweeps, protocol, readings=[READING], limits_g=largest)
     remarks = []
     for test in tests.to_dict("records"):
         limit = known.loc[test["motion"]]

@@ -6,12 +6,32 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns
+from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
+from rockfrag.study.study import Study
 from rockfrag.units import STANDARD_GRAVITY
 
 FALLEN = ("", "pedestal", "statue")
+
+BATCH = 12
+"""Motions shaken at a time: few enough for little memory, enough to keep every core busy."""
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield the sweep of every configuration."""
+    motions = job.motions("motions/floors")
+    histories = 0
+    for configuration in job.study.configurations:
+        parts = [
+            sweep(configuration, motions[i : i + BATCH], job.study.amplitudes, job.threads)
+            for i in range(0, len(motions), BATCH)
+        ]
+        table = pd.concat(parts, ignore_index=True)
+        yield f"sweep/{configuration.slug}", table
+        histories += len(table)
+        job.log.info("%s: %d histories so far", configuration.name, histories)
+    job.log.info("%d response histories", histories)
 
 
 def sweep(
@@ -40,6 +60,8 @@ def sweep(
     ``overturning_time_s``, ``peak_rotation_statue``, ``peak_rotation_pedestal`` (|θ| over the
     critical angle), ``impacts``, ``closest_approach`` (small where the verdict nearly flipped).
     """
+    from rockfrag.rocking import overturns
+
     values = amplitudes.values_g
     scales = np.array([values * STANDARD_GRAVITY / motion.pga for motion in motions])
     result = overturns(
@@ -56,8 +78,10 @@ def sweep(
             "object": configuration.object,
             "pedestal": configuration.label,
             "motion": np.repeat([motion.name for motion in motions], each),
-            "event": np.repeat([_about(motion, "event", motion.name) for motion in motions], each),
-            "floor": np.repeat([_about(motion, "floor", "GF") for motion in motions], each),
+            "event": np.repeat(
+                [motion.metadata.get("event") or motion.name for motion in motions], each
+            ),
+            "floor": np.repeat([motion.metadata["floor"] for motion in motions], each),
             "amplitude_g": np.tile(values, len(motions)),
             "overturned": result.overturned[0].ravel(),
             "overturned_body": np.take(FALLEN, result.overturned_body[0].ravel()),
@@ -70,5 +94,12 @@ def sweep(
     )
 
 
-def _about(motion: Motion, key: str, default: str) -> str:
-    return str(motion.metadata.get(key) or default)
+STAGE = Stage(
+    name="sweep",
+    run=run,
+    inputs=("motions/floors.parquet",),
+    files=lambda study: study.body_files,
+    outputs=lambda study: study.sweep_tables,
+    settings=("bodies", "amplitudes"),
+    parallel=True,
+)

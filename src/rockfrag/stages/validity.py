@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import simulate
 from rockfrag.study.configurations import Configuration
 from rockfrag.units import STANDARD_GRAVITY
 
@@ -32,6 +31,8 @@ def validity_table(
     ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have jumped) and
     ``closest_approach`` (how near the response came to an unstable equilibrium).
     """
+    from rockfrag.rocking import simulate
+
     bodies = {(one.object, one.label): one.body for one in configurations}
     known = tests[tests["amplitude_g"].notna()]
     rows = []

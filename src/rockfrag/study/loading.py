@@ -4,7 +4,6 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.motions.processing import check_steps
 from rockfrag.shaketable.laboratory_table import read_measured
@@ -37,7 +36,17 @@ def load_any(path: str | os.PathLike[str]) -> Study | MeasuredTable:
     InputError
         As :func:`load_study`.
     """
-    content = read_yaml(path)
+    return any_study(read_yaml(path), path)
+
+
+def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study | MeasuredTable:
+    """Make a study of either kind of a configuration that was read from ``path``.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_study`.
+    """
     if is_measured_table(content):
         return measured_table_from(content, path)
     return checked_study(content, path)
@@ -56,9 +65,7 @@ def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> S
         check_steps(study.processing)
     except InputError as error:
         raise InputError(f"{study.source}: key motions.processing: {error}") from error
-    if study.building is not None:
-        storeys = len(read_building(study.building).masses)
-        _check_levels(study, storeys)
+    _check_varied_floors(study)
     if study.more.shaker is not None:
         read_shaker(study.more.shaker)
     if study.more.explanation is not None and not study.has_pairs:
@@ -71,11 +78,17 @@ def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> S
     return study
 
 
-def _check_levels(study: Study, storeys: int) -> None:
-    """Raise where the sensitivity names levels that the building does not have."""
-    for third, fifth in (study.more.sensitivity or {}).get("levels", ()):
-        if not third < fifth <= storeys:
-            raise InputError(
-                f"{study.source}: key building_sensitivity.levels: expected pairs of levels up to "
-                f"{storeys}, the lower one first, found [{third}, {fifth}]."
-            )
+def _check_varied_floors(study: Study) -> None:
+    """Raise where the sensitivity names floors or levels that the building does not have."""
+    if study.building is None:
+        return
+    storeys = study.building.storeys
+    for i, levels in enumerate((study.more.sensitivity or {}).get("floors", ())):
+        for label, level in levels.items():
+            where = f"{study.source}: key building_sensitivity.floors[{i}].{label}"
+            if label not in study.floors:
+                raise InputError(
+                    f"{where}: expected a floor of the building, one of {', '.join(study.floors)}."
+                )
+            if level > storeys:
+                raise InputError(f"{where}: expected a level up to {storeys}, found {level}.")

@@ -8,6 +8,8 @@ from typing import Any
 
 import pandas as pd
 
+from rockfrag.building.model import ShearBuilding
+from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
@@ -17,11 +19,11 @@ from rockfrag.study.configurations import Configuration, read_configurations, re
 from rockfrag.study.supplementary import Supplementary, supplementary_from
 from rockfrag.study.validation import check_schema, read_schema
 
+GROUND = "ground"
+"""Label of the only floor of a study without a building."""
+
 RECORDS_FOLDER = "resources/records"
 """Where fetched records are kept, from the folder in which the workflow runs."""
-
-PRINTED_TABLES = ("table_3_1.csv", "table_3_3.csv", "table_4_1.csv")
-"""Files in the folder ``printed`` of a study that is compared with the thesis."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +48,8 @@ class Study:
         Path of the table of motions, and its rows that are used, in order.
     processing
         Steps that each record goes through, in order.
-    building
-        Path of the building whose floors are shaken too, or None for ground motions alone.
+    building_file, building
+        Path of the building whose floors are shaken, and the building; None for ground motions alone.
     specimens_file, configurations_file, specimens
         Paths of the tables of bodies, and the blocks by name.
     configurations
@@ -58,8 +60,8 @@ class Study:
         By how much the laboratory raises the amplitude from one run to the next [%].
     fragility
         Settings of the fragility curves.
-    printed
-        Folder of printed tables to compare with, or None.
+    compare_with
+        ``thesis`` if the study is compared with the thesis that these tests come from, or None.
     more
         Optional parts: shaker, measured tests, sensitivity to the building, explanation.
     """
@@ -71,7 +73,8 @@ class Study:
     catalogue_file: Path
     catalogue: pd.DataFrame
     processing: tuple[Mapping[str, Any], ...]
-    building: Path | None
+    building_file: Path | None
+    building: ShearBuilding | None
     specimens_file: Path
     configurations_file: Path
     specimens: Mapping[str, Block]
@@ -79,7 +82,7 @@ class Study:
     amplitudes: Amplitudes
     protocol_step_percent: float
     fragility: FragilitySettings
-    printed: Path | None
+    compare_with: str | None
     more: Supplementary
 
     def configuration(self, slug: str) -> Configuration:
@@ -94,6 +97,21 @@ class Study:
             for side in ("P", "NP")
         }
         return bool(sides["P"] & sides["NP"])
+
+    @property
+    def floors(self) -> dict[str, int]:
+        """Level of each floor that is shaken, by its label; 0 is the ground."""
+        return {GROUND: 0} if self.building is None else dict(self.building.floors)
+
+    @property
+    def body_files(self) -> list[str]:
+        """Paths of the tables of bodies."""
+        return [str(self.specimens_file), str(self.configurations_file)]
+
+    @property
+    def sweep_tables(self) -> list[str]:
+        """Name of the table of each configuration's sweep."""
+        return [f"sweep/{one.slug}" for one in self.configurations]
 
     @property
     def tested_blocks(self) -> dict[str, Block]:
@@ -137,6 +155,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     specimens = read_specimens(specimens_file)
     known = read_configurations(configurations_file, specimens)
     building = content.get("building")
+    building_file = None if building is None else _file(source, "building", building)
     try:
         amplitudes = Amplitudes(**content["amplitudes"])
     except InputError as error:
@@ -150,7 +169,8 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         catalogue_file=catalogue_file,
         catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
         processing=tuple(motions.get("processing", ())),
-        building=None if building is None else _file(source, "building", building),
+        building_file=building_file,
+        building=None if building_file is None else read_building(building_file),
         specimens_file=specimens_file,
         configurations_file=configurations_file,
         specimens=specimens,
@@ -161,7 +181,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
             measures=tuple(content["fragility"]["measures"]),
             confidence=content["fragility"]["confidence"],
         ),
-        printed=_printed(source, content.get("printed")),
+        compare_with=content.get("compare_with"),
         more=supplementary_from(content, source),
     )
 
@@ -184,14 +204,6 @@ def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.
                 f"found {name}."
             )
     return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
-
-
-def _printed(source: Path, name: str | None) -> Path | None:
-    if name is None:
-        return None
-    for table in PRINTED_TABLES:
-        _file(source, "printed", os.path.join(name, table))
-    return Path(os.path.normpath(source.parent / name))
 
 
 def _chosen(

@@ -74,6 +74,35 @@ def floor_margins(tests: pd.DataFrame) -> dict[str, float]:
     return {name: float(value) for name, value in margins.items()}
 
 
+TIE = 1e-9
+"""Margins below this are ties up to rounding: the amplitudes of two tests are the same of the sweep."""
+
+
+def margins_table(tests: pd.DataFrame) -> pd.DataFrame:
+    """Margins of the statements about floors for every building of a sensitivity study.
+
+    Parameters
+    ----------
+    tests
+        As :func:`rockfrag.shaketable.sensitivity.building_sensitivity` returns them.
+
+    Returns
+    -------
+    One row per building, reading and statement: ``axis``, ``value``, ``label``, ``reading``,
+    ``statement``, ``margin``, ``holds`` and ``credible``.
+    """
+    keys = ["axis", "value", "label", "credible", "reading"]
+    rows = []
+    for values, one in tests.groupby(keys, sort=False):
+        about = dict(zip(keys, values, strict=True))
+        rows += [
+            {**about, "statement": name, "margin": margin, "holds": margin > TIE}
+            for name, margin in floor_margins(one).items()
+        ]
+    columns = ["axis", "value", "label", "reading", "statement", "margin", "holds", "credible"]
+    return pd.DataFrame(rows, columns=columns)
+
+
 def _amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     """Amplitude [g] by tower, event and floor, a column each with and without pedestal."""
     known = tests.assign(amplitude=tests["amplitude_g"].fillna(tests["lower_g"]))

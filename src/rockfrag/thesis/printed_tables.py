@@ -3,6 +3,7 @@
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import pandas as pd
 
@@ -12,6 +13,9 @@ from rockfrag.rocking.bodies import Block, Body
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.tables import read_rows
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+
+FOLDER = Path(__file__).parent / "printed"
+"""The tables as printed: ``table_3_1.csv``, ``table_3_3.csv`` and ``table_4_1.csv``."""
 
 COLUMNS = ("name", "quantity", "unit", "computed", "printed", "agrees")
 """Columns of a comparison; ``agrees``: whether the computed value rounds to the printed digits."""

@@ -20,8 +20,7 @@ from rockfrag.report.figures.style import (
     figure_style,
     new_figure,
 )
-from rockfrag.shaketable.sensitivity import TIE
-from rockfrag.thesis.floor_order import STATEMENTS
+from rockfrag.thesis.floor_order import STATEMENTS, TIE
 
 FLOOR_STYLES = {
     "GF": ("ground floor", BLUE, "o"),

@@ -50,7 +50,7 @@ def measured_section(
         parts.append(
             table_html(effects, EFFECT, "Measured effect of the pedestal, 95 % intervals.")
         )
-    if len(tables["measured/claims"]):
+    if len(tables.get("measured/claims", ())):
         parts.append(ledger_html(tables["measured/claims"]))
     return Section(
         "measured",

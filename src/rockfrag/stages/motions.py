@@ -1,0 +1,62 @@
+"""Motions: records read, processed, felt by the floors of a building, and measured."""
+
+from pathlib import Path
+
+from rockfrag.records.motion import Motion
+from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield the motions as read, on the ground and on every floor, and their intensity measures."""
+    from rockfrag.motions.measures import measure_motions
+    from rockfrag.motions.processing import process
+    from rockfrag.records.catalogue import load_motion
+
+    study = job.study
+    folder = study.catalogue_file.parent
+    records = [
+        load_motion({str(key): value for key, value in row.items()}, folder, Path(RECORDS_FOLDER))
+        for row in study.catalogue.to_dict("records")
+    ]
+    yield "motions/records", records
+    ground = [process(one, study.processing) for one in records]
+    yield "motions/ground", ground
+    floors = [floor for one in ground for floor in _floors(study, one)]
+    yield "motions/floors", floors
+    yield "measures", measure_motions(floors)
+    job.log.info("%d records, %d motions of floors", len(records), len(floors))
+
+
+def _floors(study: Study, ground: Motion) -> list[Motion]:
+    if study.building is None:
+        return [on_the_ground(ground)]
+    from rockfrag.building.floors import floor_motions
+
+    return floor_motions(study.building, ground)
+
+
+def on_the_ground(motion: Motion) -> Motion:
+    """Return a ground motion labelled as the floors of a building are: ``<name>_ground``."""
+    from dataclasses import replace
+
+    metadata = {**motion.metadata, "floor": GROUND, "level": 0, "ground_motion": motion.name}
+    return replace(motion, name=f"{motion.name}_{GROUND}", metadata=metadata)
+
+
+STAGE = Stage(
+    name="motions",
+    run=run,
+    files=lambda study: [
+        str(study.catalogue_file),
+        *study.record_files(RECORDS_FOLDER),
+        *([] if study.building_file is None else [str(study.building_file)]),
+    ],
+    outputs=(
+        "motions/records.parquet",
+        "motions/ground.parquet",
+        "motions/floors.parquet",
+        "measures",
+    ),
+    settings=("motions", "building"),
+)

@@ -1,0 +1,45 @@
+"""The building as an axis: one of its assumptions changed at a time."""
+
+from rockfrag.stages.protocol import protocol_of
+from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.study.study import Study
+from rockfrag.study.yaml_file import read_yaml
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield the tests on the floors of every building."""
+    from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants
+
+    study = job.study
+    if study.building_file is None or study.more.sensitivity is None:
+        raise ValueError("the study varies no building")
+    settings = read_yaml(study.building_file)
+    variants = building_variants(settings, study.more.sensitivity, str(study.building_file))
+    specimens = [
+        Specimen(one.name, one.object, one.label, one.body) for one in study.configurations
+    ]
+    yield (
+        "building_sensitivity/tests",
+        building_sensitivity(
+            variants,
+            job.motions("motions/ground"),
+            specimens,
+            study.amplitudes.values_g,
+            protocol_of(study),
+            job.threads,
+            lambda done: job.log.info("%d of %d buildings", done, len(variants)),
+        ),
+    )
+    job.log.info("%d buildings", len(variants))
+
+
+STAGE = Stage(
+    name="building_sensitivity",
+    run=run,
+    wanted=lambda study: study.more.sensitivity is not None,
+    inputs=("motions/ground.parquet",),
+    files=lambda study: [str(study.building_file), *study.body_files],
+    outputs=("building_sensitivity/tests",),
+    settings=("building_sensitivity", "building", "bodies", "amplitudes", "protocol"),
+    parallel=True,
+)

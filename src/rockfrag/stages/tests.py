@@ -1,0 +1,47 @@
+"""Tests: the sweeps read as a laboratory would and in two other ways, within the limits of a shaker."""
+
+import pandas as pd
+
+from rockfrag.stages.shaker import limited_tests, limits_table
+from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.stages.validity import validity_table
+from rockfrag.study.study import Study
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield the tests in every reading, the shaker's limits, and the forces in each test."""
+    from rockfrag.shaketable.readings import READING, tests_from_sweep
+    from rockfrag.stages.protocol import protocol_of
+
+    study = job.study
+    protocol = protocol_of(study)
+    motions = job.motions("motions/floors")
+    sweeps = pd.concat([job.table(name) for name in study.sweep_tables], ignore_index=True)
+    tests = tests_from_sweep(sweeps, protocol)
+    if study.more.shaker is not None:
+        limits = limits_table(study, motions)
+        yield "shaker", limits
+        tests = pd.concat([tests, limited_tests(sweeps, protocol, limits)], ignore_index=True)
+    yield "tests", tests
+    laboratory = tests[tests["reading"] == READING]
+    by_name = {motion.name: motion for motion in motions}
+    yield "validity", validity_table(laboratory, study.configurations, by_name)
+    censored = int((laboratory["censored"] != "none").sum())
+    job.log.info("%d tests, %d of them not overturned", len(laboratory), censored)
+
+
+STAGE = Stage(
+    name="tests",
+    run=run,
+    inputs=lambda study: ("motions/floors.parquet", *study.sweep_tables),
+    files=lambda study: [
+        *study.body_files,
+        *([] if study.more.shaker is None else [str(study.more.shaker)]),
+    ],
+    outputs=lambda study: (
+        "tests",
+        "validity",
+        *([] if study.more.shaker is None else ["shaker"]),
+    ),
+    settings=("bodies", "amplitudes", "protocol", "shaker"),
+)

@@ -1,0 +1,126 @@
+"""What a study does beyond its own when it is compared with the thesis: one stage."""
+
+import pandas as pd
+
+from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.study.study import Study
+
+TABLES = ("table_3_1", "table_3_3", "table_4_1")
+
+
+def run(job: Job[Study]) -> Results:
+    """Yield printed tables beside computed ones, statements with verdicts, contradictions."""
+    yield from _printed_tables(job)
+    yield from _statements(job)
+    if job.study.more.measured_tests is not None:
+        yield "measured/claims", _measured_statements(job)
+    if job.study.more.sensitivity is not None:
+        from rockfrag.thesis.floor_order import margins_table
+
+        margins = margins_table(job.table("building_sensitivity/tests"))
+        yield "building_sensitivity/margins", margins
+
+
+def _printed_tables(job: Job[Study]) -> Results:
+    from rockfrag.thesis import printed_tables as printed
+
+    study = job.study
+    computed = (
+        (printed.block_properties(study.specimens), printed.TABLE_3_1),
+        (printed.ground_measures(job.motions("motions/ground")), printed.TABLE_3_3),
+        (printed.uplift_table(study.configurations), printed.TABLE_4_1),
+    )
+    for name, (table, quantities) in zip(TABLES, computed, strict=True):
+        beside = printed.compare(table, quantities, printed.FOLDER / f"{name}.csv")
+        yield name, beside
+        known = beside["agrees"].dropna()
+        job.log.info("%s: %d of %d printed values agree", name, known.sum(), len(known))
+
+
+def _statements(job: Job[Study]) -> Results:
+    from rockfrag.shaketable.readings import READING
+    from rockfrag.thesis.statements import Evidence, contradictions, ledger, ledger_table
+    from rockfrag.thesis.statements.theory import theory_claims
+
+    study = job.study
+    theory = ledger_table(
+        theory_claims(
+            {**study.tested_blocks, **study.stacks},
+            job.motions("motions/ground"),
+            seed=study.seed,
+            threads=job.threads,
+        )
+    )
+    yield "claims_theory", theory
+    if not study.has_pairs:
+        return
+    tests, measures = job.table("tests"), job.table("measures")
+    forces = job.table("validity")[["test", "friction_demand", "least_normal_force_n"]]
+    tests = tests[tests["reading"] == READING].merge(forces, on="test", how="left")
+    bodies = study.tested_blocks
+    claims = ledger(tests, basis="simulated", seed=study.seed, measures=measures, bodies=bodies)
+    claims = pd.concat([theory, claims], ignore_index=True)
+    yield "claims", claims
+    evidence = Evidence(tests, "simulated", study.seed, measures, bodies)
+    yield "contradictions", contradictions(evidence)
+    verdicts = claims["verdict"].value_counts().items()
+    job.log.info("statements: %s", ", ".join(f"{n} {verdict}" for verdict, n in verdicts))
+
+
+def _measured_statements(job: Job[Study]) -> pd.DataFrame:
+    from rockfrag.thesis.statements import ledger
+
+    study, measured = job.study, job.table("measured/tests")
+    if not _compares_objects(measured):
+        job.log.info(
+            "no statement tested on the measured tests: too few objects, motions or events"
+        )
+        return pd.DataFrame(columns=["number"])
+    return ledger(
+        measured,
+        basis="measured",
+        seed=study.seed,
+        measures=job.table("measures"),
+        bodies=study.tested_blocks,
+    )
+
+
+def _compares_objects(measured: pd.DataFrame) -> bool:
+    """Whether two objects overturned by the same motion on each side, in two events or more."""
+    known = measured[measured["amplitude_g"].notna()]
+    for side in ("P", "NP"):
+        rows = known[known["pedestal"] == side]
+        objects = rows.groupby(["event", "motion"])["object"].nunique()
+        if objects[objects > 1].reset_index()["event"].nunique() < 2:
+            return False
+    return True
+
+
+def _inputs(study: Study) -> list[str]:
+    names = ["motions/ground.parquet", "tests", "validity", "measures"]
+    if study.more.measured_tests is not None:
+        names.append("measured/tests")
+    if study.more.sensitivity is not None:
+        names.append("building_sensitivity/tests")
+    return names
+
+
+def _outputs(study: Study) -> list[str]:
+    names = [*TABLES, "claims_theory"]
+    if study.has_pairs:
+        names += ["claims", "contradictions"]
+    if study.more.measured_tests is not None:
+        names.append("measured/claims")
+    if study.more.sensitivity is not None:
+        names.append("building_sensitivity/margins")
+    return names
+
+
+STAGE = Stage(
+    name="thesis",
+    run=run,
+    inputs=_inputs,
+    files=lambda study: study.body_files,
+    outputs=_outputs,
+    settings=("bodies", "seed", "measured_tests", "building_sensitivity"),
+)
