@@ -25,8 +25,7 @@ def test_t_on_units_is_the_one_sample_t_test():
 
 def test_units_without_scatter_have_a_stated_result():
     same = t_estimate([0.0, 0.0, 0.0])
-    assert (same.p, same.lower, same.upper) == (1.0, 0.0, 0.0)
-    assert t_estimate([0.2, 0.2]).p == 0.0
+    assert np.isnan([same.p, same.lower, same.upper]).all()
     assert np.isnan(t_estimate([0.2]).p)
 
 
@@ -72,10 +71,10 @@ def test_four_events_never_give_a_sign_flip_p_below_an_eighth():
 def test_drawn_sign_flips_agree_with_enumerated_ones(monkeypatch):
     x = np.random.default_rng(2).normal(0.1, 0.2, 12)
     exact = sign_flip_test(x).p
-    monkeypatch.setattr("rockfrag.pedestal.permutation.LARGEST_ENUMERATION", 4)
+    monkeypatch.setattr("rockfrag.pedestal.permutation.DRAWS", 2_000)
     drawn = sign_flip_test(x, seed=5)
     assert not drawn.exact
-    assert drawn.p == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 1e5))
+    assert drawn.p == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 2e3))
     assert drawn == sign_flip_test(x, seed=5)
 
 
@@ -97,7 +96,8 @@ def test_event_with_more_motions_counts_once(tests_table):
 
 
 def test_slope_on_slenderness_is_recovered_without_noise(tests_table):
-    table = pair_tests(tests_table(3)).table.assign(d=lambda t: 0.1 - 0.07 * t["s_c"])
+    table = pair_tests(tests_table(3), {"T1": 3.0, "T2": 4.0, "T3": 5.0}).table
+    table = table.assign(d=0.1 - 0.07 * table["s_c"])
     slope = slope_effect(table)
     assert slope.mean == pytest.approx(-0.07, abs=1e-12)
 

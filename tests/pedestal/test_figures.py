@@ -12,6 +12,8 @@ from rockfrag.report.figures.pedestal import (
 )
 from rockfrag.report.figures.style import save_figure
 
+SLENDERNESS = {"T1": 3.0, "T2": 4.0, "T3": 5.0}
+
 
 def points(axes):
     """Markers drawn without a line [x, y]."""
@@ -32,12 +34,12 @@ def test_scatter_shows_36_pairs(tests_table, panels, count):
 
 def test_slenderness_panels_show_72_tests_and_the_arithmetic_means(tests_table):
     tests = tests_table(1)
-    figure = slenderness_figure(tests)
+    figure = slenderness_figure(tests, slenderness=SLENDERNESS)
     assert sum(len(points(axes)) for axes in figure.axes) == 72
     means = next(x.get_ydata() for x in figure.axes[0].lines if x.get_marker() == "_")
     without = tests[tests["pedestal"] == "NP"].groupby("object")["amplitude_g"].mean()
     assert means == pytest.approx(without.to_numpy())
-    assert len(slenderness_figure(tests, by_floor=True).axes) == 6
+    assert len(slenderness_figure(tests, by_floor=True, slenderness=SLENDERNESS).axes) == 6
 
 
 def test_censored_tests_are_arrows_and_not_in_the_means(tests_table):
@@ -46,22 +48,22 @@ def test_censored_tests_are_arrows_and_not_in_the_means(tests_table):
     tests.loc[row, ["censored", "lower_g", "upper_g", "amplitude_g"]] = ["right", 0.9, None, None]
     for figure in (
         pedestal_scatter(tests),
-        slenderness_figure(tests),
-        sides_figure(tests, "object"),
+        slenderness_figure(tests, slenderness=SLENDERNESS),
+        sides_figure(tests, "object", slenderness=SLENDERNESS),
     ):
         arrows = [text for axes in figure.axes for text in axes.texts if text.arrow_patch]
         assert len(arrows) == 1
 
 
 def test_sides_by_floor_for_each_object(tests_table):
-    figure = sides_figure(tests_table(1), "floor", panels="object")
+    figure = sides_figure(tests_table(1), "floor", panels="object", slenderness=SLENDERNESS)
     assert [axes.get_title(loc="left") for axes in figure.axes] == ["T1", "T2", "T3"]
     labels = [tick.get_text().replace("\n", " ") for tick in figure.axes[0].get_xticklabels()]
     assert labels == ["ground floor", "3rd floor", "5th floor"]
 
 
 def test_forest_has_a_line_per_scope_and_the_same_bytes_twice(tests_table, tmp_path):
-    effects = effects_table(pair_tests(tests_table(1)).table)
+    effects = effects_table(pair_tests(tests_table(1)).table, ("GF", "F3", "F5"))
     for name in ("one", "two"):
         save_figure(forest_figure(effects), tmp_path / f"{name}.svg")
     assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()

@@ -47,7 +47,8 @@ def test_censored_side_bounds_the_log_ratio(tests_table):
     tests.loc[p_row, ["censored", "lower_g", "upper_g", "amplitude_g"]] = ["right", 0.6, None, None]
     pairs = pair_tests(tests)
     one = pairs.censored.iloc[0]
-    assert len(pairs.table) == 35
+    assert len(pairs.table) == 36
+    assert pairs.table.set_index(["object", "motion"])["bound"]["T1", "Kobe-GF"] == "at least"
     assert one["d_lower"] == pytest.approx(np.log(0.6 / tests.loc[np_row, "amplitude_g"]))
     assert one["d_upper"] == np.inf
     assert "never" in pairs.notes()[0]
@@ -82,7 +83,7 @@ def test_what_cannot_be_used_is_said_in_one_sentence(tests_table, column, value,
     tests = tests_table(1)
     tests.loc[5, column] = value
     with pytest.raises(InputError, match=words) as error:
-        pair_tests(tests)
+        pair_tests(tests, {"T1": 3.0, "T2": 4.0, "T3": 5.0})
     assert str(error.value).count("\n") == 0
 
 

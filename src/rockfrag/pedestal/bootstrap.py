@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pandas as pd
 from scipy import stats
 
-from rockfrag.pedestal.cluster_means import Array
+from rockfrag.pedestal.cluster_means import ROUNDING, Array
 
 DRAWS = 9_999
 
@@ -34,15 +34,16 @@ def bca_interval(
     Returns
     -------
     tuple of float
-        Lower and upper limit; both the statistic itself when all values agree, NaN for one value.
+        Lower and upper limit; NaN for one value, and where all values agree, for then there is
+        nothing to resample.
     """
     x = np.asarray(values, dtype=float)
     n = x.size
     if n < 2:
         return np.nan, np.nan
+    if np.ptp(x) < ROUNDING:
+        return np.nan, np.nan
     observed = float(statistic(x))
-    if np.ptp(x) == 0:
-        return observed, observed
     indices = np.random.default_rng(seed).integers(0, n, size=(draws, n))
     drawn = np.sort(statistic(x[indices]))
     below = (np.sum(drawn < observed) + 0.5 * np.sum(drawn == observed)) / draws

@@ -8,7 +8,6 @@ axis and by quadrature along the other.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +17,10 @@ from scipy.special import ndtr
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import ROUNDING, Array, Estimate, t_estimate
-from rockfrag.pedestal.paired_tests import KEY, SLENDERNESS, check_tests, slenderness_of
+from rockfrag.pedestal.paired_tests import KEY, check_tests
 
-NODES = 40
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+"""Gauss-Legendre quadrature on (-1, 1)."""
 FAR = 9.0
 """Standard deviations beyond which the normal density is nothing."""
 
@@ -61,12 +61,10 @@ class _Design:
     single: Array
 
 
-def fit_censored(
-    tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNESS
-) -> CensoredFit:
+def fit_censored(tests: pd.DataFrame) -> CensoredFit:
     """Estimate the pedestal's effect from exact, interval- and right-censored tests.
 
-    Fixed effects are the object (as ln of its slenderness), the floor, and the pedestal.  The
+    Fixed effects are the object, the floor, and the pedestal.  The
     interval of the effect comes from leaving out one event at a time, since events were sampled, not
     tests.
 
@@ -90,7 +88,6 @@ def fit_censored(
             )
     if set(clean["pedestal"]) != {"P", "NP"}:
         raise InputError("Interval likelihood: tests with and without pedestal are needed.")
-    clean = clean.assign(slenderness=slenderness_of(clean, slenderness))
     if _sides_agree(clean):
         raise InputError(
             "Interval likelihood: the two tests of every pair gave the same figure, so there is no "
@@ -106,15 +103,6 @@ def fit_censored(
         tests=len(design.lower),
         censored=int((clean["censored"] == "right").sum()),
     )
-
-
-def most_likely_effect(
-    tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNESS
-) -> float:
-    """Return δ of `fit_censored` alone, without the checks and the interval [-]."""
-    clean = check_tests(tests)
-    clean = clean.assign(slenderness=slenderness_of(clean, slenderness))
-    return float(_maximum(clean)[0].x[0])
 
 
 def _sides_agree(clean: pd.DataFrame) -> bool:
@@ -147,12 +135,9 @@ def _jackknife(clean: pd.DataFrame, start: Array) -> Estimate:
 
 
 def _design(clean: pd.DataFrame) -> _Design:
-    ln_slenderness = np.log(clean["slenderness"].to_numpy(dtype=float))
-    floors = pd.get_dummies(clean["floor"], drop_first=True).to_numpy(dtype=float)
-    columns = [(clean["pedestal"] == "P").to_numpy(dtype=float), np.ones(len(clean))]
-    if np.ptp(ln_slenderness) > 0:
-        columns.append(ln_slenderness - ln_slenderness.mean())
-    x = np.column_stack([*columns, floors])
+    fixed = pd.get_dummies(clean[["object", "floor"]], drop_first=True).to_numpy(dtype=float)
+    pedestal = (clean["pedestal"] == "P").to_numpy(dtype=float)
+    x = np.column_stack([pedestal, np.ones(len(clean)), fixed])
     with np.errstate(divide="ignore"):
         lower = np.log(clean["lower_g"].to_numpy(dtype=float))
     right = (clean["censored"] == "right").to_numpy()
@@ -236,7 +221,6 @@ def _log_single(low: Array, high: Array, sd: float) -> Array:
 
 def _rectangle(a: Array, b: Array, c: Array, d: Array, rho: float, residual: float) -> Array:
     """Probability of (a, b] x (c, d] under the standard bivariate normal, by Gauss-Legendre."""
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
     # where the conditional probability of the other axis is nothing the integrand is, too
     left = np.clip(a, -FAR, FAR)
     right = np.clip(b, -FAR, FAR)
@@ -244,7 +228,7 @@ def _rectangle(a: Array, b: Array, c: Array, d: Array, rho: float, residual: flo
         left = np.maximum(left, (np.maximum(c, -FAR) - FAR * residual) / rho)
         right = np.minimum(right, (np.minimum(d, FAR) + FAR * residual) / rho)
     half = np.maximum(right - left, 0.0) / 2
-    z = left[:, None] + half[:, None] * (nodes + 1)
+    z = left[:, None] + half[:, None] * (NODES + 1)
     inner = ndtr((d[:, None] - rho * z) / residual) - ndtr((c[:, None] - rho * z) / residual)
-    value = half * np.sum(weights * np.exp(_log_density(z)) * inner, axis=1)
+    value = half * np.sum(WEIGHTS * np.exp(_log_density(z)) * inner, axis=1)
     return np.asarray(np.maximum(value, 1e-300), dtype=np.float64)

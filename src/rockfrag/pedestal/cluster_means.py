@@ -1,11 +1,18 @@
 """The test that holds its level: t on the means of the units that were sampled.
 
-The 36 pairs are no 36 independent facts: pairs under one motion share it, motions of one
-earthquake share the earthquake.  With objects and floors fixed and earthquakes sampled, the mean of
-d over one earthquake is one observation, independent of the others whatever the variances of event,
-motion and pair are.  A t test on the k event means, with k - 1 degrees of freedom, is therefore
-exact for normal data (balanced, as the thesis's design is).  Any contrast, a difference of floors
-or a slope on slenderness, is computed inside each event first and then tested in the same way.
+Pairs are not independent: pairs under one motion share it, motions of one earthquake share the
+earthquake.  With objects and floors fixed and earthquakes sampled, the mean of d over one earthquake
+is one observation, independent of the others whatever the variances of event, motion and pair are.
+A t test on the k event means, with k - 1 degrees of freedom, is therefore exact for normal data in a
+balanced design.  Any contrast, a difference of floors or a slope on slenderness, is computed inside
+each event first and then tested in the same way.
+
+Amplitudes from a ladder of steps are known to a step only, so d = ln a_P - ln a_NP is known to its
+``resolution``, d ± ln(1 + step).  Where pairs differ among themselves the ladder's rounding is part of
+their scatter and averages out; where they agree it does not show, and a shift of up to the resolution
+may hide in each of them.  The resolution of a mean is therefore that of the pairs that share the most
+frequent value, times their share; no interval is narrower than it, and no difference within it is
+called one.
 """
 
 import math
@@ -42,7 +49,9 @@ class Estimate:
     lower, upper
         Limits of the interval [-]; NaN for one unit.
     p
-        Two-sided p value of a mean of zero; NaN for one unit.
+        Two-sided p value of a mean of zero; NaN for one unit, 1 within the resolution.
+    resolution
+        Half-width below which the data cannot tell the mean from another value [-].
     """
 
     mean: float
@@ -51,6 +60,7 @@ class Estimate:
     lower: float
     upper: float
     p: float
+    resolution: float = 0.0
 
     @property
     def ratio(self) -> float:
@@ -75,32 +85,35 @@ class Estimate:
     def times(self, factor: float) -> "Estimate":
         """Estimate of ``factor`` times the mean."""
         lower, upper = sorted((self.lower * factor, self.upper * factor))
-        return Estimate(self.mean * factor, self.se * abs(factor), self.units, lower, upper, self.p)
+        resolution = self.resolution * abs(factor)
+        return Estimate(
+            self.mean * factor, self.se * abs(factor), self.units, lower, upper, self.p, resolution
+        )
 
     def p_above(self, bound: float) -> float:
         """One-sided p value of the hypothesis that the mean is at most ``bound``."""
-        if not math.isfinite(self.se):
+        if not self.se > 0:
             return math.nan
-        if self.se == 0:
-            return 0.0 if self.mean > bound else 1.0
+        if self.mean - bound <= self.resolution:
+            return 1.0
         return float(stats.t.sf((self.mean - bound) / self.se, self.units - 1))
 
     def p_below(self, bound: float) -> float:
         """One-sided p value of the hypothesis that the mean is at least ``bound``."""
-        if not math.isfinite(self.se):
-            return math.nan
-        if self.se == 0:
-            return 0.0 if self.mean < bound else 1.0
-        return float(stats.t.cdf((self.mean - bound) / self.se, self.units - 1))
+        return self.times(-1.0).p_above(-bound)
 
     def text(self) -> str:
         """Ratio and interval in words for a table."""
-        if math.isnan(self.se):
+        if self.units == 1:
             return f"{self.ratio:.3f} (one unit, no interval)"
+        if not self.se > 0:
+            return f"{self.ratio:.3f} (all units agree and their steps are not known, no interval)"
         return f"{self.ratio:.3f} [{self.ratio_lower:.3f}, {self.ratio_upper:.3f}]"
 
 
-def t_estimate(values: npt.ArrayLike, confidence: float = CONFIDENCE) -> Estimate:
+def t_estimate(
+    values: npt.ArrayLike, confidence: float = CONFIDENCE, resolution: float = 0.0
+) -> Estimate:
     """Mean of independent units with its t interval and test.
 
     Parameters
@@ -109,12 +122,16 @@ def t_estimate(values: npt.ArrayLike, confidence: float = CONFIDENCE) -> Estimat
         One value per sampled unit, shape (k,).
     confidence
         Level of the two-sided interval.
+    resolution
+        Half-width below which the data cannot tell the mean from another value [-], see
+        `tied_resolution`.
 
     Returns
     -------
     Estimate
-        Units that agree to the last digit (a pedestal that never moves gives d = 0 throughout) have
-        an interval of zero width and p = 1 at zero, 0 elsewhere.
+        The half-width is that of t, and at least the resolution; the standard error is at least that
+        of the mean of k values uniform within ± the resolution, resolution/√(3 k). Units that all
+        agree, with no resolution known, have neither interval nor p value (NaN).
 
     Raises
     ------
@@ -126,14 +143,43 @@ def t_estimate(values: npt.ArrayLike, confidence: float = CONFIDENCE) -> Estimat
         raise TooFewUnitsError("a mean needs at least one unit and finite values")
     mean = float(x.mean())
     if x.size == 1:
-        return Estimate(mean, math.nan, 1, math.nan, math.nan, math.nan)
+        return Estimate(mean, math.nan, 1, math.nan, math.nan, math.nan, resolution)
+    scatter = 0.0
     if np.ptp(x) < ROUNDING:
-        value = 0.0 if abs(mean) < ROUNDING else mean
-        return Estimate(value, 0.0, x.size, value, value, 1.0 if value == 0 else 0.0)
-    se = float(x.std(ddof=1) / math.sqrt(x.size))
-    half = float(stats.t.ppf(0.5 + confidence / 2, x.size - 1)) * se
-    p = float(2 * stats.t.sf(abs(mean) / se, x.size - 1))
-    return Estimate(mean, se, x.size, mean - half, mean + half, p)
+        mean = 0.0 if abs(mean) < ROUNDING else mean
+    else:
+        scatter = float(x.std(ddof=1) / math.sqrt(x.size))
+    se = max(scatter, resolution / math.sqrt(3 * x.size))
+    if se == 0:
+        return Estimate(mean, 0.0, x.size, math.nan, math.nan, math.nan)
+    half = max(float(stats.t.ppf(0.5 + confidence / 2, x.size - 1)) * se, resolution)
+    p = 1.0
+    if abs(mean) > resolution:
+        p = float(2 * stats.t.sf(abs(mean) / se, x.size - 1))
+    return Estimate(mean, se, x.size, mean - half, mean + half, p, resolution)
+
+
+def tied_resolution(values: npt.ArrayLike, resolution: npt.ArrayLike) -> Array:
+    """Resolution of the values that equal the most frequent one, 0 for the others, shape (n,) [-].
+
+    Parameters
+    ----------
+    values
+        Logarithms, shape (n,); equal to 9 decimals counts as equal.
+    resolution
+        Half-width to which each is known [-], shape (n,).
+    """
+    rounded = np.round(np.asarray(values, dtype=float), 9) + 0.0
+    different, place, count = np.unique(rounded, return_inverse=True, return_counts=True)
+    tied = place == int(count.argmax()) if different.size else np.zeros(0, dtype=bool)
+    return np.asarray(np.where(tied, np.asarray(resolution, dtype=float), 0.0))
+
+
+def _resolution_of(table: pd.DataFrame) -> Array:
+    """Half-width to which each row's value is known; 0 where the table does not tell."""
+    if "resolution" not in table.columns:
+        return np.zeros(len(table))
+    return table["resolution"].to_numpy(dtype=float)
 
 
 def unit_means(table: pd.DataFrame, unit: str, value: str = "d") -> pd.Series:
@@ -164,9 +210,13 @@ def sampled_unit(table: pd.DataFrame) -> str:
 def mean_effect(table: pd.DataFrame, confidence: float = CONFIDENCE) -> Estimate:
     """Mean of d with interval and p value that hold in the crossed design.
 
-    The units are the events; within a single event they are its motions.
+    The units are the events; within a single event they are its motions. A column ``resolution``,
+    the half-width to which each d is known, widens the interval where pairs agree.
     """
-    return t_estimate(unit_means(table, sampled_unit(table)), confidence)
+    unit = sampled_unit(table)
+    hidden = table.assign(d=tied_resolution(table["d"], _resolution_of(table)))
+    resolution = float(unit_means(hidden, unit).mean())
+    return t_estimate(unit_means(table, unit), confidence, resolution)
 
 
 def slope_effect(
@@ -178,10 +228,14 @@ def slope_effect(
     """
     by_motion = [table[name] for name in ("event", "motion", "side") if name in table.columns]
     across = table[x] - table[x].groupby(by_motion).transform("mean")
-    sums = pd.DataFrame({"xy": across * table[value], "xx": across**2})
+    hidden = tied_resolution(table[value], _resolution_of(table))
+    sums = pd.DataFrame(
+        {"xy": across * table[value], "xx": across**2, "hidden": across.abs() * hidden}
+    )
     by_event = sums.groupby(table["event"]).sum()
     by_event = by_event[by_event["xx"] > 0]
-    return t_estimate(by_event["xy"] / by_event["xx"], confidence)
+    resolution = (by_event["hidden"] / by_event["xx"]).mean()
+    return t_estimate(by_event["xy"] / by_event["xx"], confidence, float(resolution))
 
 
 def contrast(
@@ -207,6 +261,15 @@ def contrast(
     """
     design = ("event", "floor", "object", "side")
     matched = [name for name in design if name in table.columns and name != factor]
-    cells = table.pivot_table(index=matched, columns=factor, values=value, aggfunc="mean")
-    difference = (cells[one] - cells[other]).dropna()
-    return t_estimate(difference.groupby(level=block).mean(), confidence)
+    work = table.assign(known=_resolution_of(table))
+    cells = work.pivot_table(
+        index=matched, columns=factor, values=[value, "known"], aggfunc="mean", observed=True
+    )
+    for level in (one, other):
+        if (value, level) not in cells:
+            raise TooFewUnitsError(f"no row has {factor} {level}")
+    difference = (cells[value, one] - cells[value, other]).dropna()
+    known = (cells["known", one] + cells["known", other]).reindex(difference.index)
+    hidden = pd.Series(tied_resolution(difference, known), index=difference.index)
+    resolution = float(hidden.groupby(level=block).mean().mean())
+    return t_estimate(difference.groupby(level=block).mean(), confidence, resolution)

@@ -1,15 +1,13 @@
-"""Mixed models with crossed effects of event and motion, each fit checked before it is believed.
+"""Mixed models with crossed effects of event and motion.
 
-statsmodels fits the variances by general optimisation, and with crossed effects this can stop
-short or, by ``lbfgs``, return an intercept of exactly zero as converged.  In a balanced design the
-fixed effects are known beforehand: they are those of ordinary least squares, that is, means of
-cells.  So every fit is compared with them, and its likelihood with that of a direct two-parameter
-search.  A fit that fails is an error, never a number.
+The variances of event and motion (as ratios to the residual's) are found by a direct search of the
+restricted likelihood; the fixed effects follow by generalised least squares.  General optimisers
+stop short here, or return an intercept of exactly zero as converged.  In a balanced design the fixed
+effects are known beforehand: they are those of ordinary least squares, that is, means of cells, and
+every fit is held against them.
 """
 
-import warnings
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,12 +17,8 @@ from scipy import optimize, stats
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import CONFIDENCE, Array
 
-VARIANCES = {"event": "0+C(event)", "motion": "0+C(event):C(floor)"}
-OPTIMISER = "bfgs"
-LARGEST_FOR_STATSMODELS = 150
-"""Rows up to which statsmodels fits too; its dense algebra takes minutes for 400."""
-SHORTFALL = 0.05
-"""Largest shortfall of log-likelihood that still counts as the same maximum [-]."""
+STARTS = (0.0, 0.1, 0.5, 1.5)
+"""Square roots of the variance ratios from whose best pair the search starts [-]."""
 
 EFFECT = "d ~ 1"
 EFFECT_BY_FLOOR = "d ~ C(floor,Sum)*s_c"
@@ -51,8 +45,6 @@ class MixedFit:
         Number of events; intervals use t with one degree of freedom less.
     balanced
         Whether least squares is the exact answer for the fixed effects.
-    notes
-        What the optimiser had to say, and what was done about it.
     """
 
     formula: str
@@ -62,7 +54,6 @@ class MixedFit:
     sd_residual: float
     events: int
     balanced: bool
-    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -113,20 +104,16 @@ class _Reml:
         return _Direct(float(loglik), ratios, scale, beta, covariance)
 
     def maximum(self) -> _Direct:
-        """Search from three starts; roots of the ratios are free, so zero is no wall."""
-        best: _Direct | None = None
-        for start in ((0.3, 0.3), (1.0, 0.1), (0.1, 1.0)):
-            found = optimize.minimize(
-                lambda root: -self.at(root**2).loglik,
-                np.array(start),
-                method="Nelder-Mead",
-                options={"xatol": 1e-6, "fatol": 1e-9},
-            )
-            one = self.at(found.x**2)
-            if best is None or one.loglik > best.loglik:
-                best = one
-        assert best is not None
-        return best
+        """Search from the best of a grid; roots of the ratios are free, so zero is no wall."""
+        grid = [np.array([one, other]) for one in STARTS for other in STARTS]
+        start = max(grid, key=lambda root: self.at(root**2).loglik)
+        found = optimize.minimize(
+            lambda root: -self.at(root**2).loglik,
+            start,
+            method="Nelder-Mead",
+            options={"xatol": 1e-5, "fatol": 1e-8},
+        )
+        return self.at(found.x**2)
 
 
 def random_effects_balanced(rows: pd.DataFrame) -> bool:
@@ -136,7 +123,7 @@ def random_effects_balanced(rows: pd.DataFrame) -> bool:
     return len(per_motion) == grid and len(set(per_motion)) == 1
 
 
-def fit_mixed(rows: pd.DataFrame, formula: str, optimiser: str = OPTIMISER) -> MixedFit:
+def fit_mixed(rows: pd.DataFrame, formula: str) -> MixedFit:
     """Fit a mixed model by REML and check it.
 
     Parameters
@@ -145,8 +132,6 @@ def fit_mixed(rows: pd.DataFrame, formula: str, optimiser: str = OPTIMISER) -> M
         Columns event, floor and those of ``formula``; one row per pair or per test.
     formula
         Fixed effects, one of `EFFECT`, `EFFECT_BY_FLOOR`, `AMPLITUDE`.
-    optimiser
-        Only the tests that show what is wrong with ``lbfgs`` give another one.
 
     Returns
     -------
@@ -157,103 +142,62 @@ def fit_mixed(rows: pd.DataFrame, formula: str, optimiser: str = OPTIMISER) -> M
     InputError
         If there are fewer than two events or three motions, an empty cell, or no scatter.
     FitDisagreementError
-        If the fixed effects disagree with those of least squares (balanced data) or of generalised
-        least squares at the REML maximum (unbalanced data).
+        If the fixed effects of balanced data disagree with those of least squares.
     """
     if rows["event"].nunique() < 2 or rows.groupby(["event", "floor"]).ngroups < 3:
         raise InputError(
             "Mixed model: it needs at least two events and three motions to tell their variances; "
             "add motions or read the means only."
         )
-    notes: list[str] = []
-    model = smf.mixedlm(
-        formula, rows.assign(one=1), groups="one", re_formula="0", vc_formula=VARIANCES
-    )
+    model = smf.ols(formula, rows)
     y, x = np.asarray(model.endog, dtype=float), np.asarray(model.exog, dtype=float)
     terms = list(model.exog_names)
     least_squares: Array = np.linalg.lstsq(x, y, rcond=None)[0]
-    if np.linalg.matrix_rank(x) < x.shape[1]:
+    if np.linalg.matrix_rank(x) < x.shape[1] or len(y) <= x.shape[1]:
         raise InputError(f"Mixed model {formula}: a cell of the design is empty; fill it.")
     if np.ptp(y - x @ least_squares) < 1e-12 * max(1.0, float(np.ptp(y))):
         raise InputError(
             f"Mixed model {formula}: the data have no scatter to model; read the means."
         )
-    reml = _Reml(y, x, rows)
-    direct = reml.maximum()
+    direct = _Reml(y, x, rows).maximum()
     balanced = random_effects_balanced(rows)
-    expected = least_squares if balanced else direct.beta
-    se = np.sqrt(np.diag(direct.covariance))
-    if len(rows) > LARGEST_FOR_STATSMODELS:
-        estimate = direct.beta
-        notes.append(f"{len(rows)} rows: direct search of the restricted likelihood only")
-    else:
-        estimate, more = _by_statsmodels(model, optimiser, reml, direct)
-        notes.extend(more)
-    check_fixed_effects(terms, formula, estimate, expected, se, balanced)
+    if balanced:
+        se = np.sqrt(np.diag(direct.covariance))
+        check_fixed_effects(terms, formula, direct.beta, least_squares, se)
     events = int(rows["event"].nunique())
     return MixedFit(
         formula=formula,
-        coefficients=_coefficients(terms, estimate, direct, least_squares, events),
+        coefficients=_coefficients(terms, direct, least_squares, events),
         sd_event=float(np.sqrt(direct.ratios[0] * direct.scale)),
         sd_motion=float(np.sqrt(direct.ratios[1] * direct.scale)),
         sd_residual=float(np.sqrt(direct.scale)),
         events=events,
         balanced=balanced,
-        notes=tuple(notes),
     )
 
 
-def _by_statsmodels(
-    model: Any, optimiser: str, reml: _Reml, direct: _Direct
-) -> tuple[Array, list[str]]:
-    """Fixed effects by statsmodels, and what to know about how its optimiser went."""
-    notes = []
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            fitted = model.fit(reml=True, method=optimiser)
-        except np.linalg.LinAlgError:
-            # one floor only: the variances of events and of motions cannot be told apart
-            return direct.beta, [
-                "statsmodels met a singular matrix; estimates are those of the direct maximum"
-            ]
-    if caught:
-        notes.append(f"statsmodels warned {len(caught)} time(s) while optimising")
-    theirs = reml.at(np.asarray(fitted.vcomp, dtype=float) / float(fitted.scale))
-    if theirs.loglik < direct.loglik - SHORTFALL:
-        notes.append(
-            f"statsmodels stopped {direct.loglik - theirs.loglik:.2f} short of the largest "
-            "log-likelihood; variances and standard errors are those of the direct maximum"
-        )
-    return np.asarray(fitted.fe_params, dtype=float), notes
-
-
 def check_fixed_effects(
-    terms: list[str], formula: str, estimate: Array, expected: Array, se: Array, balanced: bool
+    terms: list[str], formula: str, estimate: Array, expected: Array, se: Array
 ) -> None:
-    """Refuse fixed effects that are not the known ones.
-
-    Balanced data leave no freedom; for unbalanced data the optimiser's variances enter a little, so
-    a fifth of a standard error is allowed there.
+    """Refuse fixed effects of balanced data that are not the means of its cells.
 
     Raises
     ------
     FitDisagreementError
         Naming the term.
     """
-    allowed = (1e-4 if balanced else 0.2) * se
-    for term, one, known, limit in zip(terms, estimate, expected, allowed, strict=True):
+    for term, one, known, limit in zip(terms, estimate, expected, 1e-4 * se, strict=True):
         if not abs(one - known) <= limit:
             raise FitDisagreementError(
-                f"mixed model {formula}: fixed effect {term} came out as {one:.6g}, but the "
-                f"{'means of the balanced data' if balanced else 'generalised least squares'} "
-                f"give {known:.6g}"
+                f"mixed model {formula}: fixed effect {term} came out as {one:.6g}, but the means of "
+                f"the balanced data give {known:.6g}"
             )
 
 
 def _coefficients(
-    names: list[str], estimate: Array, direct: _Direct, least_squares: Array, events: int
+    names: list[str], direct: _Direct, least_squares: Array, events: int
 ) -> pd.DataFrame:
+    estimate = direct.beta
     se = np.sqrt(np.diag(direct.covariance))
     half = float(stats.t.ppf(0.5 + CONFIDENCE / 2, events - 1)) * se
     return pd.DataFrame(
@@ -270,10 +214,13 @@ def _coefficients(
 
 
 def long_rows(pairs: pd.DataFrame) -> pd.DataFrame:
-    """Turn pairs into the rows of `AMPLITUDE`: two tests a pair, with ln_a and ped (0 or 1)."""
+    """Turn pairs into the rows of `AMPLITUDE`: two tests a pair, with ln_a and ped (0 or 1).
+
+    ``resolution`` of a test is half the width of its step [-], half that of its pair.
+    """
     sides = [
         pairs[["object", "event", "floor", "motion", "s_c"]].assign(
-            ped=value, ln_a=np.log(pairs[column])
+            ped=value, ln_a=np.log(pairs[column]), resolution=pairs["resolution"] / 2
         )
         for value, column in ((0, "a_np_g"), (1, "a_p_g"))
     ]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import numpy.typing as npt
+from statsmodels.stats.multitest import multipletests
 
 from rockfrag.pedestal.cluster_means import Array
 
@@ -11,10 +12,7 @@ def holm(p: npt.ArrayLike) -> Array:
 
     NaN (a test that could not be made) stays NaN and does not count.
     """
-    given, order = _ordered(p)
-    n = len(order)
-    stepped = np.maximum.accumulate(given[order] * (n - np.arange(n)))
-    return _placed(given, order, stepped)
+    return _adjusted(p, "holm")
 
 
 def benjamini_hochberg(p: npt.ArrayLike) -> Array:
@@ -22,22 +20,15 @@ def benjamini_hochberg(p: npt.ArrayLike) -> Array:
 
     NaN stays NaN and does not count.
     """
-    given, order = _ordered(p)
-    n = len(order)
-    scaled = given[order] * n / (np.arange(n) + 1)
-    return _placed(given, order, np.minimum.accumulate(scaled[::-1])[::-1])
+    return _adjusted(p, "fdr_bh")
 
 
-def _ordered(p: npt.ArrayLike) -> tuple[Array, npt.NDArray[np.intp]]:
-    """Return the p values and the places of the known ones from smallest to largest."""
+def _adjusted(p: npt.ArrayLike, method: str) -> Array:
     given = np.asarray(p, dtype=float)
-    known = np.flatnonzero(~np.isnan(given))
+    known = ~np.isnan(given)
     if np.any((given[known] < 0) | (given[known] > 1)):
         raise ValueError("a p value lies outside 0 to 1")
-    return given, known[np.argsort(given[known], kind="stable")]
-
-
-def _placed(given: Array, order: npt.NDArray[np.intp], adjusted: Array) -> Array:
     result = np.full(given.shape, np.nan)
-    result[order] = np.minimum(1.0, adjusted)
+    if known.any():
+        result[known] = multipletests(given[known], method=method)[1]
     return result

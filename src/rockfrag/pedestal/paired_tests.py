@@ -1,8 +1,11 @@
 """Pairing of tests: the same object and motion, with (P) and without (NP) the pedestal.
 
-The unit of everything that follows is d = ln a_P - ln a_NP of one pair.
+The unit of everything that follows is d = ln a_P - ln a_NP of one pair.  An amplitude from a ladder of
+steps lies anywhere in its step, so d is known to its ``resolution``: half the two steps' widths together,
+ln(1 + step) where both sides climbed the same ladder.  A test that never overturned bounds d on one side.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -10,17 +13,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.thesis.specimens import THESIS_BODIES
 
-SLENDERNESS: Mapping[str, float] = {
-    name: body.slenderness for name, body in THESIS_BODIES.items() if name != "P"
-}
-"""Height over width of the thesis's objects [-]."""
-
-CENTRE = SLENDERNESS["T2"]
-"""Slenderness at which models are centred, that of T2 [-]."""
-
-FLOORS = ("GF", "F3", "F5")
 KEY = ["object", "event", "floor", "motion"]
 _NEEDED = ("object", "pedestal", "event", "floor", "amplitude_g")
 
@@ -32,11 +25,13 @@ class Pairs:
     Parameters
     ----------
     table
-        One row per pair with both amplitudes known: object, event, floor, motion, slenderness, s_c,
-        a_np_g, a_p_g, d.
+        One row per pair: object, event, floor, motion, slenderness, s_c (slenderness less the mean of
+        the objects'; both NaN where it is not known), a_np_g, a_p_g [g], d, resolution (half-width to
+        which d is known [-]; 0 where amplitudes came without brackets), bound ("at least" or "at most"
+        where one of the tests never overturned and d is the bound that follows, else empty).
     censored
         One row per pair of which at least one test never overturned: object, event, floor, motion,
-        d_lower, d_upper (infinite where unbounded).
+        d_lower, d_upper (infinite where unbounded). Those with both infinite are not in ``table``.
     unpaired
         One row per object and motion that was tested on one side only: object, event, floor, motion,
         missing ("P" or "NP").
@@ -54,14 +49,29 @@ class Pairs:
     def notes(self) -> list[str]:
         """Say in words what is not among the complete pairs."""
         notes = []
-        if len(self.censored):
+        bounded = self.table[self.table["bound"] != ""]
+        if len(bounded):
             names = ", ".join(
-                "/".join(row) for row in self.censored[["object", "motion"]].to_numpy()
+                f"{name}/{motion} {bound} {math.exp(d):.3g}"
+                for name, motion, bound, d in zip(
+                    bounded["object"],
+                    bounded["motion"],
+                    bounded["bound"],
+                    bounded["d"],
+                    strict=True,
+                )
             )
             notes.append(
-                f"{len(self.censored)} pair(s) left out of the means because a test never "
-                f"overturned ({names}); the interval likelihood uses them"
+                f"{len(bounded)} pair(s) enter the means with the bound of P/NP, because one of the two "
+                f"tests never overturned ({names}): the true means lie further on that side; the "
+                "interval likelihood takes them as bounds"
             )
+        lost = self.censored[
+            np.isneginf(self.censored["d_lower"]) & np.isposinf(self.censored["d_upper"])
+        ]
+        if len(lost):
+            names = ", ".join("/".join(row) for row in lost[["object", "motion"]].to_numpy())
+            notes.append(f"{len(lost)} pair(s) left out because neither test overturned ({names})")
         if len(self.unpaired):
             names = ", ".join(
                 f"{row.object}/{row.motion} without {row.missing}"
@@ -134,12 +144,8 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         )
     _check_amplitudes(clean)
     _check_duplicates(clean)
-    order = {floor: rank for rank, floor in enumerate(FLOORS)}
-    clean["_rank"] = clean["floor"].map(order).fillna(len(FLOORS))
-    clean = clean.sort_values(
-        ["object", "event", "_rank", "floor", "motion", "pedestal", "repetition"], kind="stable"
-    )
-    return clean.drop(columns="_rank").reset_index(drop=True)
+    order = ["object", "event", "floor", "motion", "pedestal", "repetition"]
+    return clean.sort_values(order, kind="stable", ignore_index=True)
 
 
 def _check_amplitudes(clean: pd.DataFrame) -> None:
@@ -210,15 +216,21 @@ def _sides(clean: pd.DataFrame) -> pd.DataFrame:
     The mean of repetitions of which one never overturned is only known to lie above the mean of
     what was survived, so such a side counts as censored.
     """
+    exact = clean["censored"] == "none"
     work = clean.assign(
-        ln_a=np.log(clean["amplitude_g"].where(clean["censored"] == "none", clean["lower_g"])),
-        right=clean["censored"] == "right",
+        ln_a=np.log(clean["amplitude_g"].where(exact, clean["lower_g"])),
+        # a step that begins at zero has no width in the logarithm: only its end is known
+        width=np.log(clean["upper_g"]) - np.log(clean["lower_g"].where(clean["lower_g"] > 0)),
+        right=~exact,
     )
+    work["width"] = work["width"].where(exact)
     grouped = work.groupby([*KEY, "pedestal"], sort=False)
-    return grouped.agg(ln_a=("ln_a", "mean"), right=("right", "any")).reset_index()
+    return grouped.agg(
+        ln_a=("ln_a", "mean"), width=("width", "mean"), right=("right", "any")
+    ).reset_index()
 
 
-def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNESS) -> Pairs:
+def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = None) -> Pairs:
     """Pair tests with and without pedestal by object and motion.
 
     Parameters
@@ -226,20 +238,22 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNE
     tests
         See `check_tests`.
     slenderness
-        Height over width by object [-].
+        Height over width by object [-]; needed only for slopes on it.
 
     Raises
     ------
     InputError
-        As `check_tests`; if an object's slenderness is unknown; if there is no complete pair and no
-        censored one.
+        As `check_tests`; if an object's slenderness is not in the mapping; if no object was tested
+        under the same motion with and without pedestal.
     """
     clean = check_tests(tests)
+    if slenderness is None:
+        slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
     slenderness_of(clean, slenderness)
     sides = _sides(clean)
     cells = pd.MultiIndex.from_frame(sides[KEY].drop_duplicates())
     by_side = {side: rows.set_index(KEY).reindex(cells) for side, rows in sides.groupby("pedestal")}
-    nothing = pd.DataFrame({"ln_a": np.nan, "right": False}, index=cells)
+    nothing = pd.DataFrame({"ln_a": np.nan, "width": np.nan, "right": False}, index=cells)
     with_p, without = by_side.get("P", nothing), by_side.get("NP", nothing)
     ln_p, ln_np = with_p["ln_a"].astype(float), without["ln_a"].astype(float)
     right_p, right_np = with_p["right"].eq(True), without["right"].eq(True)
@@ -250,19 +264,27 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] = SLENDERNE
             "check the columns object, motion and pedestal."
         )
     d = ln_p - ln_np
-    frame = pd.DataFrame({"a_np_g": np.exp(ln_np), "a_p_g": np.exp(ln_p), "d": d}).reset_index()
+    # a censored side takes its partner's step; without any step the figures count as exact
+    width_p = with_p["width"].astype(float).fillna(without["width"].astype(float))
+    width_np = without["width"].astype(float).fillna(with_p["width"].astype(float))
+    frame = pd.DataFrame({"a_np_g": np.exp(ln_np), "a_p_g": np.exp(ln_p), "d": d}).assign(
+        resolution=((width_p + width_np) / 2).fillna(0.0),
+        bound=np.select([right_p & ~right_np, right_np & ~right_p], ["at least", "at most"], ""),
+    )
+    frame = frame.reset_index()
     frame.insert(4, "slenderness", slenderness_of(frame, slenderness))
-    frame.insert(5, "s_c", frame["slenderness"] - CENTRE)
+    centre = float(np.mean([slenderness[name] for name in sorted(frame["object"].unique())]))
+    frame.insert(5, "s_c", frame["slenderness"] - centre)
     limits = frame[KEY].assign(
         d_lower=np.where(right_np, -np.inf, d), d_upper=np.where(right_p, np.inf, d)
     )
-    exact = (both & ~right_p & ~right_np).to_numpy()
+    known = (both & ~(right_p & right_np)).to_numpy()
     partly = (both & (right_p | right_np)).to_numpy()
     alone = frame.loc[~both.to_numpy(), KEY].assign(
         missing=np.where(ln_p.isna(), "P", "NP")[~both.to_numpy()]
     )
     return Pairs(
-        table=frame[exact].reset_index(drop=True),
+        table=frame[known].reset_index(drop=True),
         censored=limits[partly].reset_index(drop=True),
         unpaired=alone.reset_index(drop=True),
     )

@@ -1,6 +1,5 @@
 """Exact tests that need no normal distribution: signed ranks, sign flips, leave one event out."""
 
-import itertools
 import math
 from dataclasses import dataclass
 
@@ -9,12 +8,10 @@ import numpy.typing as npt
 import pandas as pd
 from scipy import stats
 
-from rockfrag.pedestal.cluster_means import Array, Estimate, mean_effect, unit_means
+from rockfrag.pedestal.cluster_means import Array, Estimate, mean_effect
 
-LARGEST_ENUMERATION = 16
-"""Up to this many units all sign patterns are enumerated; beyond it they are drawn."""
-
-DRAWS = 100_000
+DRAWS = 9_999
+"""Up to so many sign patterns (13 units) all are enumerated; of more, so many are drawn."""
 
 
 @dataclass(frozen=True)
@@ -128,21 +125,24 @@ def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
     values
         One value per unit, here the mean of d of each event, shape (k,).
     seed
-        Of the patterns drawn when k exceeds `LARGEST_ENUMERATION`.
+        Of the patterns drawn when there are more than `DRAWS` of them.
     """
     x = np.asarray(values, dtype=float)
     k = x.size
-    exact = k <= LARGEST_ENUMERATION
-    if exact:
-        signs = np.array(list(itertools.product((-1.0, 1.0), repeat=k)))
-    else:
-        signs = np.random.default_rng(seed).choice([-1.0, 1.0], size=(DRAWS, k))
-    sums = np.abs(signs @ x)
-    observed = abs(float(x.sum()))
-    # equal sums differ by rounding only
-    reached = int(np.count_nonzero(sums >= observed - 1e-9 * float(np.abs(x).sum())))
-    p = reached / len(signs) if exact else (reached + 1) / (len(signs) + 1)
-    return SignFlips(p=p, smallest_p=2.0 ** (1 - k), units=k, exact=exact)
+    if k == 1 or not x.any():
+        return SignFlips(p=1.0, smallest_p=2.0 ** (1 - k), units=k, exact=True)
+    # sums that agree to rounding are equal, so the values are taken on a grid of integers
+    grid = np.rint(x / np.abs(x).max() * 1e12)
+    found = stats.permutation_test(
+        (grid,),
+        lambda flipped, axis: np.abs(flipped.sum(axis=axis)),
+        permutation_type="samples",
+        vectorized=True,
+        n_resamples=DRAWS,
+        alternative="greater",
+        rng=np.random.default_rng(seed),
+    )
+    return SignFlips(p=float(found.pvalue), smallest_p=2.0 ** (1 - k), units=k, exact=2**k <= DRAWS)
 
 
 def leave_one_event_out(table: pd.DataFrame) -> pd.DataFrame:
@@ -175,11 +175,3 @@ def leave_one_event_out(table: pd.DataFrame) -> pd.DataFrame:
     result = pd.DataFrame(rows, columns=["without", "ratio", "lower", "upper", "p"])
     result["largest_change"] = [shift == max(shifts) for shift in shifts]
     return result
-
-
-def motion_tests(table: pd.DataFrame, seed: int = 0) -> tuple[SignedRanks, SignFlips]:
-    """Signed ranks over the motions' means and sign flips over the events' means."""
-    return (
-        wilcoxon_exact(unit_means(table, "motion")),
-        sign_flip_test(unit_means(table, "event"), seed),
-    )

@@ -1,6 +1,7 @@
 """The pedestal effect as tables: every scope with interval, equivalence, multiplicity and power."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
 from rockfrag.pedestal.censored import CensoredFit, fit_censored
-from rockfrag.pedestal.cluster_means import mean_effect, sampled_unit, unit_means
+from rockfrag.pedestal.cluster_means import ROUNDING, mean_effect, sampled_unit, unit_means
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.mixed import (
     AMPLITUDE,
@@ -20,7 +21,7 @@ from rockfrag.pedestal.mixed import (
     long_rows,
 )
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
-from rockfrag.pedestal.paired_tests import FLOORS, SLENDERNESS, Pairs, pair_tests
+from rockfrag.pedestal.paired_tests import Pairs, pair_tests
 from rockfrag.pedestal.permutation import leave_one_event_out, sign_flip_test, wilcoxon_exact
 from rockfrag.pedestal.power import detectable_ratio
 
@@ -80,26 +81,30 @@ def population(table: pd.DataFrame) -> str:
     )
 
 
-def effects_table(table: pd.DataFrame) -> pd.DataFrame:
+def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFrame:
     """Ratio P/NP for every scope.
 
     Parameters
     ----------
     table
-        Complete pairs (`Pairs.table`).
+        Pairs (`Pairs.table`).
+    floors
+        Order in which the floors are listed; others follow by name.
 
     Returns
     -------
     pandas.DataFrame
         scope, level, pairs, unit, units, ratio, lower, upper [-] (95 %), p, p_holm (within the
         scope), p_bh (over all rows), p_sign_flip, smallest_p, p_equivalence (±10 %), equivalent,
-        detectable_ratio (80 % power with the scatter and number of units at hand).
+        detectable_ratio (80 % power with the scatter and number of units at hand), resolution_ratio
+        (ratio up to which the steps of the amplitudes leave the mean open; no interval is narrower),
+        tied (pairs with equal amplitudes on both sides), at_bound (pairs of which one test never
+        overturned, counted at the bound).
     """
     rows: list[dict[str, object]] = []
-    # floors from the ground up, not by name
-    floors = [name for name in FLOORS if name in set(table["floor"])]
-    floors += sorted(set(table["floor"]) - set(FLOORS))
-    table = table.assign(floor=pd.Categorical(table["floor"], floors))
+    known = [name for name in floors if name in set(table["floor"])]
+    known += sorted(set(table["floor"]) - set(known))
+    table = table.assign(floor=pd.Categorical(table["floor"], known))
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns), observed=True) if columns else [((), table)]
         for key, part in groups:
@@ -122,7 +127,10 @@ def effects_table(table: pd.DataFrame) -> pd.DataFrame:
                     "smallest_p": flips.smallest_p,
                     "p_equivalence": same.p,
                     "equivalent": same.shown(),
-                    "detectable_ratio": detectable_ratio(effect.units, effect.sd),
+                    "detectable_ratio": detectable_ratio(effect),
+                    "resolution_ratio": math.exp(effect.resolution),
+                    "tied": int((part["d"].abs() < ROUNDING).sum()),
+                    "at_bound": int((part["bound"] != "").sum()),
                 }
             )
     result = pd.DataFrame(rows)
@@ -198,6 +206,10 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
         )
     names = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
     result = pd.DataFrame(rows, columns=names)
+    # what the steps hide is hidden from every method
+    within = effect.resolution
+    result["lower"] = result["lower"].clip(upper=result["estimate"] - within)
+    result["upper"] = result["upper"].clip(lower=result["estimate"] + within)
     for name in ("estimate", "lower", "upper"):
         result[name] = np.exp(result[name])
     return result
@@ -221,20 +233,18 @@ def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
 
 
 def _mixed_fits(table: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
-    """Fit the three models; what the data cannot support is said and left out."""
+    """Fit the models that the design supports; what the data cannot support is said and left out."""
     frames: list[pd.DataFrame] = []
     notes: list[str] = []
-    for formula, rows in (
-        (EFFECT, table),
-        (EFFECT_BY_FLOOR, table),
-        (AMPLITUDE, long_rows(table)),
-    ):
+    models = [(EFFECT, table)]
+    if len(set(table["floor"])) > 1 and np.ptp(table["s_c"].to_numpy()) > 0:
+        models += [(EFFECT_BY_FLOOR, table), (AMPLITUDE, long_rows(table))]
+    for formula, rows in models:
         try:
             fit: MixedFit = fit_mixed(rows, formula)
         except InputError as error:
             notes.append(str(error))
             continue
-        notes.extend(f"mixed model {formula}: {note}" for note in fit.notes)
         frames.append(
             fit.coefficients.assign(
                 formula=formula,
@@ -247,8 +257,26 @@ def _mixed_fits(table: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
     return (pd.concat(frames, ignore_index=True) if frames else pd.DataFrame()), notes
 
 
+def ties_note(table: pd.DataFrame) -> list[str]:
+    """Say in words how many pairs agree within their steps, and what that can mean."""
+    tied = table["d"].abs() < ROUNDING
+    if not tied.any():
+        return []
+    widest = float(table.loc[tied, "resolution"].max())
+    if widest == 0:
+        return [
+            f"{int(tied.sum())} of {len(table)} pairs have equal amplitudes, and the table does not give "
+            "the steps (lower_g, upper_g), so how small a difference they exclude is not known"
+        ]
+    return [
+        f"{int(tied.sum())} of {len(table)} pairs overturned in the same step: each of them excludes a "
+        f"change of {100 * math.expm1(widest):.1f} % or more, and nothing below; no interval is "
+        "narrower than the steps of the pairs that agree"
+    ]
+
+
 def study_pedestal(
-    tests: pd.DataFrame, *, seed: int, slenderness: Mapping[str, float] = SLENDERNESS
+    tests: pd.DataFrame, *, seed: int, slenderness: Mapping[str, float] | None = None
 ) -> PedestalStudy:
     """Do everything for one table of tests, simulated or measured alike.
 
@@ -259,7 +287,7 @@ def study_pedestal(
     seed
         Of the bootstrap and of drawn sign flips.
     slenderness
-        Height over width by object [-].
+        Height over width by object [-]; needed only for slopes on it.
 
     Raises
     ------
@@ -271,20 +299,20 @@ def study_pedestal(
     pairs = pair_tests(tests, slenderness)
     if pairs.table.empty:
         raise InputError(
-            "Table of tests: every pair has a test that never overturned, so no ratio is known; "
+            "Table of tests: no pair has a test that overturned, so no ratio is known; "
             "raise the largest amplitude."
         )
     table = pairs.table
-    notes = [population(table), *pairs.notes()]
+    notes = [population(table), *pairs.notes(), *ties_note(table)]
     censored: CensoredFit | None = None
     try:
-        censored = fit_censored(tests, slenderness)
+        censored = fit_censored(tests)
     except InputError as error:
         notes.append(str(error))
     mixed, mixed_notes = _mixed_fits(table)
     return PedestalStudy(
         pairs=pairs,
-        effects=effects_table(table),
+        effects=effects_table(table, list(tests["floor"].astype(str).unique())),
         whole=_whole_tests(table, censored, seed),
         without_event=leave_one_event_out(table),
         ranks=_ranks(table, seed),

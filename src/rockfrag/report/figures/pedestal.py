@@ -15,7 +15,6 @@ from matplotlib.lines import Line2D
 from rockfrag.pedestal.cluster_means import mean_effect
 from rockfrag.pedestal.equivalence import MARGIN
 from rockfrag.pedestal.paired_tests import (
-    SLENDERNESS,
     Pairs,
     check_tests,
     pair_tests,
@@ -69,7 +68,7 @@ def pedestal_scatter(
     tests: pd.DataFrame,
     panels: str | None = None,
     *,
-    slenderness: Mapping[str, float] = SLENDERNESS,
+    slenderness: Mapping[str, float] | None = None,
 ) -> Figure:
     """Amplitude with the pedestal against without it (thesis figures 4.3, 4.5, 4.7).
 
@@ -152,7 +151,7 @@ def slenderness_figure(
     tests: pd.DataFrame,
     *,
     by_floor: bool = False,
-    slenderness: Mapping[str, float] = SLENDERNESS,
+    slenderness: Mapping[str, float],
 ) -> Figure:
     """Amplitude against slenderness without and with the pedestal (thesis figures 4.1, 4.2).
 
@@ -242,7 +241,7 @@ def sides_figure(
     by: str,
     *,
     panels: str | None = None,
-    slenderness: Mapping[str, float] = SLENDERNESS,
+    slenderness: Mapping[str, float],
 ) -> Figure:
     """Amplitude without and with the pedestal side by side (thesis figures 4.4, 4.6).
 

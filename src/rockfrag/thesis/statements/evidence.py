@@ -9,9 +9,10 @@ import pandas as pd
 
 from rockfrag.pedestal.cluster_means import Estimate, mean_effect
 from rockfrag.pedestal.mixed import long_rows
-from rockfrag.pedestal.paired_tests import SLENDERNESS, Pairs, check_tests, pair_tests
+from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests
 from rockfrag.pedestal.study import effects_table
 from rockfrag.rocking.bodies import Block
+from rockfrag.thesis.specimens import SLENDERNESS
 
 
 class Undecidable(Exception):

@@ -15,8 +15,8 @@ from rockfrag.pedestal.cluster_means import (
     unit_means,
 )
 from rockfrag.pedestal.equivalence import MARGIN
-from rockfrag.pedestal.paired_tests import FLOORS
 from rockfrag.pedestal.permutation import sign_flip_test
+from rockfrag.thesis.floor_order import FLOORS
 from rockfrag.thesis.statements.evidence import Evidence, Undecidable
 from rockfrag.thesis.statements.ledger import ClaimResult
 from rockfrag.thesis.statements.results import ratio_result

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from rockfrag.pedestal.cluster_means import t_estimate
-from rockfrag.pedestal.mass_bias import MASSES, mass_errors
+from rockfrag.pedestal.mass_bias import mass_errors
+from rockfrag.thesis.specimens import THESIS_BODIES
 from rockfrag.thesis.statements.evidence import Evidence, Undecidable
 from rockfrag.thesis.statements.ledger import ClaimResult
 from rockfrag.thesis.statements.results import ratio_result
@@ -46,10 +47,8 @@ def c55(evidence: Evidence) -> ClaimResult:
 
 def c56(evidence: Evidence) -> ClaimResult:
     """Force over mass, where both were recorded; else how much miscounted mass would matter."""
-    masses = dict(MASSES)
-    if evidence.bodies is not None:
-        masses = {name: body.mass for name, body in evidence.bodies.items()}
-    table = mass_errors([UNCOUNTED], masses)
+    masses = {name: body.mass for name, body in (evidence.bodies or THESIS_BODIES).items()}
+    table = mass_errors(masses, masses.pop("P"), [UNCOUNTED])
     bias = table.loc[table["error"] == "pedestal not counted", "ratio_bias"]
     meaning = (
         f"on a table of {UNCOUNTED:.0f} kg a pedestal that is moved but not counted changes P/NP "

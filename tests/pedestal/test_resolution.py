@@ -1,0 +1,122 @@
+"""Amplitudes from a ladder are known to a step: no statement about the pedestal is finer."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.pedestal import study_pedestal
+from rockfrag.pedestal.cluster_means import contrast, mean_effect, slope_effect, t_estimate
+from rockfrag.pedestal.equivalence import equivalence
+from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.pedestal.power import detectable_ratio, power_note
+
+LOWEST = 0.05
+
+
+def on_a_ladder(tests: pd.DataFrame, step: float) -> pd.DataFrame:
+    """The same tests raised in steps of a ratio 1 + step; the figure is the last step survived."""
+    rung = np.floor(np.log(tests["amplitude_g"] / LOWEST) / math.log1p(step))
+    lower = LOWEST * (1 + step) ** rung
+    return tests.assign(lower_g=lower, upper_g=lower * (1 + step), amplitude_g=lower)
+
+
+def tied(tests_table, step=0.05):
+    return on_a_ladder(tests_table(1, effect=0, sd_event=0, sd_motion=0, sd_pair=0), step)
+
+
+def test_pairs_that_agree_leave_a_change_of_one_step_open(tests_table):
+    effect = mean_effect(pair_tests(tied(tests_table)).table)
+    assert effect.mean == 0
+    assert effect.upper >= math.log(1.05) - 1e-12
+    assert effect.lower <= -math.log(1.05) + 1e-12
+
+
+def test_ladder_of_5_percent_shows_equivalence_to_10_percent_and_not_to_1(tests_table):
+    effect = mean_effect(pair_tests(tied(tests_table)).table)
+    assert equivalence(effect, 0.10).shown()
+    assert not equivalence(effect, 0.01).shown()
+    assert not equivalence(effect, 0.05).shown()
+
+
+def test_finer_ladder_shows_a_smaller_equivalence(tests_table):
+    effect = mean_effect(pair_tests(tied(tests_table, 0.005)).table)
+    assert equivalence(effect, 0.01).shown()
+
+
+def test_what_can_be_detected_is_never_less_than_a_step(tests_table):
+    effect = mean_effect(pair_tests(tied(tests_table)).table)
+    assert detectable_ratio(effect) > 1.05
+    assert "0.0 %" not in power_note(effect)
+    assert "within the 5.0 % that the steps resolve" in power_note(effect)
+
+
+@pytest.mark.parametrize("estimate", ["contrast", "slope"])
+def test_differences_of_tied_pairs_have_width(tests_table, estimate):
+    pairs = pair_tests(tied(tests_table), {"T1": 3.0, "T2": 4.0, "T3": 5.0}).table
+    effect = contrast(pairs, "floor", "GF", "F3") if estimate == "contrast" else slope_effect(pairs)
+    assert effect.mean == pytest.approx(0, abs=1e-12)
+    assert effect.upper - effect.lower > 0.05
+
+
+def test_pairs_that_differ_are_not_widened(tests_table):
+    """Where every pair differs the rounding is part of the scatter and averages out."""
+    fine = mean_effect(pair_tests(tests_table(1)).table)
+    rough = mean_effect(pair_tests(on_a_ladder(tests_table(1), 0.01)).table)
+    assert rough.resolution < 0.15 * math.log(1.01) * 2
+    assert rough.upper - rough.lower == pytest.approx(fine.upper - fine.lower, rel=0.1)
+
+
+def test_equal_figures_without_steps_have_no_interval(tests_table):
+    tests = tests_table(1, effect=0, sd_event=0, sd_motion=0, sd_pair=0)
+    study = study_pedestal(tests, seed=1)
+    assert study.effects[["lower", "upper", "p"]].isna().all(axis=None)
+    assert not study.effects["equivalent"].any()
+    assert any("does not give the steps" in note for note in study.notes)
+
+
+def test_no_effect_of_a_study_has_an_interval_without_width(tests_table):
+    tests = tied(tests_table)
+    # one pair jumps by three steps, as a survival window makes it do
+    jump = tests.index[(tests["pedestal"] == "P") & (tests["motion"] == "Kobe-F5")][0]
+    tests.loc[jump, ["lower_g", "upper_g", "amplitude_g"]] *= 1.05**3
+    effects = study_pedestal(tests, seed=1).effects
+    several = effects[effects["units"] > 1]
+    assert (np.log(several["upper"] / several["lower"]) > 0.03).all()
+    assert (several["detectable_ratio"] > several["resolution_ratio"]).all()
+    assert effects.loc[0, "tied"] == 35
+
+
+def test_pair_with_one_unfinished_side_is_counted_at_its_bound(tests_table):
+    """The test that never overturned may be the largest effect of all; it must not be left out."""
+    tests = tests_table(1)
+    row = tests.index[(tests["object"] == "T2") & (tests["motion"] == "Northridge-F5")]
+    lone = next(k for k in row if tests.loc[k, "pedestal"] == "NP")
+    tests.loc[lone, ["lower_g", "upper_g", "amplitude_g"]] = [2.0, np.nan, np.nan]
+    tests.loc[lone, "censored"] = "right"
+    study = study_pedestal(tests, seed=1)
+    with_it = study.effects.iloc[0]
+    assert (with_it["pairs"], with_it["at_bound"]) == (36, 1)
+    pairs = study.pairs.table
+    without = mean_effect(pairs[pairs["bound"] == ""])
+    assert with_it["ratio"] < without.ratio
+    bound = pairs.loc[pairs["bound"] != ""].iloc[0]
+    assert bound["bound"] == "at most"
+    assert any("T2/Northridge-F5 at most" in note for note in study.notes)
+
+
+def test_pair_of_two_unfinished_tests_is_left_out_and_named(tests_table):
+    tests = tests_table(1)
+    both = (tests["object"] == "T2") & (tests["motion"] == "Northridge-F5")
+    tests.loc[both, ["upper_g", "amplitude_g"]] = np.nan
+    tests.loc[both, "censored"] = "right"
+    pairs = pair_tests(tests)
+    assert len(pairs.table) == 35
+    assert any("neither test overturned (T2/Northridge-F5)" in note for note in pairs.notes())
+
+
+def test_units_that_all_jump_alike_are_not_certain_beyond_what_the_steps_allow():
+    effect = t_estimate([0.1, 0.1, 0.1, 0.1], resolution=0.05)
+    assert 0 < effect.p < 0.05
+    assert effect.lower == pytest.approx(0.05)
