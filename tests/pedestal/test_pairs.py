@@ -73,7 +73,7 @@ def test_repetitions_are_averaged_in_the_logarithm(tests_table):
         ("amplitude_g", -0.2, "amplitude_g is -0.2"),
         ("amplitude_g", np.inf, "amplitude_g is inf"),
         ("pedestal", "yes", "pedestal is 'yes'"),
-        ("censored", "left", "censored is 'left'"),
+        ("censored", "up", "censored is 'up'"),
         ("event", None, "event is empty"),
         ("object", "T9", "slenderness of object T9"),
         ("lower_g", 9.0, "exceeds upper_g"),
@@ -111,3 +111,31 @@ def test_missing_column_and_empty_table_are_errors(tests_table):
         pair_tests(tests_table(1).drop(columns="floor"))
     with pytest.raises(InputError, match="no rows"):
         pair_tests(tests_table(1).iloc[:0])
+
+
+def test_test_that_overturned_at_its_first_step_bounds_the_ratio_from_above(tests_table):
+    tests = tests_table(1)
+    row = tests.index[(tests["object"] == "T1") & (tests["motion"] == "Kobe-GF")]
+    on = next(k for k in row if tests.loc[k, "pedestal"] == "P")
+    tests.loc[on, ["lower_g", "upper_g", "amplitude_g"]] = [0.0, 0.05, np.nan]
+    pairs = pair_tests(tests)
+    one = pairs.table.set_index(["object", "motion"]).loc[("T1", "Kobe-GF")]
+    assert one["bound"] == "at most"
+    assert one["a_p_g"] == pytest.approx(0.05)
+    assert np.isneginf(pairs.censored.iloc[0]["d_lower"])
+
+
+def test_each_pedestal_of_an_object_is_paired_with_the_lone_object(tests_table):
+    tests = tests_table(1)
+    tests["configuration"] = np.where(
+        tests["pedestal"] == "P", "P&" + tests["object"], tests["object"]
+    )
+    wider = tests[(tests["pedestal"] == "P") & (tests["object"] == "T2")]
+    other = wider.assign(configuration="Q&T2", amplitude_g=2 * wider["amplitude_g"])
+    other = other.assign(lower_g=other["amplitude_g"], upper_g=other["amplitude_g"])
+    slenderness = {"T1": 3.0, "T2": 4.0, "T3": 5.0}
+    pairs = pair_tests(pd.concat([tests, other]), slenderness).table
+    assert len(pairs) == 48
+    means = pairs.groupby("object")["d"].mean()
+    assert means["Q&T2"] == pytest.approx(means["P&T2"] + np.log(2))
+    assert set(pairs.loc[pairs["object"] == "Q&T2", "slenderness"]) == {4.0}

@@ -113,7 +113,7 @@ def test_pair_of_two_unfinished_tests_is_left_out_and_named(tests_table):
     tests.loc[both, "censored"] = "right"
     pairs = pair_tests(tests)
     assert len(pairs.table) == 35
-    assert any("neither test overturned (T2/Northridge-F5)" in note for note in pairs.notes())
+    assert any("both tests are unfinished (T2/Northridge-F5)" in note for note in pairs.notes())
 
 
 def test_units_that_all_jump_alike_are_not_certain_beyond_what_the_steps_allow():

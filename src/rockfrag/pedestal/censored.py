@@ -17,7 +17,7 @@ from scipy.special import ndtr
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import ROUNDING, Array, Estimate, t_estimate
-from rockfrag.pedestal.paired_tests import KEY, check_tests
+from rockfrag.pedestal.paired_tests import KEY, check_tests, pedestals_apart
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 """Gauss-Legendre quadrature on (-1, 1)."""
@@ -79,7 +79,7 @@ def fit_censored(tests: pd.DataFrame) -> CensoredFit:
         As `check_tests`; if all tests of one side are censored, so that the likelihood
         grows without bound.
     """
-    clean = check_tests(tests)
+    clean = check_tests(pedestals_apart(tests)[0])
     for side, rows in clean.groupby("pedestal"):
         if (rows["censored"] == "right").all():
             raise InputError(

@@ -63,15 +63,17 @@ class Pairs:
             )
             notes.append(
                 f"{len(bounded)} pair(s) enter the means with the bound of P/NP, because one of the two "
-                f"tests never overturned ({names}): the true means lie further on that side; the "
-                "interval likelihood takes them as bounds"
+                f"tests never overturned, or did so at its first step ({names}): the "
+                "true means lie further on that side; the interval likelihood takes them as bounds"
             )
         lost = self.censored[
             np.isneginf(self.censored["d_lower"]) & np.isposinf(self.censored["d_upper"])
         ]
         if len(lost):
             names = ", ".join("/".join(row) for row in lost[["object", "motion"]].to_numpy())
-            notes.append(f"{len(lost)} pair(s) left out because neither test overturned ({names})")
+            notes.append(
+                f"{len(lost)} pair(s) left out because both tests are unfinished ({names})"
+            )
         if len(self.unpaired):
             names = ", ".join(
                 f"{row.object}/{row.motion} without {row.missing}"
@@ -95,7 +97,8 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     ----------
     tests
         One row per test: object, pedestal ("P" or "NP"), event, floor, amplitude_g [g] and, where
-        present, motion, lower_g, upper_g [g], censored ("none" or "right"), repetition, reading.
+        present, motion, lower_g, upper_g [g], censored ("none", "right"; "left" for a test that
+        overturned at its first step, lower_g 0), repetition, reading.
 
     Returns
     -------
@@ -130,7 +133,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     clean["censored"] = clean["censored"].fillna("none").astype(str)
     if "repetition" not in clean:
         clean["repetition"] = 1
-    for name, allowed in (("pedestal", ("P", "NP")), ("censored", ("none", "right"))):
+    for name, allowed in (("pedestal", ("P", "NP")), ("censored", ("none", "right", "left"))):
         bad = clean.index[~clean[name].isin(allowed)]
         if len(bad):
             raise InputError(
@@ -161,12 +164,15 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
                 "not a number of g."
             )
         clean[name] = numbers.astype(float)
-    right = clean["censored"] == "right"
+    at_once = clean["amplitude_g"].isna() & (clean["lower_g"] == 0) & (clean["upper_g"] > 0)
+    clean.loc[at_once & (clean["censored"] == "none"), "censored"] = "left"
+    right, left = clean["censored"] == "right", clean["censored"] == "left"
+    clean.loc[left, "lower_g"] = 0.0
     clean.loc[~right, "lower_g"] = clean["lower_g"].fillna(clean["amplitude_g"])
     clean.loc[~right, "upper_g"] = clean["upper_g"].fillna(clean["amplitude_g"])
-    known = clean["amplitude_g"].where(~right, clean["lower_g"])
+    known = clean["amplitude_g"].where(~right, clean["lower_g"]).where(~left, clean["upper_g"])
     for row in clean.index[~(np.isfinite(known) & (known > 0))]:
-        name = "lower_g" if right[row] else "amplitude_g"
+        name = "lower_g" if right[row] else "upper_g" if left[row] else "amplitude_g"
         raise InputError(
             f"Table of tests, row {row + 1}: {name} is {known[row]}; give the positive number of g "
             "at which the test overturned, or censored = right with the largest amplitude survived "
@@ -193,6 +199,40 @@ def _check_duplicates(clean: pd.DataFrame) -> None:
         )
 
 
+def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Give each pedestal of an object that has several its own pairs with the lone object.
+
+    Parameters
+    ----------
+    tests
+        See `check_tests`; pedestals are told apart by the column ``configuration``, if there is one.
+
+    Returns
+    -------
+    tests
+        The rows, where an object with several pedestals is named after the configuration instead, and
+        its tests without pedestal stand beside each.
+    origin
+        Object by each such name.
+    """
+    if not {"configuration", "object", "pedestal"} <= set(tests.columns):
+        return tests, {}
+    on_pedestal = tests[tests["pedestal"] == "P"]
+    names = on_pedestal.groupby("object")["configuration"].unique()
+    several = names[names.map(len) > 1]
+    if several.empty:
+        return tests, {}
+    parts = [tests[~tests["object"].isin(list(several.index))]]
+    origin: dict[str, str] = {}
+    for one, configurations in several.items():
+        rows = tests[tests["object"] == one]
+        for name in configurations:
+            here = (rows["pedestal"] == "NP") | (rows["configuration"] == name)
+            parts.append(rows[here].assign(object=name))
+            origin[str(name)] = str(one)
+    return pd.concat(parts, ignore_index=True), origin
+
+
 def slenderness_of(clean: pd.DataFrame, slenderness: Mapping[str, float]) -> pd.Series:
     """Slenderness of each row's object [-].
 
@@ -214,19 +254,22 @@ def _sides(clean: pd.DataFrame) -> pd.DataFrame:
     """One row per object, motion and side; repetitions averaged in ln a.
 
     The mean of repetitions of which one never overturned is only known to lie above the mean of
-    what was survived, so such a side counts as censored.
+    what was survived, so such a side counts as censored; likewise below, where one overturned at its
+    first step.
     """
-    exact = clean["censored"] == "none"
+    exact, left = clean["censored"] == "none", clean["censored"] == "left"
+    figure = clean["amplitude_g"].where(exact, clean["lower_g"].where(~left, clean["upper_g"]))
     work = clean.assign(
-        ln_a=np.log(clean["amplitude_g"].where(exact, clean["lower_g"])),
+        ln_a=np.log(figure),
         # a step that begins at zero has no width in the logarithm: only its end is known
         width=np.log(clean["upper_g"]) - np.log(clean["lower_g"].where(clean["lower_g"] > 0)),
-        right=~exact,
+        right=clean["censored"] == "right",
+        left=left,
     )
     work["width"] = work["width"].where(exact)
     grouped = work.groupby([*KEY, "pedestal"], sort=False)
     return grouped.agg(
-        ln_a=("ln_a", "mean"), width=("width", "mean"), right=("right", "any")
+        ln_a=("ln_a", "mean"), width=("width", "mean"), right=("right", "any"), left=("left", "any")
     ).reset_index()
 
 
@@ -246,17 +289,27 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
         As `check_tests`; if an object's slenderness is not in the mapping; if no object was tested
         under the same motion with and without pedestal.
     """
+    tests, origin = pedestals_apart(tests)
     clean = check_tests(tests)
     if slenderness is None:
         slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
+    slenderness = {
+        **slenderness,
+        **{name: slenderness[one] for name, one in origin.items() if one in slenderness},
+    }
     slenderness_of(clean, slenderness)
     sides = _sides(clean)
     cells = pd.MultiIndex.from_frame(sides[KEY].drop_duplicates())
     by_side = {side: rows.set_index(KEY).reindex(cells) for side, rows in sides.groupby("pedestal")}
-    nothing = pd.DataFrame({"ln_a": np.nan, "width": np.nan, "right": False}, index=cells)
+    nothing = pd.DataFrame(
+        {"ln_a": np.nan, "width": np.nan, "right": False, "left": False}, index=cells
+    )
     with_p, without = by_side.get("P", nothing), by_side.get("NP", nothing)
     ln_p, ln_np = with_p["ln_a"].astype(float), without["ln_a"].astype(float)
-    right_p, right_np = with_p["right"].eq(True), without["right"].eq(True)
+    above_p, above_np = with_p["right"].eq(True), without["right"].eq(True)
+    below_p, below_np = with_p["left"].eq(True), without["left"].eq(True)
+    # d is open upwards where P lies above its figure or NP below, and downwards likewise
+    upward, downward = above_p | below_np, above_np | below_p
     both = ln_p.notna() & ln_np.notna()
     if not both.any():
         raise InputError(
@@ -269,17 +322,17 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
     width_np = without["width"].astype(float).fillna(with_p["width"].astype(float))
     frame = pd.DataFrame({"a_np_g": np.exp(ln_np), "a_p_g": np.exp(ln_p), "d": d}).assign(
         resolution=((width_p + width_np) / 2).fillna(0.0),
-        bound=np.select([right_p & ~right_np, right_np & ~right_p], ["at least", "at most"], ""),
+        bound=np.select([upward & ~downward, downward & ~upward], ["at least", "at most"], ""),
     )
     frame = frame.reset_index()
     frame.insert(4, "slenderness", slenderness_of(frame, slenderness))
     centre = float(np.mean([slenderness[name] for name in sorted(frame["object"].unique())]))
     frame.insert(5, "s_c", frame["slenderness"] - centre)
     limits = frame[KEY].assign(
-        d_lower=np.where(right_np, -np.inf, d), d_upper=np.where(right_p, np.inf, d)
+        d_lower=np.where(downward, -np.inf, d), d_upper=np.where(upward, np.inf, d)
     )
-    known = (both & ~(right_p & right_np)).to_numpy()
-    partly = (both & (right_p | right_np)).to_numpy()
+    known = (both & ~(upward & downward)).to_numpy()
+    partly = (both & (upward | downward)).to_numpy()
     alone = frame.loc[~both.to_numpy(), KEY].assign(
         missing=np.where(ln_p.isna(), "P", "NP")[~both.to_numpy()]
     )

@@ -14,6 +14,10 @@ DRAWS = 9_999
 """Up to so many sign patterns (13 units) all are enumerated; of more, so many are drawn."""
 
 
+WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
+"""Columns of `leave_one_event_out`."""
+
+
 @dataclass(frozen=True)
 class SignedRanks:
     """Wilcoxon's signed-rank test with the Hodges-Lehmann estimate.
@@ -172,6 +176,6 @@ def leave_one_event_out(table: pd.DataFrame) -> pd.DataFrame:
                 "p": one.p,
             }
         )
-    result = pd.DataFrame(rows, columns=["without", "ratio", "lower", "upper", "p"])
+    result = pd.DataFrame(rows, columns=WITHOUT_COLUMNS[:-1])
     result["largest_change"] = [shift == max(shifts) for shift in shifts]
     return result

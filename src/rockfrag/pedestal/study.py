@@ -22,7 +22,12 @@ from rockfrag.pedestal.mixed import (
 )
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.paired_tests import Pairs, pair_tests
-from rockfrag.pedestal.permutation import leave_one_event_out, sign_flip_test, wilcoxon_exact
+from rockfrag.pedestal.permutation import (
+    WITHOUT_COLUMNS,
+    leave_one_event_out,
+    sign_flip_test,
+    wilcoxon_exact,
+)
 from rockfrag.pedestal.power import detectable_ratio
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
@@ -33,6 +38,15 @@ SCOPES: Mapping[str, tuple[str, ...]] = {
     "cell": ("floor", "object"),
 }
 """What is averaged together; each is a family for Holm's adjustment."""
+
+
+EFFECT_COLUMNS = [
+    *("scope", "level", "pairs", "unit", "units", "ratio", "lower", "upper"),
+    *("p", "p_holm", "p_bh", "p_sign_flip", "smallest_p", "p_equivalence", "equivalent"),
+    *("detectable_ratio", "resolution_ratio", "tied", "at_bound"),
+]
+WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
+RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
 
 
 @dataclass(frozen=True)
@@ -134,12 +148,9 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                 }
             )
     result = pd.DataFrame(rows)
-    result.insert(9, "p_holm", np.nan)
-    for scope in SCOPES:
-        here = result["scope"] == scope
-        result.loc[here, "p_holm"] = holm(result.loc[here, "p"])
-    result.insert(10, "p_bh", benjamini_hochberg(result["p"]))
-    return result
+    result["p_holm"] = result.groupby("scope")["p"].transform(holm)
+    result["p_bh"] = benjamini_hochberg(result["p"])
+    return result[EFFECT_COLUMNS]
 
 
 def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -> pd.DataFrame:
@@ -204,8 +215,7 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
                 f"{censored.tests} tests, {censored.censored} censored; jackknife over events",
             )
         )
-    names = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
-    result = pd.DataFrame(rows, columns=names)
+    result = pd.DataFrame(rows, columns=WHOLE_COLUMNS)
     # what the steps hide is hidden from every method
     within = effect.resolution
     result["lower"] = result["lower"].clip(upper=result["estimate"] - within)
@@ -275,6 +285,23 @@ def ties_note(table: pd.DataFrame) -> list[str]:
     ]
 
 
+def _no_ratio(pairs: Pairs) -> PedestalStudy:
+    """Return the study of tests none of whose pairs has a known ratio: empty tables and a note."""
+    nothing = pd.DataFrame()
+    note = (
+        "no pair has a known ratio, not even a bound: raise or lower the amplitudes of the protocol"
+    )
+    return PedestalStudy(
+        pairs=pairs,
+        effects=pd.DataFrame(columns=EFFECT_COLUMNS),
+        whole=pd.DataFrame(columns=WHOLE_COLUMNS),
+        without_event=pd.DataFrame(columns=WITHOUT_COLUMNS),
+        ranks=pd.DataFrame(columns=RANK_COLUMNS),
+        mixed=nothing,
+        notes=(*pairs.notes(), note),
+    )
+
+
 def study_pedestal(
     tests: pd.DataFrame, *, seed: int, slenderness: Mapping[str, float] | None = None
 ) -> PedestalStudy:
@@ -297,12 +324,9 @@ def study_pedestal(
         If a mixed model contradicts the means of the data.
     """
     pairs = pair_tests(tests, slenderness)
-    if pairs.table.empty:
-        raise InputError(
-            "Table of tests: no pair has a test that overturned, so no ratio is known; "
-            "raise the largest amplitude."
-        )
     table = pairs.table
+    if table.empty:
+        return _no_ratio(pairs)
     notes = [population(table), *pairs.notes(), *ties_note(table)]
     censored: CensoredFit | None = None
     try:

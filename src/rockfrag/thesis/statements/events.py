@@ -120,7 +120,8 @@ def c49(evidence: Evidence) -> ClaimResult:
     table = evidence.table
     # a pair that does not change counts half for each side
     gain = (np.sign(table["d"]) + 1) / 2
-    share = t_estimate(gain.groupby(table["event"]).mean())
+    half_a_pair = 0.5 * table["event"].nunique() / len(table)
+    share = t_estimate(gain.groupby(table["event"]).mean(), resolution=half_a_pair)
     off = Estimate(
         share.mean - 0.5, share.se, share.units, share.lower - 0.5, share.upper - 0.5, math.nan
     )

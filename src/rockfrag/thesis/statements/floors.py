@@ -241,7 +241,10 @@ def c50(evidence: Evidence) -> ClaimResult:
     effect = mean_effect(table)
     verdict = direction(effect, -1, slight=True)
     down = int((table["d"] < 0).sum())
-    share = t_estimate((table["d"] < 0).astype(float).groupby(table["event"]).mean())
+    half_a_pair = 0.5 * table["event"].nunique() / len(table)
+    share = t_estimate(
+        (table["d"] < 0).astype(float).groupby(table["event"]).mean(), resolution=half_a_pair
+    )
     few = share.lower > 0.5
     if verdict == "supported" and not few:
         verdict = "undecided"
