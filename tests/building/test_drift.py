@@ -5,17 +5,21 @@ from rockfrag.building.drift import judge_drift
 from rockfrag.building.floors import respond
 from rockfrag.building.response import BuildingResponse
 from rockfrag.building.settings import make_building
-from rockfrag.records.motion import Motion
-
-NOISE = Motion(np.random.default_rng(5).normal(size=1000), 0.01, "noise")
 
 
-def shaken(building, pga):
-    motion = NOISE.after("scale", NOISE.acceleration * pga / NOISE.pga)
-    return judge_drift(building, respond(building, motion))
+@pytest.fixture(scope="module")
+def shaken(noise):
+    """Verdict on a building under noise of a peak acceleration [m/s²]."""
+    shaking = noise(5, 1000)
+
+    def judge(building, pga):
+        motion = shaking.after("scale", shaking.acceleration * pga / shaking.pga)
+        return judge_drift(building, respond(building, motion))
+
+    return judge
 
 
-def test_an_elastic_building_is_believed_up_to_its_strength(settings):
+def test_an_elastic_building_is_believed_up_to_its_strength(settings, shaken):
     building = make_building(settings)
     verdicts = [shaken(building, pga) for pga in (0.1, 0.5, 1.0, 2.0, 10.0)]
     shares = [v.strength_share for v in verdicts]

@@ -40,10 +40,6 @@ def reference(period=0.35, damping=None):
     )
 
 
-def noise(n=400, dt=0.01, seed=3):
-    return Motion(np.random.default_rng(seed).normal(size=n), dt, "noise")
-
-
 def test_reference_building_has_the_published_periods_and_stiffnesses():
     building = reference()
     period = find_modes(building).period
@@ -61,8 +57,8 @@ def test_reference_building_amplifies_the_four_records_as_published(record, peri
 
 
 @pytest.mark.parametrize("damping", [ModalDamping(0.05), RayleighDamping(0.08, (1, 3))])
-def test_modal_superposition_equals_the_matrix_exponential(damping):
-    building, motion = reference(0.6, damping), noise()
+def test_modal_superposition_equals_the_matrix_exponential(damping, noise):
+    building, motion = reference(0.6, damping), noise(3, 400, name="noise")
     n = building.storeys
     mass, stiffness = building.mass_matrix(), building.stiffness_matrix()
     if isinstance(damping, RayleighDamping):
@@ -111,8 +107,8 @@ def test_modes_take_up_the_whole_mass_and_every_floor_moves_with_the_ground():
     assert modes.shape @ modes.participation == pytest.approx(np.ones(6), rel=1e-12)
 
 
-def test_one_storey_is_an_oscillator():
-    motion = noise()
+def test_one_storey_is_an_oscillator(noise):
+    motion = noise(3, 400, name="noise")
     building = ShearBuilding((2e5,), (4.0,), for_period((2e5,), (4.0,), 0.4), ModalDamping(0.03))
     displacement, _, total = oscillator_response(motion, 0.4, 0.03)
     found = respond_elastically(building, motion)
@@ -127,17 +123,17 @@ def test_a_rigid_building_passes_the_ground_motion_unchanged():
         assert np.abs(floor.acceleration - motion.acceleration).max() < 1e-3 * motion.pga
 
 
-def test_floor_spectra_peak_at_the_period_of_the_building():
+def test_floor_spectra_peak_at_the_period_of_the_building(noise):
     periods = np.arange(0.2, 0.6, 0.01)
-    spectra = floor_spectra(reference(0.35), noise(n=2000), periods)
+    spectra = floor_spectra(reference(0.35), noise(3, 2000), periods)
     amplified = spectra["F5"].acceleration / spectra["GF"].acceleration
     assert set(spectra) == {"GF", "F3", "F5"}
     assert periods[np.argmax(amplified)] == pytest.approx(0.35, abs=0.02)
     assert amplified.max() > 5
 
 
-def test_floor_motions_say_where_they_come_from():
-    third = floor_motions(reference(), noise(), ["F3"])[0]
+def test_floor_motions_say_where_they_come_from(noise):
+    third = floor_motions(reference(), noise(3, 400, name="noise"), ["F3"])[0]
     assert third.name == "noise_F3"
     assert third.metadata["floor"] == "F3"
     assert third.metadata["ground_motion"] == "noise"

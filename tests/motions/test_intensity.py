@@ -19,11 +19,6 @@ def harmonic() -> Motion:
     return m.sine(2.0, 0.5, 10, dt=0.001)
 
 
-def noise(seed: int, count: int = 500) -> Motion:
-    samples = np.random.default_rng(seed).standard_normal(count) * np.hanning(count)
-    return Motion(samples, 0.01, name=f"noise {seed}")
-
-
 def test_sine_has_its_closed_forms(harmonic):
     amplitude, period, length = 2.0, 0.5, 5.0
     omega = 2 * math.pi / period
@@ -62,8 +57,8 @@ def test_mean_period_weighs_periods_with_squared_amplitudes():
     assert m.mean_period(Motion(two, 0.01)) == pytest.approx((0.5 + 4 * 0.1) / 5, rel=1e-6)
 
 
-def test_spectral_measures_are_points_of_the_spectrum():
-    motion = noise(1)
+def test_spectral_measures_are_points_of_the_spectrum(noise):
+    motion = noise(1, tapered=True)
     spectrum = m.response_spectrum(motion, [0.3], 0.1)
     assert m.spectral_acceleration(motion, 0.3, 0.1) == spectrum.pseudo_acceleration[0]
     assert m.spectral_velocity(motion, 0.3, 0.1) == spectrum.velocity[0]
@@ -95,8 +90,8 @@ def test_rocking_measures_have_no_dimension(harmonic):
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10_000), st.floats(0.01, 100.0))
-def test_measures_grow_with_amplitude_as_they_should(seed, factor):
-    motion = noise(seed)
+def test_measures_grow_with_amplitude_as_they_should(noise, seed, factor):
+    motion = noise(seed, tapered=True)
     scaled = m.scale(motion, factor)
     for measure in (m.pga, m.pgv, m.pgd, m.cav):
         assert measure(scaled) == pytest.approx(factor * measure(motion), rel=1e-9)
@@ -109,8 +104,8 @@ def test_measures_grow_with_amplitude_as_they_should(seed, factor):
 
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10_000), st.floats(0.2, 5.0))
-def test_compressed_time_follows_similitude(seed, factor):
-    motion = noise(seed)
+def test_compressed_time_follows_similitude(noise, seed, factor):
+    motion = noise(seed, tapered=True)
     model = m.compress_time(motion, factor)
     assert m.pga(model) == m.pga(motion)
     assert m.pgv(model) == pytest.approx(m.pgv(motion) / factor, rel=1e-9)

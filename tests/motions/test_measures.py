@@ -19,22 +19,28 @@ COLUMNS = [
 ]
 
 
-def noise(name: str, seed: int) -> Motion:
-    samples = np.random.default_rng(seed).standard_normal(600) * np.hanning(600)
-    return Motion(samples, 0.01, name, metadata={"event": "Nowhere", "floor": "GF"})
+@pytest.fixture
+def named(noise):
+    """Maker of motions with a name, an event and a floor."""
+
+    def make(name: str, seed: int) -> Motion:
+        about = {"event": "Nowhere", "floor": "roof"}
+        return noise(seed, 600, tapered=True, name=name, metadata=about)
+
+    return make
 
 
-def test_table_has_a_row_per_motion_in_the_order_given(tmp_path):
-    table = m.measure_motions([noise("b", 1), noise("a", 2)])
+def test_table_has_a_row_per_motion_in_the_order_given(tmp_path, named):
+    table = m.measure_motions([named("b", 1), named("a", 2)])
     assert list(table.columns) == COLUMNS
     assert table["name"].tolist() == ["b", "a"]
-    assert set(table["floor"]) == {"GF"}
+    assert set(table["floor"]) == {"roof"}
     assert table.select_dtypes("number").notna().all(axis=None)
     write_table(table, tmp_path / "measures.csv", tmp_path / "measures.parquet")
 
 
-def test_units_are_those_of_the_names():
-    motion = noise("one", 3)
+def test_units_are_those_of_the_names(named):
+    motion = named("one", 3)
     row = m.measure_motion(motion)
     assert row["pga_g"] * G == pytest.approx(m.pga(motion))
     assert row["pgv_cm_s"] / 100 == pytest.approx(m.pgv(motion))
@@ -46,11 +52,11 @@ def test_units_are_those_of_the_names():
     assert row["sa_0_3s_g"] * G == pytest.approx(row["sd_0_3s_cm"] / 100 * omega**2)
 
 
-def test_periods_name_their_columns():
-    row = m.measure_motion(noise("one", 4), periods=(0.05, 2, 1.25), damping=0.02)
+def test_periods_name_their_columns(named):
+    row = m.measure_motion(named("one", 4), periods=(0.05, 2, 1.25), damping=0.02)
     names = [key for key in row if key.startswith("sa_")]
     assert names == ["sa_0_05s_g", "sa_2_0s_g", "sa_1_25s_g"]
-    assert not [key for key in m.measure_motion(noise("one", 4), periods=()) if "sa_" in key]
+    assert not [key for key in m.measure_motion(named("one", 4), periods=()) if "sa_" in key]
 
 
 def test_motion_of_zeros_has_nan_where_nothing_is_defined():
@@ -66,13 +72,13 @@ def test_motion_of_one_sample_is_measured():
     assert m.measure_motion(Motion([1.0], 0.01, "one"))["pga_g"] == pytest.approx(1 / G)
 
 
-def test_motions_of_one_name_are_refused():
+def test_motions_of_one_name_are_refused(named):
     with pytest.raises(InputError, match="two motions are called 'a'"):
-        m.measure_motions([noise("a", 1), noise("a", 2)])
+        m.measure_motions([named("a", 1), named("a", 2)])
 
 
-def test_pair_has_the_measures_of_its_rotation():
-    first, second = noise("first", 6), noise("second", 7)
+def test_pair_has_the_measures_of_its_rotation(named):
+    first, second = named("first", 6), named("second", 7)
     row = m.measure_pair(first, second, periods=(0.5,))
     assert list(row) == [
         f"rotd{p}_{name}" for name in ("pga_g", "pgv_cm_s", "sa_0_5s_g") for p in (50, 100)
@@ -83,12 +89,12 @@ def test_pair_has_the_measures_of_its_rotation():
     assert row["rotd100_sa_0_5s_g"] * G == pytest.approx(sa)
 
 
-def test_rocking_table_has_a_row_per_motion_and_block():
-    motions = [noise("a", 8), noise("b", 9)]
-    blocks = {"T1": (0.32, 6.0), "T3": (0.20, 5.0)}
+def test_rocking_table_has_a_row_per_motion_and_block(named):
+    motions = [named("a", 8), named("b", 9)]
+    blocks = {"wide": (0.32, 6.0), "slender": (0.20, 5.0)}
     table = m.measure_rocking(motions, blocks)
     assert table["name"].tolist() == ["a", "a", "b", "b"]
-    assert table["block"].tolist() == ["T1", "T3", "T1", "T3"]
-    last = m.rocking_measures(motions[1], *blocks["T3"])
+    assert table["block"].tolist() == ["wide", "slender", "wide", "slender"]
+    last = m.rocking_measures(motions[1], *blocks["slender"])
     assert table.iloc[3][list(last)].to_dict() == pytest.approx(last)
     assert m.measure_rocking([], blocks).empty

@@ -18,10 +18,8 @@ def peer(name: str):
 
 
 @pytest.fixture(scope="module")
-def motion() -> Motion:
-    rng = np.random.default_rng(11)
-    samples = np.pad(rng.standard_normal(2000) * np.hanning(2000), (1, 1))
-    return Motion(samples, 0.01, "noise")
+def motion(noise) -> Motion:
+    return Motion(np.pad(noise(11, 2000, tapered=True).acceleration, (1, 1)), 0.01, "noise")
 
 
 def test_velocity_is_obspys(motion):

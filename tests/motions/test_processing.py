@@ -14,9 +14,10 @@ from rockfrag.records.motion import Motion, read_motion_set, write_motion_set
 from rockfrag.units import STANDARD_GRAVITY as G
 
 
-def noise(seed: int = 0, count: int = 1000, dt: float = 0.01) -> Motion:
-    samples = np.random.default_rng(seed).standard_normal(count) * np.hanning(count)
-    return Motion(samples, dt, name="noise", provenance=({"step": "read"},))
+@pytest.fixture(scope="module")
+def record(noise) -> Motion:
+    """Ten seconds of noise that has been read from somewhere."""
+    return noise(0, 1000, tapered=True, name="noise", provenance=({"step": "read"},))
 
 
 def tone(hertz: float, seconds: float = 40.0, dt: float = 0.01) -> Motion:
@@ -31,26 +32,26 @@ def middle(motion: Motion) -> np.ndarray:
 # --- the chain
 
 
-def test_no_steps_leave_the_motion_alone():
-    motion = noise()
+def test_no_steps_leave_the_motion_alone(record):
+    motion = record
     assert m.process(motion) is motion
     assert m.process(motion, []) is motion
 
 
-def test_steps_are_taken_in_order_and_recorded(tmp_path):
+def test_steps_are_taken_in_order_and_recorded(record, tmp_path):
     steps = [
         {"step": "pad", "before_s": 1, "after_s": 2},
         {"step": "highpass", "corner_hz": 0.2, "order": 2},
         {"step": "scale_to_pga", "pga_g": 0.3},
     ]
-    processed = m.process(noise(), steps)
+    processed = m.process(record, steps)
     assert [entry["step"] for entry in processed.provenance] == [
         "read",
         *(s["step"] for s in steps),
     ]
     for given, recorded in zip(steps, processed.provenance[1:], strict=True):
         assert given.items() <= recorded.items()
-    by_hand = m.scale_to_pga(m.highpass(m.pad(noise(), 1, 2), 0.2, 2), 0.3)
+    by_hand = m.scale_to_pga(m.highpass(m.pad(record, 1, 2), 0.2, 2), 0.3)
     np.testing.assert_array_equal(processed.acceleration, by_hand.acceleration)
     # the record of the steps survives the file between two stages
     write_motion_set([processed], tmp_path / "motions.parquet")
@@ -59,10 +60,10 @@ def test_steps_are_taken_in_order_and_recorded(tmp_path):
     )
 
 
-def test_recorded_steps_can_be_taken_again():
+def test_recorded_steps_can_be_taken_again(record):
     steps = [{"step": "taper", "duration_s": 1.0}, {"step": "bandpass", "low_hz": 1, "high_hz": 9}]
-    once = m.process(noise(), steps)
-    again = m.process(noise(), once.provenance[1:])
+    once = m.process(record, steps)
+    again = m.process(record, once.provenance[1:])
     np.testing.assert_array_equal(once.acceleration, again.acceleration)
 
 
@@ -81,9 +82,9 @@ def test_recorded_steps_can_be_taken_again():
         ([{"step": "scale", "motion": 3}], "no parameter 'motion'"),
     ],
 )
-def test_unknown_steps_and_parameters_are_refused_with_what_is_known(steps, message):
+def test_unknown_steps_and_parameters_are_refused_with_what_is_known(record, steps, message):
     with pytest.raises(InputError, match=message):
-        m.process(noise(), steps)
+        m.process(record, steps)
     with pytest.raises(InputError, match=message):
         m.check_steps(steps)
 
@@ -129,9 +130,9 @@ def test_unknown_steps_and_parameters_are_refused_with_what_is_known(steps, mess
         ({"step": "compress_time", "factor": 0}, "positive"),
     ],
 )
-def test_impossible_parameters_are_refused_in_one_sentence(step, message):
+def test_impossible_parameters_are_refused_in_one_sentence(record, step, message):
     with pytest.raises(InputError, match=message) as refusal:
-        m.process(noise(), [step])
+        m.process(record, [step])
     text = str(refusal.value)
     assert text.startswith(f"step {step['step']}: ")
     assert text.endswith(".")
@@ -189,8 +190,8 @@ def test_demean_leaves_no_mean_and_says_what_it_took():
 
 
 @pytest.mark.parametrize("order", [0, 1, 3, 6])
-def test_baseline_takes_out_a_polynomial_and_nothing_else(order):
-    motion = noise()
+def test_baseline_takes_out_a_polynomial_and_nothing_else(record, order):
+    motion = record
     x = np.linspace(-1, 1, motion.acceleration.size)
     drift = np.polynomial.polynomial.polyval(x, np.arange(1, order + 2) * 0.1)
     clean = m.baseline(motion, order)
@@ -198,8 +199,8 @@ def test_baseline_takes_out_a_polynomial_and_nothing_else(order):
     np.testing.assert_allclose(dirty.acceleration, clean.acceleration, atol=1e-12)
 
 
-def test_straight_baseline_is_obspys():
-    motion = noise()
+def test_straight_baseline_is_obspys(record):
+    motion = record
     expected = Trace(motion.acceleration.copy()).detrend("linear").data
     np.testing.assert_allclose(m.baseline(motion, 1).acceleration, expected, atol=1e-12)
 
@@ -211,8 +212,8 @@ def test_displacement_baseline_takes_out_the_drift_of_a_displacement():
     assert m.pgd(m.displacement_baseline(drifting)) < 1e-9 * m.pgd(drifting)
 
 
-def test_displacement_baseline_takes_a_smooth_line_from_the_acceleration():
-    motion = noise(count=4000)
+def test_displacement_baseline_takes_a_smooth_line_from_the_acceleration(noise):
+    motion = noise(0, 4000, tapered=True)
     straightened = m.displacement_baseline(motion, 6)
     assert m.pgd(straightened) < 0.5 * m.pgd(motion)
     taken = motion.acceleration - straightened.acceleration
@@ -229,8 +230,8 @@ def test_taper_brings_the_ends_to_zero_and_leaves_the_middle():
     assert tapered.acceleration[100] == pytest.approx(0.5)
 
 
-def test_pads_change_nothing_but_the_time():
-    motion = noise()
+def test_pads_change_nothing_but_the_time(record):
+    motion = record
     padded = m.pad(motion, 1.5, 2.5)
     assert padded.acceleration.size == motion.acceleration.size + 400
     assert m.pgv(padded) == pytest.approx(m.pgv(motion))
@@ -240,8 +241,8 @@ def test_pads_change_nothing_but_the_time():
 # --- filters and sampling
 
 
-def test_filters_are_butterworth_forwards_and_backwards():
-    motion = noise()
+def test_filters_are_butterworth_forwards_and_backwards(record):
+    motion = record
     sos = butter(4, [1.0, 10.0], "bandpass", fs=100.0, output="sos")
     forwards = sosfilt(sos, motion.acceleration)
     expected = sosfilt(sos, forwards[::-1])[::-1]
@@ -264,9 +265,9 @@ def test_corner_is_six_decibels_down():
     np.testing.assert_allclose(middle(filtered), 0.5 * middle(tone(2.0)), atol=1e-4)
 
 
-def test_filtered_motion_with_pads_comes_to_rest():
+def test_filtered_motion_with_pads_comes_to_rest(record):
     # 1.5 × order / corner seconds of zeros in all (Converse & Brady)
-    motion = Motion(noise().acceleration + 0.02, 0.01)
+    motion = Motion(record.acceleration + 0.02, 0.01)
     filtered = m.highpass(m.pad(motion, 30.0, 30.0), 0.1, 4)
     velocity, displacement = m.integrate(filtered.acceleration, filtered.dt)
     assert abs(velocity[-1]) < 1e-3 * np.abs(velocity).max()
@@ -291,8 +292,8 @@ def test_resampling_does_not_alias():
     assert np.abs(middle(m.resample(tone(40.0), 0.02))).max() < 0.01
 
 
-def test_interpolating_keeps_the_motion():
-    motion = noise()
+def test_interpolating_keeps_the_motion(record):
+    motion = record
     fine = m.interpolate(motion, 0.002)
     assert fine.acceleration.size == 5 * (motion.acceleration.size - 1) + 1
     np.testing.assert_array_equal(fine.acceleration[::5], motion.acceleration)
@@ -303,8 +304,8 @@ def test_interpolating_keeps_the_motion():
 # --- selection and scaling
 
 
-def test_strong_part_holds_its_share_of_the_intensity():
-    motion = noise()
+def test_strong_part_holds_its_share_of_the_intensity(record):
+    motion = record
     strong = m.strong_part(motion, 0.05, 0.95)
     assert m.arias(strong) == pytest.approx(0.9 * m.arias(motion), rel=0.02)
     assert len(strong.time) * 0.01 == pytest.approx(m.significant_duration(motion), abs=0.03)
@@ -322,8 +323,8 @@ def test_trim_keeps_both_ends_of_its_window():
     assert m.trim(motion, 0.0, 10.0).acceleration.size == 101
 
 
-def test_scaling_reaches_its_target():
-    motion = noise()
+def test_scaling_reaches_its_target(record):
+    motion = record
     assert m.pga(m.scale_to_pga(motion, 0.4)) == pytest.approx(0.4 * G)
     assert m.pgv(m.scale_to_pgv(motion, 30.0)) == pytest.approx(0.30)
     assert m.arias(m.scale_to_arias(motion, 1.7)) == pytest.approx(1.7)

@@ -9,8 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from obspy import UTCDateTime
-from scipy.signal.windows import tukey
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import MOST_SAMPLES, not_negative, positive, whole
@@ -94,6 +92,8 @@ def taper(motion: Motion, duration_s: float) -> Motion:
             f"step taper: duration_s of {duration_s} at each end does not fit into the {length:g} "
             f"s of motion {motion.name!r}; give at most half of it."
         )
+    from scipy.signal.windows import tukey
+
     window = tukey(motion.acceleration.size, alpha=2 * duration_s / length)
     return motion.after("taper", motion.acceleration * window, duration_s=duration_s)
 
@@ -134,6 +134,8 @@ def starting_later(motion: Motion, seconds: float) -> Motion:
     start = motion.metadata.get("start_time")
     if not start:
         return motion
+    from obspy import UTCDateTime
+
     moved = str(UTCDateTime(start) + seconds)
     return replace(motion, metadata={**motion.metadata, "start_time": moved})
 

@@ -3,14 +3,12 @@
 The filters are ObsPy's, run forwards and backwards: no phase shift, and a response that is the
 square of the Butterworth response of the given order (at a corner -6 dB, not -3 dB).  They start
 from rest at either end; put zero pads first where the displacement matters
-(:func:`rockfrag.motions.pad`).
+(:func:`rockfrag.motions.pad`).  ObsPy and SciPy are loaded where they filter: naming a step needs neither.
 """
 
 from fractions import Fraction
 
 import numpy as np
-from obspy.signal import filter as obspy_filter
-from scipy.signal import resample_poly
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import positive, whole
@@ -34,6 +32,8 @@ def highpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
     """
     corner_hz = _corner("highpass", "corner_hz", corner_hz, motion)
     order = whole("step highpass", "order", order, 1, 10)
+    from obspy.signal import filter as obspy_filter
+
     filtered = obspy_filter.highpass(
         motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=True
     )
@@ -44,6 +44,8 @@ def lowpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
     """Acausal Butterworth low-pass filter; parameters and errors as for :func:`highpass`."""
     corner_hz = _corner("lowpass", "corner_hz", corner_hz, motion)
     order = whole("step lowpass", "order", order, 1, 10)
+    from obspy.signal import filter as obspy_filter
+
     filtered = obspy_filter.lowpass(
         motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=True
     )
@@ -67,6 +69,8 @@ def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> M
             f"step bandpass: the band from low_hz {low_hz} to high_hz {high_hz} is empty; "
             "low_hz must be the smaller."
         )
+    from obspy.signal import filter as obspy_filter
+
     filtered = obspy_filter.bandpass(
         motion.acceleration, low_hz, high_hz, 1 / motion.dt, corners=order, zerophase=True
     )
@@ -99,6 +103,8 @@ def resample(motion: Motion, dt_s: float) -> Motion:
             f"step resample: dt_s {dt_s} and the motion's dt {motion.dt} have no ratio of whole "
             "numbers up to 1000; choose a rounder dt_s."
         )
+    from scipy.signal import resample_poly
+
     samples = resample_poly(motion.acceleration, ratio.numerator, ratio.denominator)
     return motion.after("resample", samples, dt=dt_s, dt_s=dt_s)
 

@@ -4,18 +4,17 @@ Velocity, displacement and response spectra are those of an acceleration that is
 samples, exactly, with the peaks between samples.  The integrals of a² and |a| follow custom
 instead, the trapezoidal rule on the samples, so that they can be held against published values; the
 trapezoidal sum of a² is also the exact energy of the band-limited signal that was sampled
-(Parseval).
+(Parseval).  Spectra and SciPy are loaded where they are computed with: numba takes most of a second,
+and steps that scale to a measure are named long before they are taken.
 """
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from rockfrag.motions.checks import not_negative, positive
 from rockfrag.motions.integration import peak_displacement, peak_velocity
-from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.units import STANDARD_GRAVITY
 
@@ -44,6 +43,8 @@ def pgv_over_pga(motion: Motion) -> float:
 
 def cumulative_arias(motion: Motion) -> Floats:
     """Arias intensity up to each sample, π/(2g) ∫₀ᵗ a² dt [m/s], shape (n,)."""
+    from scipy.integrate import cumulative_trapezoid
+
     energy = cumulative_trapezoid(motion.acceleration**2, dx=motion.dt, initial=0.0)
     return np.asarray(energy * (math.pi / (2 * STANDARD_GRAVITY)))
 
@@ -107,6 +108,8 @@ def mean_period(motion: Motion) -> float:
     150-159).  Zeros are added so that frequencies are at most 0.05 Hz apart, as Rathje et al.
     (2004, Earthquake Spectra 20(1), 119-144) require.
     """
+    from rockfrag.motions.spectra import fourier_amplitude
+
     frequency, amplitude = fourier_amplitude(motion, math.ceil(1 / (0.05 * motion.dt)))
     band = (frequency >= 0.25) & (frequency <= 20.0)
     power = amplitude[band] ** 2
@@ -123,23 +126,33 @@ def predominant_period(motion: Motion) -> float:
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
     """
-    spectrum = response_spectrum(motion, PREDOMINANT_PERIODS).pseudo_acceleration
-    best = int(np.argmax(spectrum))
-    return float(PREDOMINANT_PERIODS[best]) if spectrum[best] > 0 else math.nan
+    from rockfrag.motions.side_by_side import largest_pseudo_acceleration
+
+    if motion.pga == 0:
+        return math.nan
+    return float(
+        PREDOMINANT_PERIODS[largest_pseudo_acceleration(motion, PREDOMINANT_PERIODS, 0.05)]
+    )
 
 
 def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) -> float:
     """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for."""
+    from rockfrag.motions.spectra import response_spectrum
+
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
 
 def spectral_velocity(motion: Motion, period: float, damping: float = 0.05) -> float:
     """Spectral velocity Sv(T), peak relative velocity [m/s]."""
+    from rockfrag.motions.spectra import response_spectrum
+
     return float(response_spectrum(motion, [period], damping).velocity[0])
 
 
 def spectral_displacement(motion: Motion, period: float, damping: float = 0.05) -> float:
     """Spectral displacement Sd(T), peak relative displacement [m]."""
+    from rockfrag.motions.spectra import response_spectrum
+
     return float(response_spectrum(motion, [period], damping).displacement[0])
 
 
@@ -154,8 +167,10 @@ def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
     trapezoidal rule on steps of 0.01 s.  Housner gave curves for undamped and 20 % damped
     oscillators; 5 % is today's custom.
     """
-    spectrum = response_spectrum(motion, HOUSNER_PERIODS, damping)
-    return float(np.trapezoid(spectrum.pseudo_velocity, HOUSNER_PERIODS))
+    from rockfrag.motions.side_by_side import peak_displacements
+
+    displacement = peak_displacements(motion, HOUSNER_PERIODS, damping)
+    return float(np.trapezoid(displacement * (2 * math.pi / HOUSNER_PERIODS), HOUSNER_PERIODS))
 
 
 def uplift_ratio(motion: Motion, alpha: float) -> float:

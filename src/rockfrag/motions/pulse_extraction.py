@@ -2,14 +2,15 @@
 
 import math
 from dataclasses import dataclass
+from itertools import groupby, product
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
-from scipy.signal import correlate
 
 from rockfrag.motions.integration import integrate
 from rockfrag.motions.pulses import mavroeidis_papageorgiou
+from rockfrag.motions.sliding_pulse import best_place, half_length
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -80,32 +81,28 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
     The pulse; of NaN for a motion of zeros or one too short to hold a pulse.
     """
     velocity, _ = integrate(motion.acceleration, motion.dt)
-    energy = float((velocity**2).sum())
     periods = _periods(motion)
-    if energy <= 0 or periods.size == 0:
+    energy = _energy(velocity)
+    if energy[-1] <= 0 or periods.size == 0:
         return NO_PULSE
-    gain, period, cycles = max(
-        (_thinned_gain(velocity, motion.dt, period, cycles), period, cycles)
-        for cycles in CYCLES
-        for period in periods
-    )
+    period, cycles = _best_of(velocity, motion.dt, periods)
     step = math.log(PERIOD_RATIO)
     longest = motion.time[-1] / cycles
     refined = minimize_scalar(
-        lambda log_period: -_fit(velocity, motion.dt, math.exp(log_period), cycles)[0],
+        lambda x: -best_place(velocity, energy, motion.dt, math.exp(x), cycles, 0.0)[0],
         bounds=(math.log(period) - step, min(math.log(period) + step, math.log(longest))),
         method="bounded",
         options={"xatol": 1e-4},
     )
     period = math.exp(refined.x)
-    gain, middle, even, odd = _fit(velocity, motion.dt, period, cycles)
+    gain, middle, even, odd = best_place(velocity, energy, motion.dt, period, cycles, 0.0)
     return StrongestPulse(
         period=period,
         velocity=math.hypot(even, odd),
         cycles=cycles,
         phase_deg=math.degrees(math.atan2(-odd, even)),
         time=middle * motion.dt,
-        explained=gain / energy,
+        explained=gain / float(energy[-1]),
     )
 
 
@@ -123,30 +120,27 @@ def _periods(motion: Motion) -> Floats:
     return np.geomspace(shortest, longest, count)
 
 
-def _thinned_gain(velocity: Floats, dt: float, period: float, cycles: float) -> float:
-    every = max(1, int(period / (SAMPLES_PER_PERIOD * dt)))
-    return every * _fit(velocity[::every], every * dt, period, cycles)[0]
+def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float]:
+    """Period and cycles, of those that are tried, of the pulse that explains most."""
+    best = (0.0, 0.0, 0.0)
+    # long pulses first: they cost little and leave few places at which a short one could explain more
+    for every, some in groupby(periods[::-1], lambda T: max(1, int(T / (SAMPLES_PER_PERIOD * dt)))):
+        thinned, step = np.ascontiguousarray(velocity[::every]), every * dt
+        energy = _energy(thinned)
+        hopeless = 0.0
+        for period, cycles in product(some, reversed(CYCLES)):
+            length = cycles * period
+            if length <= hopeless or 2 * half_length(length, step) + 1 > thinned.size:
+                continue
+            # less by what rounding may do, so that equals are looked at
+            known = best[0] / every * (1 - 1e-9)
+            gain = best_place(thinned, energy, step, period, cycles, known)[0]
+            best = max(best, (every * gain, float(period), cycles))
+            # a shorter window of the same samples holds no more
+            hopeless = length if gain == 0 else hopeless
+    return best[1:]
 
 
-def _fit(
-    velocity: Floats, dt: float, period: float, cycles: float
-) -> tuple[float, int, float, float]:
-    """Best place of a pulse: explained sum of squares, middle sample, even and odd amplitude."""
-    half = math.floor(cycles * period / 2 / dt)
-    if 2 * half + 1 > velocity.size:
-        return 0.0, 0, 0.0, 0.0
-    phase = 2 * np.pi / period * dt * np.arange(-half, half + 1)
-    envelope = (1 + np.cos(phase / cycles)) / 2
-    even, odd = envelope * np.cos(phase), envelope * np.sin(phase)
-    # "valid" keeps to the places where the whole pulse lies inside the record
-    along_even = correlate(velocity, even, mode="valid", method="fft")
-    along_odd = correlate(velocity, odd, mode="valid", method="fft")
-    norms = float((even**2).sum()), float((odd**2).sum())
-    gain = along_even**2 / norms[0] + along_odd**2 / norms[1]
-    best = int(np.argmax(gain))
-    return (
-        float(gain[best]),
-        best + half,
-        float(along_even[best]) / norms[0],
-        float(along_odd[best]) / norms[1],
-    )
+def _energy(velocity: Floats) -> Floats:
+    """Sum of squares before each sample and in all [m²/s²], shape (n + 1,)."""
+    return np.concatenate([[0.0], np.cumsum(velocity**2)])

@@ -98,7 +98,7 @@ def _histories(acceleration: Floats, step: float, matrix: Floats) -> tuple[Float
 
 
 @njit(cache=True)
-def _turning_time(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
+def turning_time(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
     """Time in (0, h) at which the cubic with values x0, x1 and slopes m0, m1 of unlike sign turns."""
     rise = x1 - x0
     a = 3 * (h * (m0 + m1) - 2 * rise)
@@ -112,7 +112,7 @@ def _turning_time(x0: float, m0: float, x1: float, m1: float, h: float) -> float
 
 
 @njit(cache=True)
-def _state_after(
+def state_after(
     u: float, v: float, a: float, s: float, c: float, k: float, t: float
 ) -> tuple[float, float]:
     """Displacement and velocity a short time t later, by the Taylor series of u'' = -a - c u' - k u."""
@@ -151,14 +151,14 @@ def _peaks(
             jerk1 = -(c * relative1 + k * v1)
             sd, sv, sa = max(sd, abs(u1)), max(sv, abs(v1)), max(sa, abs(total1))
             if v * v1 < 0:
-                t = _turning_time(u, v, u1, v1, step)
-                sd = max(sd, abs(_state_after(u, v, a, s, c, k, t)[0]))
+                t = turning_time(u, v, u1, v1, step)
+                sd = max(sd, abs(state_after(u, v, a, s, c, k, t)[0]))
             if relative * relative1 < 0:
-                t = _turning_time(v, relative, v1, relative1, step)
-                sv = max(sv, abs(_state_after(u, v, a, s, c, k, t)[1]))
+                t = turning_time(v, relative, v1, relative1, step)
+                sv = max(sv, abs(state_after(u, v, a, s, c, k, t)[1]))
             if jerk * jerk1 < 0:
-                t = _turning_time(total, jerk, total1, jerk1, step)
-                there = _state_after(u, v, a, s, c, k, t)
+                t = turning_time(total, jerk, total1, jerk1, step)
+                there = state_after(u, v, a, s, c, k, t)
                 sa = max(sa, abs(c * there[1] + k * there[0]))
             u, v, total, relative, jerk = u1, v1, total1, relative1, jerk1
     return sd, sv, sa
@@ -190,7 +190,7 @@ def oscillator_response(
         If the period is not positive or the damping negative.
     """
     (period,) = _checked_periods([period])
-    damping = _checked_damping(damping)
+    damping = checked_damping(damping)
     omega = 2 * math.pi / period
     matrix = oscillator_matrix(omega, damping, motion.dt)
     u, v = _histories(motion.acceleration, motion.dt, matrix)
@@ -217,15 +217,14 @@ def response_spectrum(
         If there is no period, a period is not positive, or the damping is negative.
     """
     checked = _checked_periods(periods)
-    damping = _checked_damping(damping)
+    damping = checked_damping(damping)
     peaks = np.array([_oscillator_peaks(motion, float(period), damping) for period in checked])
     return ResponseSpectrum(checked, damping, peaks[:, 0], peaks[:, 1], peaks[:, 2])
 
 
 def _oscillator_peaks(motion: Motion, period: float, damping: float) -> tuple[float, float, float]:
     omega = 2 * math.pi / period
-    steps_per_period = STEPS_PER_PERIOD * max(1.0, 2 * damping)
-    parts = max(1, math.ceil(steps_per_period * motion.dt / period))
+    parts = steps_within(motion.dt, period, damping)
     step = motion.dt / parts
     # one period of free vibration holds the first peak of either sign, and later ones are smaller
     quiet = np.zeros(math.ceil(period / motion.dt) + 1)
@@ -233,6 +232,11 @@ def _oscillator_peaks(motion: Motion, period: float, damping: float) -> tuple[fl
     matrix = oscillator_matrix(omega, damping, step)
     sd, sv, sa = _peaks(acceleration, step, parts, matrix, omega, damping)
     return sd, sv, sa
+
+
+def steps_within(dt: float, period: float, damping: float) -> int:
+    """Return the number of steps into which a sampling interval [s] is divided for an oscillator."""
+    return max(1, math.ceil(STEPS_PER_PERIOD * max(1.0, 2 * damping) * dt / period))
 
 
 def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Floats]:
@@ -269,7 +273,8 @@ def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
     return checked
 
 
-def _checked_damping(damping: float) -> float:
+def checked_damping(damping: float) -> float:
+    """Return a damping that is a fraction of critical, zero or more; InputError otherwise."""
     if not (math.isfinite(damping) and damping >= 0):
         raise InputError(
             f"response spectrum: damping is a fraction of critical, zero or more, not {damping}."

@@ -1,0 +1,280 @@
+"""Peak displacements of many oscillators under one motion, sixteen of them side by side.
+
+Every oscillator takes the steps and finds the peaks between them as :func:`rockfrag.motions.response_spectrum`
+does, to the last bit.  What is saved is the look between two steps: a peak there is worth it only if it can be
+the largest so far.  Where u turns, u'' is bounded by the ground's and the spring's share, |u''| (1 - ch) ≤ PGA +
+k |u| with c = 2ζω, k = ω² and step h.  One end of the step is within h/2 of the turn, so that the peak exceeds
+the larger of the two ends by q (PGA/k + |u|) at most, with q = k (h/2)²/2/(1 - ch).
+
+The march ends where nothing larger can come: the free vibration only decays, and the rest of the motion moves
+the oscillator by (1 + r)/(1 - r) times its peak over k at most, with r = exp(-πζ/√(1 - ζ²)) the ratio of one
+peak of free vibration to the one before.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from rockfrag.motions.integration import peak_velocity
+from rockfrag.motions.spectra import (
+    checked_damping,
+    oscillator_matrix,
+    state_after,
+    steps_within,
+    turning_time,
+)
+from rockfrag.records.motion import Motion
+
+Floats = NDArray[np.float64]
+
+LANES = 16
+
+# Rows of a group's table, each of LANES numbers, in one flat array so that the compiler sees that they do not
+# overlap: the propagator over a step, the state, and the largest displacement so far; ζω, 1/ωd and the most that
+# a ground acceleration of one can do, for the free vibration and what may still come;
+_UU, _UV, _UA, _US, _VU, _VV, _VA, _VS = range(0, 8 * LANES, LANES)
+_U, _V, _LARGEST, _RATE, _PER_TURN, _GAIN = range(8 * LANES, 14 * LANES, LANES)
+# for exact peaks the state before the step, what a peak within it can add, c = 2ζω and k = ω²;
+_U0, _V0, _KEPT, _ADDED, _C, _K = range(14 * LANES, 20 * LANES, LANES)
+# for bounds the largest squared amplitude of free vibration, 1/k and c/k² in their place
+_FREE, _PER_A, _PER_S = range(14 * LANES, 17 * LANES, LANES)
+_ROWS = 20
+
+LOOK_EVERY = 32
+"""Samples after which is asked whether anything larger can still come."""
+
+
+class _Group(NamedTuple):
+    """Oscillators that take steps of one length."""
+
+    which: NDArray[np.intp]
+    parts: int
+    step: float
+    quiet: int
+    table: Floats
+
+
+def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -> Floats:
+    """Sd of many oscillators [m], as :func:`rockfrag.motions.response_spectrum` gives it, bit by bit.
+
+    Parameters
+    ----------
+    motion
+        Ground acceleration, linear between samples and zero after the last one.
+    periods
+        Natural periods [s], shape (k,), positive.
+    damping
+        Fraction of critical damping [-].
+
+    Returns
+    -------
+    Peak relative displacement [m], shape (k,).
+
+    Raises
+    ------
+    InputError
+        If the damping is negative.
+    """
+    damping = checked_damping(damping)
+    peaks = np.empty(periods.size)
+    pga = motion.pga
+    for group in _groups(periods.tobytes(), damping, motion.dt, True):
+        peaks[group.which] = _exact(group, motion.acceleration, pga)
+    return peaks
+
+
+def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float) -> int:
+    """Index of the period of the largest PSA = ω² Sd; periods that cannot have it are left out.
+
+    Parameters
+    ----------
+    motion, periods, damping
+        As of :func:`peak_displacements`; the damping is not zero and below critical.
+    """
+    acceleration, pga = motion.acceleration, motion.pga
+    slope = float(np.abs(np.diff(acceleration, append=0.0)).max()) / motion.dt
+    square = (2 * math.pi / periods) ** 2
+    psa = np.zeros(periods.size)
+    groups = _groups(periods.tobytes(), damping, motion.dt, True)
+    # |u| is PGV times the total variation of the impulse response at most, 2/(ω (1 - r))
+    velocity = peak_velocity(np.append(acceleration, 0.0), motion.dt)
+    bound = np.sqrt(square) * velocity * 2 / (1 - _decay(damping)) * (1 + 1e-9)
+    for group in _groups(periods.tobytes(), damping, motion.dt, False):
+        psa[group.which], bound[group.which] = _bounds(
+            group, acceleration, square[group.which], pga, slope
+        )
+    bounds = [float(bound[group.which].max()) for group in groups]
+    # from the highest bound on
+    for i in np.argsort(bounds)[::-1]:
+        if bounds[i] >= psa.max():
+            which = groups[i].which
+            psa[which] = square[which] * _exact(groups[i], acceleration, pga)
+    return int(np.argmax(psa))
+
+
+def _exact(group: _Group, acceleration: Floats, pga: float) -> Floats:
+    """Sd of a group [m]."""
+    table = group.table.copy()
+    table[_ADDED : _ADDED + LANES] *= pga
+    _march(acceleration, _still_to_come(acceleration), group.quiet, group.step, group.parts, table)
+    return table[_LARGEST : _LARGEST + group.which.size]
+
+
+def _bounds(
+    group: _Group, acceleration: Floats, square: Floats, pga: float, slope: float
+) -> tuple[Floats, Floats]:
+    """PSA at the samples of a group and a bound of it between them [m/s²].
+
+    Within a step the displacement is -a/k + c s/k², which the ground acceleration a and its slope s set, and a
+    free vibration that only decays.
+    """
+    table = group.table.copy()
+    _march_free(acceleration, _still_to_come(acceleration), group.quiet, group.step, table)
+    size = group.which.size
+    forced = pga + square * table[_PER_S : _PER_S + size] * slope
+    free = square * np.sqrt(table[_FREE : _FREE + size])
+    return square * table[_LARGEST : _LARGEST + size], (forced + free) * (1 + 1e-9)
+
+
+@lru_cache(maxsize=64)
+def _groups(periods: bytes, damping: float, dt: float, exact: bool) -> tuple[_Group, ...]:
+    """Oscillators grouped by their steps; for bounds one step a sample of those that need several."""
+    each = np.frombuffer(periods)
+    parts = np.array([steps_within(dt, float(period), damping) for period in each])
+    # undamped vibration does not get smaller, and so each such oscillator must end at its own time
+    lanes = LANES if damping > 0 else 1
+    groups = []
+    for count in np.unique(parts) if exact else (1,):
+        (which,) = np.nonzero(parts == count if exact else parts > 1)
+        for i in range(0, which.size, lanes):
+            some = which[i : i + lanes]
+            quiet = math.ceil(each[some].max() / dt) + 1
+            table = np.zeros((_ROWS, LANES))
+            for lane, period in enumerate(each[some]):
+                table[:, lane] = _column(float(period), damping, dt / count, exact)
+            groups.append(_Group(some, int(count), float(dt / count), quiet, table.ravel()))
+    return tuple(groups)
+
+
+def _column(period: float, damping: float, step: float, exact: bool) -> Floats:
+    """One lane of a table, at rest; the ground's part of what a peak can add is still without PGA/k."""
+    omega = 2 * math.pi / period
+    c, k = 2 * damping * omega, omega * omega
+    values = dict.fromkeys(range(0, _ROWS * LANES, LANES), 0.0)
+    values.update(
+        zip(
+            range(0, 8 * LANES, LANES), oscillator_matrix(omega, damping, step).ravel(), strict=True
+        )
+    )
+    r = _decay(damping)
+    turn = omega * math.sqrt(max(1 - damping**2, 0.0))
+    # without free vibration, or with one that does not decay, nothing is foreseen
+    if 0 < r < 1:
+        values |= {_RATE: damping * omega, _PER_TURN: 1 / turn, _GAIN: (1 + r) / (1 - r) / k}
+    else:
+        values[_GAIN] = math.inf
+    if exact:
+        q = k * (step / 2) ** 2 / 2 / (1 - c * step)
+        values |= {_KEPT: 1 - q, _ADDED: q / k, _C: c, _K: k}
+    else:
+        values |= {_PER_A: 1 / k, _PER_S: c / k**2}
+    return np.array(list(values.values()))
+
+
+def _decay(damping: float) -> float:
+    """Ratio of one peak of free vibration to the one before; zero from critical damping on."""
+    return math.exp(-math.pi * damping / math.sqrt(1 - damping**2)) if damping < 1 else 0.0
+
+
+def _still_to_come(acceleration: Floats) -> Floats:
+    """Largest |a| from each sample on [m/s²], shape (n,)."""
+    return np.maximum.accumulate(np.abs(acceleration[::-1]))[::-1]
+
+
+@njit(cache=True, error_model="numpy", inline="always")  # type: ignore[untyped-decorator,unused-ignore]
+def _sample(acceleration: Floats, i: int) -> float:
+    return acceleration[i] if i < acceleration.size else 0.0
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+def _march(
+    acceleration: Floats, to_come: Floats, quiet: int, step: float, parts: int, x: Floats
+) -> None:
+    """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then."""
+    for i in range(acceleration.size - 1 + quiet):
+        if i % LOOK_EVERY == 0 and _settled(x, _sample(to_come, i)):
+            return
+        start = _sample(acceleration, i)
+        s = (_sample(acceleration, i + 1) - start) / (parts * step)
+        for j in range(parts):
+            a = start + j * step * s
+            if _advance(x, a, s):
+                for lane in range(LANES):
+                    _look_between(x, lane, a, s, step)
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+def _settled(x: Floats, to_come: float) -> bool:
+    """Whether no lane can exceed its largest displacement any more."""
+    for i in range(LANES):
+        u = x[_U + i]
+        speed = (x[_V + i] + x[_RATE + i] * u) * x[_PER_TURN + i]
+        most = math.sqrt(u * u + speed * speed) + to_come * x[_GAIN + i]
+        if not most * (1 + 1e-9) <= x[_LARGEST + i]:
+            return False
+    return True
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+def _advance(x: Floats, a: float, s: float) -> int:
+    """One step of all lanes; return how many may have passed their largest peak in it."""
+    turned = 0
+    for i in range(LANES):
+        u, v = x[_U + i], x[_V + i]
+        u1 = x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s
+        v1 = x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s
+        # the zero keeps the compiler from storing under a condition, for which the next load would wait
+        largest = max(x[_LARGEST + i], abs(u1)) + 0.0
+        ends = max(abs(u), abs(u1))
+        turned += (v * v1 < 0) & (ends + x[_ADDED + i] > x[_KEPT + i] * largest)
+        x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i] = u, v, u1, v1
+        x[_LARGEST + i] = largest
+    return turned
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
+    """Let the peak of lane i between the last two steps count, if it can be the largest."""
+    u, v, u1, v1 = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i]
+    if v * v1 < 0 and max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
+        t = turning_time(u, v, u1, v1, step)
+        peak = abs(state_after(u, v, a, s, x[_C + i], x[_K + i], t)[0])
+        x[_LARGEST + i] = max(x[_LARGEST + i], peak)
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+def _march_free(acceleration: Floats, to_come: Floats, quiet: int, step: float, x: Floats) -> None:
+    """Take all lanes through a motion and find the largest amplitudes of their free vibration."""
+    for i in range(acceleration.size - 1 + quiet):
+        if i % LOOK_EVERY == 0 and _settled(x, _sample(to_come, i)):
+            return
+        a = _sample(acceleration, i)
+        s = (_sample(acceleration, i + 1) - a) / step
+        _advance_free(x, a, s)
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+def _advance_free(x: Floats, a: float, s: float) -> None:
+    for i in range(LANES):
+        u, v = x[_U + i], x[_V + i]
+        free = u + a * x[_PER_A + i] - s * x[_PER_S + i]
+        speed = (v + s * x[_PER_A + i] + x[_RATE + i] * free) * x[_PER_TURN + i]
+        u1 = x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s
+        v1 = x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s
+        x[_FREE + i] = max(x[_FREE + i], free * free + speed * speed) + 0.0
+        x[_LARGEST + i] = max(x[_LARGEST + i], abs(u1)) + 0.0
+        x[_U + i], x[_V + i] = u1, v1
