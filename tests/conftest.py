@@ -7,9 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.records.read import read_motion
+from rockfrag.records.sources.wheel import fetch_wheel
 
-SHARED = Path(__file__).resolve().parents[2] / "shared"
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / "shared"
 
 
 @pytest.fixture(scope="session")
@@ -18,6 +22,27 @@ def shared() -> Path:
     if not SHARED.is_dir():
         pytest.skip("the folder of reference material beside the repository is absent")
     return SHARED
+
+
+@pytest.fixture(scope="session")
+def record_folder() -> Path:
+    """Folder of the ten records of the pinned package, fetched and checked as the workflow does it.
+
+    It is the workflow's own folder, so that they are fetched once; without it and a network, tests skip.
+    """
+    try:
+        return fetch_wheel("gmspy", ROOT / "resources" / "records")
+    except InputError as error:
+        if "could not download" not in str(error):
+            raise
+        pytest.skip(str(error))
+
+
+@pytest.fixture(scope="session")
+def four_records(record_folder: Path) -> dict[str, Motion]:
+    """The four records of the thesis's Table 3.3, by the names of their files."""
+    names = ("Friuli", "Kobe", "Loma_Prieta", "Northridge")
+    return {name: read_motion(record_folder / f"{name}.dat", unit="g") for name in names}
 
 
 @pytest.fixture(scope="session")

@@ -50,8 +50,8 @@ def test_reference_building_has_the_published_periods_and_stiffnesses():
 
 @pytest.mark.parametrize("name", ["Friuli", "Kobe", "Loma_Prieta", "Northridge"])
 @pytest.mark.parametrize("period", [0.35, 0.60])
-def test_reference_building_amplifies_the_four_records_as_published(record, period, name):
-    ground, third, fifth = floor_motions(reference(period), record(name))
+def test_reference_building_amplifies_the_four_records_as_published(four_records, period, name):
+    ground, third, fifth = floor_motions(reference(period), four_records[name])
     ratios = tuple(f"{floor.pga / ground.pga:.2f}" for floor in (third, fifth))
     assert ratios == AMPLIFICATION[period][name]
 

@@ -248,10 +248,10 @@ def test_elastic_floor_motions_are_those_of_opensees(opensees, settings):
 @pytest.mark.peers
 @pytest.mark.parametrize(("damage", "tolerance"), [(0.0, 1e-3), (0.02, 0.03)])
 def test_hysteretic_floor_motions_under_a_record_are_those_of_opensees(
-    opensees, masonry, record, damage, tolerance
+    opensees, masonry, four_records, damage, tolerance
 ):
     # without damage by energy the two laws are the same, with it they differ by its reference area
-    building, motion = masonry(damping=RAYLEIGH, damage_energy=damage), record("Friuli")
+    building, motion = masonry(damping=RAYLEIGH, damage_energy=damage), four_records["Friuli"]
 
     def storey(i, tag):
         material(opensees, building, i, tag)

@@ -13,7 +13,6 @@ from rockfrag.shaketable.readings import (
     always_overturning,
     first_overturning,
     step_protocol,
-    survival_windows,
 )
 from rockfrag.shaketable.readings import (
     tests_from_sweep as read_sweep,
@@ -33,8 +32,8 @@ def grid(verdicts):
 
 
 def sweep_table(overturned=WINDOW, amplitudes=GRID, **fields):
-    columns = {"configuration": "T1", "object": "T1", "pedestal": "NP", "motion": "Kobe_GF"}
-    columns |= {"event": "Kobe", "floor": "GF"} | fields
+    columns = {"configuration": "vase", "object": "vase", "pedestal": "NP", "motion": "Kobe_ground"}
+    columns |= {"event": "Kobe", "floor": "ground"} | fields
     body = np.where(overturned, "statue", "")
     return pd.DataFrame(
         {"amplitude_g": amplitudes, "overturned": overturned, "overturned_body": body, **columns}
@@ -65,7 +64,6 @@ def test_three_readings_of_one_sweep_differ():
     assert step_protocol(GRID, WINDOW, protocol) == Outcome(0.45, 0.55)
     assert first_overturning(GRID, WINDOW) == Outcome(0.29, 0.30)
     assert always_overturning(GRID, WINDOW) == Outcome(0.50, 0.51)
-    assert survival_windows(GRID, WINDOW) == [(0.35, 0.50)]
 
 
 def test_repetitions_start_within_a_step_of_each_other():
@@ -94,7 +92,7 @@ def test_at_overturning_reports_the_upper_bound():
 
 def test_the_shakers_limit_censors_the_step_protocol_only():
     table = read_sweep(
-        sweep_table(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_GF": 0.272}
+        sweep_table(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
     ).set_index("reading")
     lab = table.loc["step_protocol"]
     assert lab["lower_g"] == pytest.approx(0.25)
@@ -156,18 +154,6 @@ def test_no_protocol_overturns_below_the_first_overturning(verdicts, step):
 
 
 @settings(deadline=None, derandomize=True)
-@given(verdicts=sweeps)
-def test_survival_windows_lie_between_first_and_always(verdicts):
-    amplitudes = grid(verdicts)
-    first = first_overturning(amplitudes, verdicts)
-    always = always_overturning(amplitudes, verdicts)
-    windows = survival_windows(amplitudes, verdicts)
-    inside = sum(((amplitudes >= a) & (amplitudes <= b)).sum() for a, b in windows)
-    assert inside == ((~verdicts) & (amplitudes > first.upper_g)).sum()
-    assert bool(windows) == (not first.censored and always.lower_g > first.upper_g)
-
-
-@settings(deadline=None, derandomize=True)
 @given(growth=st.floats(0.01, 0.5), threshold=st.floats(0.1, 1.5))
 def test_a_monotone_specimen_is_bracketed_within_one_step(growth, threshold):
     protocol = Protocol(GeometricSteps(0.05, growth), limit_g=3.0)
@@ -197,5 +183,5 @@ def test_sweeps_with_missing_columns_or_doubled_amplitudes_are_refused():
     protocol = Protocol(LinearSteps(0.1, 0.1))
     with pytest.raises(InputError, match="'event' is missing"):
         read_sweep(sweep_table().drop(columns="event"), protocol)
-    with pytest.raises(InputError, match="T1 Kobe_GF: amplitudes must"):
+    with pytest.raises(InputError, match="vase Kobe_ground: amplitudes must"):
         read_sweep(pd.concat([sweep_table(), sweep_table()]), protocol)

@@ -10,7 +10,7 @@ from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Block, Stack
-from rockfrag.shaketable.filter_effect import filter_effect
+from rockfrag.shaketable.high_pass import filter_effect
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep as read_sweep
 from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants

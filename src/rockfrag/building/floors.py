@@ -22,7 +22,7 @@ def floor_motions(
     motion
         Ground acceleration, of n samples.
     floors
-        Labels defined by the building, such as ``GF``, ``F3``, ``F5``; all of them if not given.
+        Labels that the building gives to its floors; all of them if not given.
 
     Returns
     -------

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from rockfrag._lazy import loader
 
 if TYPE_CHECKING:
+    from rockfrag.shaketable.high_pass import filter_effect
     from rockfrag.shaketable.instruments import Accelerometer, Exact, ForceOverMass
     from rockfrag.shaketable.laboratory_table import read_measured
     from rockfrag.shaketable.protocols import Outcome, Protocol, climb
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
         always_overturning,
         first_overturning,
         step_protocol,
-        survival_windows,
         tests_from_sweep,
     )
     from rockfrag.shaketable.settings import make_protocol, make_shaker, read_shaker
@@ -39,6 +39,7 @@ __all__ = [
     "Shaker",
     "always_overturning",
     "climb",
+    "filter_effect",
     "first_overturning",
     "limits_g",
     "make_protocol",
@@ -49,11 +50,11 @@ __all__ = [
     "required_corner",
     "shaker_table",
     "step_protocol",
-    "survival_windows",
     "tests_from_sweep",
 ]
 
 _HOMES = {
+    "high_pass": ("filter_effect",),
     "instruments": (
         "Accelerometer",
         "Exact",
@@ -69,7 +70,6 @@ _HOMES = {
         "always_overturning",
         "first_overturning",
         "step_protocol",
-        "survival_windows",
         "tests_from_sweep",
     ),
     "settings": (

@@ -67,24 +67,6 @@ def always_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
     return Outcome(float(amplitudes[last]), float(amplitudes[last + 1]))
 
 
-def survival_windows(amplitudes: Floats, overturned: Verdicts) -> list[tuple[float, float]]:
-    """First and last amplitude [g] of each run of survivals above the first overturning.
-
-    Parameters as of :func:`first_overturning`.
-    """
-    _check_sweep(amplitudes, overturned, "sweep")
-    if not overturned.any():
-        return []
-    first = int(np.argmax(overturned))
-    survived = np.concatenate([[False], ~overturned[first:], [False]])
-    starts = np.flatnonzero(~survived[:-1] & survived[1:])
-    ends = np.flatnonzero(survived[:-1] & ~survived[1:])
-    return [
-        (float(amplitudes[first + start]), float(amplitudes[first + end - 1]))
-        for start, end in zip(starts, ends, strict=True)
-    ]
-
-
 def step_protocol(
     amplitudes: Floats,
     overturned: Verdicts,

@@ -32,8 +32,8 @@ CORNERS_HZ = tuple(float(corner) for corner in np.round(np.arange(0.02, 5.001, 0
 class Shaker:
     """Limits of a uniaxial electrodynamic shaker.
 
-    The defaults are those of the Wölfel BD.5 of the thesis; its moving masses are not stated there
-    and are assumptions, harmless as long as the force does not govern.
+    The defaults are those of a small one, a Wölfel BD.5; its moving masses are assumptions, harmless as
+    long as the force does not govern.
 
     Attributes
     ----------

@@ -6,8 +6,8 @@ limit is reached.
 ===============  ==================================================================================
 test             name of the test
 configuration    what was tested: the object, and the pedestal that it stood on, if any
-object, pedestal  object (``T1``, …); ``P`` on the pedestal, ``NP`` without
-event, floor     earthquake; ``GF``, ``F3``, ``F5``, …
+object, pedestal  what is tested; ``P`` on its pedestal, ``NP`` without
+event, floor     earthquake; floor of the building, ``ground`` without one
 motion           name of the input motion
 lower_g          largest amplitude known to be survived [g], 0 if none
 upper_g          amplitude at which it overturned [g]; NaN if it never did
