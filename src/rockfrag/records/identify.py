@@ -1,37 +1,11 @@
-"""All record formats that are read here; ObsPy reads the others."""
+"""Which of the formats read here a file is of; ObsPy reads some others."""
 
-from rockfrag.records.formats import (
-    at2,
-    cosmos,
-    csmip,
-    cwa,
-    esm,
-    geonet,
-    plain,
-    renadic,
-    seismosoft,
-    smc,
-    usc,
-)
+from rockfrag.records.formats import columns, plain, rows
+from rockfrag.records.headed_formats import HEADED
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.text_file import Source
 
-FORMATS: tuple[Format, ...] = tuple(
-    module.FORMAT
-    for module in (
-        at2,
-        cosmos,
-        csmip,
-        cwa,
-        esm,
-        geonet,
-        plain,
-        renadic,
-        seismosoft,
-        smc,
-        usc,
-    )
-)
+FORMATS: tuple[Format, ...] = (*HEADED, columns.FORMAT, plain.FORMAT, rows.FORMAT)
 
 
 def identify(source: Source) -> Format | None:

@@ -1,9 +1,8 @@
 """Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, not guessed."""
 
-import hashlib
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,54 +10,141 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.records.formats.obspy_native import RECORDER_FORMATS, obspy_channels
+from rockfrag.records.digest import sha256_of
+from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.identify import identify
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.quantities import ASKED_UNITS, TO_SI, asked_unit
-from rockfrag.records.parsing.text_file import check_file
+from rockfrag.records.parsing.text_file import NotAcceleration, check_file
+from rockfrag.records.sources.archive import is_archive, unpacked
+from rockfrag.records.sources.folder import is_no_record
 from rockfrag.units import STANDARD_GRAVITY
 
 _GRAVITY_SHARE = 0.05
 """A mean within this share of g is the weight of the sensor's mass, not motion."""
 
+_SAME_STEP = 1e-9
+"""Share of an interval by which the user's may differ from the stated one."""
+
 
 @dataclass(frozen=True)
 class Record:
-    """The acceleration channels of one file."""
+    """The acceleration channels of one file, or of one member or all of an archive.
+
+    Attributes
+    ----------
+    name
+        Path of the file, with ``#member`` where one member of an archive was asked for.
+    format
+        Name of its format; of those of an archive's members, joined by ``+``.
+    sha256
+        Digest of the file; of the archive for its members.
+    channels
+        What is in it.
+    left_out
+        Members of an archive that give no acceleration, and why.
+    """
 
     name: str
     format: str
     sha256: str
     channels: tuple[Channel, ...]
+    left_out: tuple[tuple[str, InputError], ...] = ()
 
 
-def read_record(path: str | os.PathLike[str], dt: float | None = None) -> Record:
+def read_record(
+    path: str | os.PathLike[str], dt: float | None = None, cut_short: bool = False
+) -> Record:
     """Return what is in a file, before units are settled.
 
     Parameters
     ----------
     path
-        File of any known format; ``.gz`` is unpacked.
+        File of any known format; ``.gz`` is unpacked. Of an archive (zip, tar) all members are read;
+        ``archive.zip#member`` names one.
     dt
         Sampling interval [s] for plain text that does not state it or states it wrongly.
+    cut_short
+        Whether to read what there is of a file with fewer samples than its header promises, with a
+        note in the provenance, instead of refusing it.
 
     Raises
     ------
     InputError
         If the file cannot be read, is of no known format, or holds no acceleration.
     """
-    check_file(path)
+    file, member = _file_and_member(path)
+    check_file(file)
+    if is_archive(file):
+        return _archived(file, member, dt, cut_short)
+    name, channels = _channels(Path(file), dt, cut_short)
+    return Record(str(path), name, sha256_of(Path(file)), tuple(channels))
+
+
+def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[Channel]]:
     found = identify(path)
-    if found is not None:
-        name, channels = found.name, found.channels(path, dt)
+    if found is None:
+        name, channels = obspy_channels(path, cut_short)
     else:
-        name, channels = obspy_channels(Path(path))
-    if dt is not None and any(channel.dt != dt for channel in channels):
+        name, channels = found.name, found.channels(path, dt, cut_short)
+    if dt is not None and any(abs(channel.dt - dt) > _SAME_STEP * dt for channel in channels):
         raise InputError(
             f"{path}: the file states dt = {channels[0].dt:g} s, not {dt:g} s; leave dt out."
         )
-    return Record(str(path), name, _sha256(path), tuple(channels))
+    return name, channels
+
+
+def _file_and_member(path: str | os.PathLike[str]) -> tuple[str, str]:
+    """Split ``archive.zip#member``; a file whose own name has a ``#`` is that file."""
+    name = str(path)
+    file, mark, member = name.partition("#")
+    if mark and not os.path.lexists(name) and os.path.isfile(file) and is_archive(file):
+        return file, member
+    return name, ""
+
+
+def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Record:
+    """Read one member of an archive, or all that hold acceleration."""
+    records: list[tuple[str, str, list[Channel]]] = []
+    left_out: list[tuple[str, InputError]] = []
+    with unpacked(file) as members:
+        chosen = [m for m in members if wanted in ("", m.name, Path(m.name).name)]
+        if wanted and len(chosen) != 1:
+            raise InputError(
+                f"{file}: {'no member is' if not chosen else 'several members are'} called "
+                f"{wanted!r}; there are {', '.join(m.name for m in members)}."
+            )
+        for member in chosen:
+            if not wanted and is_no_record(member.name):
+                continue
+            try:
+                name, channels = _channels(member.path, dt, cut_short)
+            except InputError as error:
+                # the user knows the archive's names, not where they lie unpacked
+                told = type(error)(str(error).replace(str(member.path), f"{file}#{member.name}"))
+                if wanted:
+                    raise told from None
+                left_out.append((member.name, told))
+                continue
+            records.append((member.name, name, channels))
+    if not records:
+        why = f": {left_out[0][1]}" if left_out else "."
+        kinds = {type(error) for _, error in left_out}
+        problem = NotAcceleration if kinds == {NotAcceleration} else InputError
+        raise problem(f"{file}: no member of the archive holds acceleration{why}")
+    named = len(records) > 1
+    return Record(
+        f"{file}#{wanted}" if wanted else file,
+        "+".join(sorted({name for _, name, _ in records})),
+        sha256_of(Path(file)),
+        tuple(
+            replace(channel, member=member) if named else channel
+            for member, _, channels in records
+            for channel in channels
+        ),
+        tuple(left_out),
+    )
 
 
 def read_motion(
@@ -66,13 +152,14 @@ def read_motion(
     unit: str | None = None,
     channel: str | None = None,
     dt: float | None = None,
+    cut_short: bool = False,
 ) -> Motion:
     """Read one component of acceleration from a record of any known format.
 
     Parameters
     ----------
     path
-        The file.
+        The file; ``archive.zip#member`` for one of several records in an archive.
     unit
         Unit of the samples (``g``, ``m/s2``, ``cm/s2``, ``gal``, ``mm/s2``); wanted where the file
         does not state its own, and checked against it where it does.
@@ -80,6 +167,8 @@ def read_motion(
         Which channel, by name, orientation or number from 1; wanted where there are several.
     dt
         Sampling interval [s]; wanted where plain text does not state it.
+    cut_short
+        Whether to read what there is of a file with fewer samples than its header promises.
 
     Returns
     -------
@@ -94,7 +183,7 @@ def read_motion(
         If the file is broken or unknown, its unit or channel is not settled, or it does not hold
         acceleration.
     """
-    record = read_record(path, dt)
+    record = read_record(path, dt, cut_short)
     return motion_of(record, choose_channel(record, channel), unit)
 
 
@@ -148,22 +237,32 @@ def motion_of(record: Record, channel: Channel, unit: str | None = None) -> Moti
             "unit": stored,
             "unit_stated": bool(channel.unit),
             "factor_to_m_s2": factor,
+            **_archive_facts(record, channel),
         },
         *channel.details.get("steps", ()),
     ]
-    offset = _zero_level(record.format, acceleration)
+    offset = _zero_level(channel, acceleration)
     if offset:
         acceleration = acceleration - offset
         steps.append({"step": "remove zero level", "offset_m_s2": offset})
-    stem = Path(record.name).name.removesuffix(".gz").rsplit(".", 1)[0]
+    own = channel.member or record.name.rpartition("#")[2]
+    stem = Path(own).name.removesuffix(".gz").rsplit(".", 1)[0]
     several = len(record.channels) > 1
     return Motion(
         acceleration=acceleration,
         dt=channel.dt,
-        name=f"{stem} {channel.label}".strip() if several else stem,
+        name=f"{stem} {channel.code or channel.component}".strip() if several else stem,
         metadata=_metadata(record, channel, stored),
         provenance=tuple(steps),
     )
+
+
+def _archive_facts(record: Record, channel: Channel) -> dict[str, Any]:
+    """Return the member that a channel is of, and what else the archive has that was left out."""
+    facts: dict[str, Any] = {"member": channel.member} if channel.member else {}
+    if record.left_out:
+        facts["left_out"] = [name for name, _ in record.left_out]
+    return facts
 
 
 def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
@@ -172,7 +271,7 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
         "network": channel.network,
         "station": channel.station,
         "location": channel.location,
-        "channel": channel.label,
+        "channel": channel.code or channel.component,
         "component": channel.component or channel.code,
         "event": channel.details.get("event", ""),
         "start_time": None if start is None else str(start),
@@ -211,10 +310,10 @@ def _settled_unit(
     )
 
 
-def _zero_level(format_name: str, acceleration: NDArray[np.float64]) -> float:
+def _zero_level(channel: Channel, acceleration: NDArray[np.float64]) -> float:
     """Return the constant [m/s²] that is the sensor's zero or gravity, not motion; 0 if none."""
     mean = float(acceleration.mean())
-    if format_name in RECORDER_FORMATS:
+    if channel.raw:
         return mean
     weight = abs(abs(mean) - STANDARD_GRAVITY) < _GRAVITY_SHARE * STANDARD_GRAVITY
     return mean if weight else 0.0
@@ -223,13 +322,21 @@ def _zero_level(format_name: str, acceleration: NDArray[np.float64]) -> float:
 def _listed(record: Record) -> str:
     names = []
     for number, channel in enumerate(record.channels, start=1):
-        both = " ".join(dict.fromkeys(word for word in (channel.code, channel.component) if word))
+        words = (channel.member, channel.code, channel.component)
+        both = " ".join(dict.fromkeys(word for word in words if word))
         names.append(f"{number}: {both}" if both else str(number))
     return "; ".join(names)
 
 
 def _same_name(channel: Channel, wanted: str) -> bool:
-    names = {channel.code, channel.component, f"{channel.code} {channel.component}"}
+    bare = {channel.code, channel.component, f"{channel.code} {channel.component}"}
+    names = {name.strip() for name in bare if name.strip()} | {
+        str(channel.details.get("title", ""))
+    }
+    if channel.member:
+        files = {channel.member, Path(channel.member).name}
+        names |= files | {f"{file} {name}" for file in files for name in names}
+        names |= {f"{file}#{name}" for file in files for name in names}
     return _plain(wanted) in {_plain(name) for name in names if name}
 
 
@@ -260,8 +367,3 @@ def _azimuth(words: str) -> float | None:
         return None
     turn = float(quadrant["angle"]) * (1 if quadrant["to"] == "E" else -1)
     return (turn if quadrant["from"] == "N" else 180 - turn) % 360
-
-
-def _sha256(path: str | os.PathLike[str]) -> str:
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

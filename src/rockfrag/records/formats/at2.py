@@ -17,12 +17,16 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.written_trace import one_trace, stated_unit
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 _COUNT = re.compile(rf"\bNPTS\s*[=:]\s*(?P<npts>{_NUMBER})", re.IGNORECASE)
-_STEP = re.compile(rf"\bDT\s*[=:]\s*(?P<dt>{_NUMBER})", re.IGNORECASE)
+_STEP = re.compile(
+    rf"\bDT\s*[=:]\s*(?P<dt>{_NUMBER})\s*(?P<milliseconds>MS|MSEC\w*|MILLI\w*)?\b", re.IGNORECASE
+)
 _TRAILING = re.compile(
     rf"^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b",
     re.IGNORECASE,
@@ -46,8 +50,9 @@ _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
+_END = re.compile(rb"^[ \t]*\*\*+[ \t]*[A-Za-z]", re.M)
 _COMPONENT = re.compile(
-    r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|HNE|HNN|HNZ|FN|FP)"
+    r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?|FN|FP)"
     r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
     re.IGNORECASE,
 )
@@ -80,7 +85,9 @@ def _named_pair(line: str) -> re.Match[str] | None:
 
 
 def _size(line: str) -> tuple[int, float]:
+    """Return the number of samples and the interval [s] that the size line states."""
     pair = _named_pair(line)
+    factor = 1.0
     if pair:
         values = [pair["first"], pair["second"]]
         if pair["names"].upper().startswith("DT"):
@@ -90,12 +97,11 @@ def _size(line: str) -> tuple[int, float]:
         count, step = _COUNT.search(line), _STEP.search(line)
         assert count is not None and step is not None
         npts, dt = count["npts"], step["dt"]
+        factor = 1e-3 if step["milliseconds"] else 1.0
     points, interval = (float(word.upper().replace("D", "E")) for word in (npts, dt))
     if points != int(points) or points < 1:
         raise ValueError(f"NPTS must be a whole number of samples, not {npts}")
-    if not 0 < interval < np.inf:
-        raise ValueError(f"DT must be a positive number of seconds, not {dt}")
-    return int(points), interval
+    return int(points), interval * factor if factor != 1 else interval
 
 
 def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
@@ -127,10 +133,11 @@ def _parse(text: TextFile) -> list[Channel]:
         npts, dt = _size(header[-1])
     except (ValueError, OverflowError) as error:
         text.fail(str(error), size)
+    dt = positive_step(text, dt, size)
     quantity, unit = _quantity_and_unit(header)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
     if quantity not in ("", "acceleration"):
-        text.fail(
+        text.refuse(
             f"this is a {quantity} history"
             + (f" in {unit}" if unit else "")
             + ", not acceleration; give the record's .AT2 file"
@@ -151,14 +158,18 @@ def _parse(text: TextFile) -> list[Channel]:
 
 
 def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
-    """Return the samples: separated numbers, or PEER's columns of 15 where neighbours touch."""
+    """Return the samples: separated numbers, or PEER's columns of 15 where neighbours touch.
+
+    A line of asterisks, such as ``*** End Data ***``, ends them.
+    """
+    stop = text.until(_END, start)
     try:
-        return text.counted(start, None, npts)
+        return text.counted(start, stop, npts)
     except InputError as error:
         if len(text.raw(start).rstrip()) != 5 * _WIDTH:
             raise
         try:
-            return text.counted(start, None, npts, _WIDTH)
+            return text.counted(start, stop, npts, _WIDTH)
         except InputError:
             raise error from None
 
@@ -194,22 +205,18 @@ is_format, read = FORMAT.is_format, FORMAT.read
 def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
     """Write one trace of acceleration as an AT2 file that reads back to the same samples.
 
-    The unit is ``stats.rockfrag.unit`` (``g`` where the trace does not say). Values have the digits
-    that tell every float64 from its neighbours.
+    The unit is ``stats.rockfrag.unit``. Values have the digits that tell every float64 from its
+    neighbours.
 
     Raises
     ------
     InputError
-        If the stream has more or fewer than one trace, or a sample is not finite.
+        If the stream has more or fewer than one trace, a sample is not finite, or the trace does not
+        state a unit of acceleration.
     """
-    if len(stream) != 1:
-        raise InputError(f"{filename}: an AT2 file holds one trace, not {len(stream)}; choose one.")
-    trace = stream[0]
-    facts = trace.stats.get("rockfrag", {})
-    samples = np.asarray(trace.data, dtype=np.float64)
-    if samples.size == 0 or not np.isfinite(samples).all():
-        raise InputError(f"{filename}: a record needs at least one sample, and all of them finite.")
-    unit = facts.get("unit") or "g"
+    trace, samples = one_trace(stream, filename)
+    unit = stated_unit(trace, filename)
+    facts = trace.stats.rockfrag
     place = [
         str(facts.get("event") or "UNKNOWN EVENT"),
         str(trace.stats.station or "UNKNOWN STATION"),

@@ -36,14 +36,14 @@ _REALS = re.compile(
     rb"^[ \t]*(\d+)[ \t]+Real-header values follow on[ \t]+(\d+)[ \t]+lines", re.I | re.M
 )
 _COMMENTS = re.compile(rb"^[ \t]*(\d+)[ \t]+Comment line", re.I | re.M)
-_VALUES = re.compile(rb"^[ \t]*\d+[ \t]+\w[\w ]*?[ \t]+p(?:oin)?ts\b", re.I | re.M)
+_VALUES = re.compile(rb"^[ \t]*\d+[ \t]+\w[\w. ]*?[ \t]+p(?:oin)?ts\b", re.I | re.M)
 _VALUES_LINE = re.compile(
-    r"^\s*(?P<count>\d+)\s+(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
+    r"^\s*(?P<count>\d+)\s+(?:raw\s+)?(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
     r"(?:\(\s*(?P<code>\d+)\s*\))?",
     re.IGNORECASE,
 )
 _END = re.compile(
-    rb"^[ \t]*(?:/&|End-of-data)|\(Format[ \t]+v|^[ \t]*\d+[ \t]+\w[\w ]*?[ \t]+p(?:oin)?ts\b",
+    rb"^[ \t]*(?:/&|End-of-data)|\(Format[ \t]+v|^[ \t]*\d+[ \t]+\w[\w. ]*?[ \t]+p(?:oin)?ts\b",
     re.I | re.M,
 )
 _HEAD = re.compile(rb"\(\s*Format[ \t]+v", re.I)
@@ -93,6 +93,8 @@ def _recognise(lines: list[str], name: str) -> bool:
 def _parse(text: TextFile) -> list[Channel]:
     channels: list[Channel] = []
     quantities: list[str] = []
+    if re.search(r"\bspectr", text.line(0), re.IGNORECASE):
+        text.refuse("this file holds response spectra, not acceleration; give the V2 file")
     line = text.find(_HEAD)
     while 0 <= line < len(text):
         at_values, header = _header(text, line)
@@ -172,8 +174,8 @@ def _section(text: TextFile, line: int) -> tuple[Section, str]:
     unit = canonical_unit(match["unit"])
     if match["code"] is not None:
         unit = _UNITS_BY_CODE.get(int(match["code"]), unit)
-    if unit in {"counts", "volts"} and quantity == "acceleration":
-        text.fail(f"the samples are raw {unit}; give the V1 or V2 file, in units of motion", line)
+    if unit in {"counts", "volts"}:
+        text.refuse(f"the samples are raw {unit}; give the V1 or V2 file, in units of motion", line)
     stop = text.until(_END, line + 1)
     width = field_width(text.line(line).split("ormat", 1)[-1])
     return Section(quantity, int(match["count"]), line + 1, stop, width), unit

@@ -28,6 +28,7 @@ from rockfrag.records.parsing.time_value_pairs import is_pairs_header, read_pair
 from rockfrag.records.parsing.timestamps import american_time
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.IGNORECASE)
+_SPECTRA = re.compile(r"^\s*(?:response|fourier)\b.*\bspectr", re.IGNORECASE)
 _HEAD = re.compile(rb"^[ \t]*(?:UN)?CORRECTED[ \t]+ACC?ELERO(?:GRAM|GRAPH)\b", re.I | re.M)
 _VOLUME_2 = re.compile(
     r"^\s*(?P<count>\d+)\s+points?\s+of\s+(?P<quantity>accel|veloc|displ)\w*\s+data\s+equally\s+"
@@ -69,7 +70,7 @@ class _Words:
 def _recognise(lines: list[str], name: str) -> bool:
     header = lines[:_MAX_HEADER]
     return (
-        bool(_FIRST.match(lines[0]))
+        bool(_FIRST.match(lines[0]) or _SPECTRA.match(lines[0]))
         and any(re.match(r"\s*station\s+(?:no|id)\b", line, re.IGNORECASE) for line in header)
         and any(re.match(r"\s*chan\s*\d+\s*:", line, re.IGNORECASE) for line in header)
         and not any("RENADIC" in line.upper() for line in header)
@@ -79,6 +80,10 @@ def _recognise(lines: list[str], name: str) -> bool:
 def _parse(text: TextFile) -> list[Channel]:
     channels: list[Channel] = []
     quantities: list[str] = []
+    if _SPECTRA.match(text.line(0)):
+        text.refuse(
+            "this file holds response spectra (volume 3), not acceleration; give the V2 file"
+        )
     for first, stop in _channel_lines(text):
         words = _words(text, first, stop)
         at_values = text.find(_VALUES, first, stop)

@@ -62,6 +62,7 @@ def _parse(text: TextFile) -> list[Channel]:
         measured = step_of_times(table[:, 0], text, start)
         if abs(measured - dt) > 1e-6:
             text.fail(f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start)
+    _check_length(text, value("recordlength"), table.shape[0] * dt, start)
     return [
         Channel(
             npts=table.shape[0],
@@ -80,6 +81,21 @@ def _parse(text: TextFile) -> list[Channel]:
         )
         for column, direction in enumerate(order, start=1)
     ]
+
+
+def _check_length(text: TextFile, stated: str, length: float, line: int) -> None:
+    """Check the length [s] of the record against the one stated, within its last printed digit."""
+    try:
+        promised = float(stated)
+    except ValueError:
+        return
+    unit = 10.0 ** -len(stated.partition(".")[2])
+    if abs(length - promised) > unit and not (text.cut_short and length < promised):
+        text.fail(
+            f"the header promises {stated} s of record but {length:g} s follow; "
+            "the file is cut short, or its header is wrong",
+            line,
+        )
 
 
 def _table(text: TextFile, start: int, words: str, columns: int) -> NDArray[np.float64]:

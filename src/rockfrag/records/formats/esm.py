@@ -59,7 +59,7 @@ def _parse(text: TextFile) -> list[Channel]:
     unit = canonical_unit(facts["UNITS"])
     kind = facts.get("DATA_TYPE", "").lower() or quantity_of(unit)
     if re.search("vel|dis|spectr", kind) or quantity_of(unit) != "acceleration":
-        text.fail(
+        text.refuse(
             f"this file holds {kind or 'no acceleration'} in {facts['UNITS']}, not acceleration"
         )
     try:
@@ -78,7 +78,7 @@ def _parse(text: TextFile) -> list[Channel]:
             dt=positive_step(text, dt, 0),
             samples=samples,
             unit=unit,
-            start_time=_time(facts.get(_SAMPLE_TIME, "")),
+            start_time=time_of(facts.get(_SAMPLE_TIME, "")),
             network=facts.get("NETWORK", ""),
             station=facts.get("STATION_CODE", ""),
             location=_location(facts.get("LOCATION", "")),
@@ -89,7 +89,8 @@ def _parse(text: TextFile) -> list[Channel]:
     ]
 
 
-def _time(words: str) -> UTCDateTime | None:
+def time_of(words: str) -> UTCDateTime | None:
+    """Return the time in words such as ``20190728_160905.700`` or ``14/11/2010 23:09:19.3``."""
     for pattern in _TIMES:
         match = pattern.match(words)
         if match:

@@ -1,22 +1,50 @@
-"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, Kinemetrics EVT."""
+"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, Kinemetrics EVT, GSE, …"""
 
 import glob
+import gzip
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import obspy
 from numpy.typing import NDArray
-from obspy import Inventory, Trace, read_inventory
+from obspy import Inventory, Stream, Trace, read_inventory
+from obspy.core.inventory import Response
+from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
 from rockfrag.errors import InputError
+from rockfrag.records.foreign_files import foreign_kind
 from rockfrag.records.formats.plain import first_odd_row
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import head_lines
-from rockfrag.records.parsing.text_file import HEAD_BYTES, MAX_LINE, check_unpacked, read_head
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import (
+    HEAD_BYTES,
+    MAX_LINE,
+    NotAcceleration,
+    check_unpacked,
+    read_head,
+)
 
-RECORDER_FORMATS = frozenset({"MSEED", "SAC", "KNET", "KINEMETRICS_EVT"})
-"""Formats of raw recordings, whose mean is the zero of the sensor, gravity and tilt included."""
+_READ_BY_OBSPY = (
+    "MSEED",
+    "SAC",
+    "KNET",
+    "KINEMETRICS_EVT",
+    "GSE2",
+    "GSE1",
+    "GCF",
+    "REFTEK130",
+    "SEISAN",
+    "SLIST",
+    "TSPAIR",
+)
+"""Formats left to ObsPy. Its others are of other fields; its PICKLE would run what a file says."""
 
 _SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})
 """Formats whose ``calib`` turns counts into m/s²."""
@@ -25,11 +53,18 @@ _SAC_QUANTITIES = {6: "displacement", 7: "velocity"}
 _WATER_LEVEL = 60.0
 
 
-def obspy_channels(path: Path) -> tuple[str, list[Channel]]:
+def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Channel]]:
     """Return the format name and the channels of a file by ObsPy's own readers.
 
     MiniSEED needs a StationXML file (``.xml``) in the same folder that describes its channels;
     without one the samples have no unit.
+
+    Parameters
+    ----------
+    path
+        The file; ``.gz`` is unpacked.
+    cut_short
+        Whether to read what there is of a file with fewer samples than its header promises.
 
     Raises
     ------
@@ -37,76 +72,155 @@ def obspy_channels(path: Path) -> tuple[str, list[Channel]]:
         If ObsPy knows no format for the file or cannot read it, or it holds no acceleration.
     """
     head = read_head(path, HEAD_BYTES)
+    kind = foreign_kind(head)
+    if kind:
+        problem = NotAcceleration if "spectra" in kind else InputError
+        raise problem(f"{path}: this is {kind}.")
     if len(head) > MAX_LINE and b"\x00" not in head and b"\n" not in head and b"\r" not in head:
         raise InputError(
             f"{path}, line 1: the line is longer than {MAX_LINE} characters, "
             "which no record format has."
         )
     check_unpacked(path)
+    with _unpacked(path) as plain:
+        name = _format_of(plain)
+        if not name:
+            _refuse_unknown(path)
+        stream = _stream(plain, name, path)
+        if name == "MSEED":
+            _check_whole_records(plain, path, cut_short)
+    return name, [_channel(trace, name, path, cut_short) for trace in stream]
+
+
+@contextmanager
+def _unpacked(path: Path) -> Iterator[Path]:
+    """Give the file itself, or what a ``.gz`` file holds."""
+    if path.suffix.lower() != ".gz":
+        yield path
+        return
+    with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
+        plain = Path(scratch) / path.stem
+        with gzip.open(path, "rb") as packed:
+            plain.write_bytes(packed.read())
+        yield plain
+
+
+def _format_of(path: Path) -> str:
+    """Return the name of ObsPy's format that claims a file, or an empty string."""
+    for name in _READ_BY_OBSPY:
+        entry = ENTRY_POINTS["waveform"][name]
+        group = f"obspy.plugin.waveform.{entry.name}"
+        is_format = buffered_load_entry_point(entry.dist.name, group, "isFormat")
+        try:
+            if is_format(str(path)):
+                return name
+        except Exception:  # a detector that fails has not detected its format
+            continue
+    return ""
+
+
+def _refuse_unknown(path: Path) -> None:
+    odd = first_odd_row(head_lines(path))
+    if odd is not None:
+        raise InputError(
+            f"{path}, line {odd + 1}: not a row of numbers like those above; the file is damaged."
+        )
+    raise InputError(
+        f"{path}: no known record format; plain text needs columns or rows of numbers below at most "
+        "two lines of words or one of titles."
+    )
+
+
+def _stream(plain: Path, name: str, path: Path) -> Stream:
     try:
         # ObsPy takes a name for a pattern; ours are names
-        stream = obspy.read(glob.escape(str(path)))
-    except TypeError as error:
-        if "Unknown format" not in str(error):
-            raise InputError(f"{path}: cannot be read ({error}).") from error
-        odd = first_odd_row(head_lines(path))
-        if odd is not None:
-            raise InputError(
-                f"{path}, line {odd + 1}: not a row of numbers like those above; the file is damaged."
-            ) from None
-        raise InputError(
-            f"{path}: no known record format; a plain text file needs one or two columns of "
-            "numbers, or a first line with the number of samples and dt."
-        ) from None
+        stream = obspy.read(glob.escape(str(plain)), format=name)
+        stream.merge(method=-1)
     except Exception as error:  # every ObsPy reader raises its own kinds
-        raise InputError(f"{path}: ObsPy cannot read it ({_one_line(error)}).") from error
-    if not stream:
-        raise InputError(f"{path}: the file has no samples.")
-    stream.merge(method=-1)
-    name = str(stream[0].stats.get("_format", ""))
-    return name, [_channel(trace, name, path) for trace in stream]
+        raise InputError(
+            f"{path}: ObsPy cannot read it as {name} ({_one_line(error)}); it is cut short or damaged."
+        ) from error
+    if not stream or any(trace.stats.npts == 0 for trace in stream):
+        raise InputError(f"{path}: the file has no samples; it is cut short.")
+    return stream
 
 
-def _channel(trace: Trace, format_name: str, path: Path) -> Channel:
+def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:
+    """Check that a MiniSEED file ends where a record of it does: ObsPy leaves a cut one out."""
+    from obspy.io.mseed.util import get_record_information
+
+    try:
+        length = int(get_record_information(str(plain))["record_length"])
+    except Exception:  # an unusual first record; ObsPy has read the file all the same
+        return
+    size = os.path.getsize(plain)
+    if length and size % length and not cut_short:
+        raise InputError(
+            f"{path}: {size} bytes are no whole number of MiniSEED records of {length}; "
+            "the file is cut short."
+        )
+
+
+def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Channel:
     stats = trace.stats
     if np.ma.is_masked(trace.data) or stats.npts == 0:
         raise InputError(f"{path}: channel {trace.id} has gaps or no samples.")
-    details: dict[str, Any] = {}
+    steps: list[dict[str, Any]] = _shortness(trace, format_name, path, cut_short)
     samples = np.asarray(trace.data, dtype=np.float64)
     unit = ""
     if format_name in _SCALED_FORMATS:
         samples, unit = samples * float(stats.calib), "m/s2"
-        details["steps"] = ({"step": "scale counts", "m_s2_per_count": float(stats.calib)},)
+        steps.append({"step": "scale counts", "m_s2_per_count": float(stats.calib)})
     elif format_name == "MSEED":
-        response = _inventory_for(trace, path)
-        if response is not None:
-            samples, unit = _without_response(trace, response[0], path), "m/s2"
-            details["steps"] = (
-                {
-                    "step": "remove response",
-                    "inventory": response[1],
-                    "output": "acceleration",
-                    "water_level_db": _WATER_LEVEL,
-                },
-            )
+        found = _inventory_for(trace, path)
+        if found is not None:
+            samples, step = _physical(trace, found[0], path)
+            unit = "m/s2"
+            steps.append({**step, "inventory": found[1]})
     elif format_name == "SAC":
         quantity = _SAC_QUANTITIES.get(int(stats.get("sac", {}).get("idep", 5)))
         if quantity is not None:
-            raise InputError(f"{path}: its header says {quantity}, not acceleration.")
+            raise NotAcceleration(f"{path}: its header says {quantity}, not acceleration.")
     if not np.isfinite(samples).all():
         raise InputError(f"{path}: channel {trace.id} has samples that are not finite numbers.")
-    details |= _event_facts(trace)
-    return Channel(
+    channel = Channel(
         npts=samples.size,
         dt=float(stats.delta),
-        samples=lambda: samples,
+        samples=samples.copy,
         unit=unit,
         start_time=stats.starttime,
         network=stats.network,
         station=stats.station,
         location=stats.location,
         code=stats.channel,
-        details=details,
+        # MiniSEED of floating point has been computed: its mean is meant
+        raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
+        details={**_event_facts(trace), "steps": tuple(steps)},
+    )
+    channel.check(str(path))
+    return channel
+
+
+def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> list[dict[str, Any]]:
+    """Check K-NET's duration against its samples; return the note of a shorter file that is wanted."""
+    duration = trace.stats.get("knet", {}).get("duration") if format_name == "KNET" else None
+    if duration is None:
+        return []
+    promised = round(float(duration) * float(trace.stats.sampling_rate))
+    found = int(trace.stats.npts)
+    if found == promised:
+        return []
+    if cut_short and found < promised:
+        return [
+            {
+                "step": "read a file that is cut short",
+                "samples_promised": promised,
+                "samples_read": found,
+            }
+        ]
+    raise InputError(
+        f"{path}: the header promises {promised} samples ({float(duration):g} s) but {found} follow; "
+        "the file is cut short, or its header is wrong."
     )
 
 
@@ -119,36 +233,65 @@ def _event_facts(trace: Trace) -> dict[str, Any]:
     return facts
 
 
-def _inventory_for(trace: Trace, path: Path) -> tuple[Inventory, str] | None:
-    """Return the StationXML beside a record that describes its channel, and its name."""
+@lru_cache(maxsize=256)
+def _inventory(path: str, changed: int, size: int) -> Inventory | None:
+    """Return a StationXML file, None if it is none; ``changed`` and ``size`` tell its versions apart."""
+    try:
+        return read_inventory(path, format="STATIONXML")
+    except Exception:  # an .xml file of another kind, or broken: not this record's
+        return None
+
+
+def _inventory_for(trace: Trace, path: Path) -> tuple[Response, str] | None:
+    """Return the response in the StationXML beside a record that has its channel, and its name."""
     for candidate in sorted(path.parent.glob("*.xml")):
-        try:
-            inventory = read_inventory(str(candidate), format="STATIONXML")
-        except Exception:  # an .xml file of another kind, or broken: not this record's
+        state = candidate.stat()
+        inventory = _inventory(str(candidate), state.st_mtime_ns, state.st_size)
+        if inventory is None:
             continue
         try:
-            inventory.get_response(trace.id, trace.stats.starttime)
+            return inventory.get_response(trace.id, trace.stats.starttime), candidate.name
         except Exception:  # ObsPy raises a bare Exception for "no matching response"
             continue
-        return inventory, candidate.name
     return None
 
 
-def _without_response(trace: Trace, inventory: Inventory, path: Path) -> NDArray[np.float64]:
+def _physical(
+    trace: Trace, response: Response, path: Path
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """Return acceleration [m/s²] and the step that made it of counts."""
+    if not response.response_stages:
+        return _by_sensitivity(trace, response, path)
     physical = trace.copy()
+    physical.stats.response = response
     try:
         physical.remove_response(
-            inventory=inventory,
-            output="ACC",
-            water_level=_WATER_LEVEL,
-            zero_mean=True,
-            taper=False,
+            output="ACC", water_level=_WATER_LEVEL, zero_mean=True, taper=False
         )
     except Exception as error:  # evalresp reports in many kinds
         raise InputError(
             f"{path}: the response of {trace.id} cannot be removed ({_one_line(error)})."
         ) from error
-    return np.asarray(physical.data, dtype=np.float64)
+    step = {"step": "remove response", "output": "acceleration", "water_level_db": _WATER_LEVEL}
+    return np.asarray(physical.data, dtype=np.float64), step
+
+
+def _by_sensitivity(
+    trace: Trace, response: Response, path: Path
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """Divide counts by the sensitivity of a StationXML without stages."""
+    sensitivity = response.instrument_sensitivity
+    if sensitivity is None or not sensitivity.value:
+        raise InputError(f"{path}: its StationXML has neither stages nor a sensitivity.")
+    unit = canonical_unit(str(sensitivity.input_units or ""))
+    if unit != "m/s2":
+        raise InputError(
+            f"{path}: its StationXML has no stages and a sensitivity in {sensitivity.input_units}, "
+            "not M/S**2; get it with the level of the response."
+        )
+    value = float(sensitivity.value)
+    step = {"step": "divide by sensitivity", "counts_per_m_s2": value}
+    return np.asarray(trace.data, dtype=np.float64) / value, step
 
 
 def _one_line(error: Exception) -> str:

@@ -41,14 +41,13 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
     component = re.search(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header, re.M | re.I)
     trigger = re.search(r"TRIGGER\s+TIME\s*:(.*)$", header, re.M | re.I)
     number = lines[1].strip()
-    stem = PurePath(text.name).name.split(".")[0]
     return Channel(
         npts=values.npts,
         dt=values.dt,
         samples=values.samples,
         unit=values.unit,
         start_time=american_time(trigger[1]) if trigger else None,
-        station=stem.removesuffix(number) if number and stem.endswith(number) else "",
+        station=_station(PurePath(text.name).name.split(".")[0], number),
         component=component[1] if component else "",
         details={
             "event": re.split(r"\s*\(ORIGIN", " ".join(lines[2].split()))[0],
@@ -56,6 +55,12 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
             **values.details,
         },
     )
+
+
+def _station(stem: str, number: str) -> str:
+    """Return the station that a file is named by: its name without the record's number."""
+    name = stem.replace(number, "") if number else stem
+    return name.strip(" _-")
 
 
 FORMAT = Format("RENADIC", _recognise, _parse)

@@ -1,12 +1,17 @@
 """SeismoSoft accelerograms: four lines of description, ``Time[s] Accel[g]``, then two columns."""
 
+import os
 import re
 
+from obspy import Stream
+
+from rockfrag.files import write_text
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import step_of_times
+from rockfrag.records.parsing.written_trace import one_trace, stated_unit
 
 _COLUMNS = re.compile(
     r"^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"
@@ -40,7 +45,7 @@ def _parse(text: TextFile) -> list[Channel]:
     assert titles is not None
     unit = canonical_unit(titles["unit"])
     if quantity_of(unit) != "acceleration":
-        text.fail(
+        text.refuse(
             f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration", columns
         )
     header = {"event": text.line(0)}
@@ -81,3 +86,28 @@ def _station_and_component(words: str) -> tuple[str, str]:
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
 is_format, read = FORMAT.is_format, FORMAT.read
+
+
+def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:
+    """Write one trace as a SeismoSoft accelerogram that reads back to the same samples.
+
+    Raises
+    ------
+    InputError
+        If the stream has more or fewer than one trace, a sample is not finite, or the trace does not
+        state a unit of acceleration.
+    """
+    trace, samples = one_trace(stream, filename)
+    unit, facts = stated_unit(trace, filename), trace.stats.rockfrag
+    dt = float(f"{trace.stats.delta:.12g}")
+    component = str(facts.get("component") or trace.stats.channel or "")
+    station = " ".join(str(trace.stats.station or "unknown").split())
+    lines = [
+        " ".join(str(facts.get("event") or "Unknown event").split()),
+        f"Source: {' '.join(str(facts.get('source') or 'rockfrag').split())}",
+        f"Recording station: {station}" + (f"({component})" if component else ""),
+        "Frequency range: not stated",
+        f"Time[s]\tAccel[{unit}]",
+        *(f"{i * dt:.12g}\t{value!r}" for i, value in enumerate(samples.tolist())),
+    ]
+    write_text("\n".join(lines) + "\n", filename)

@@ -7,8 +7,10 @@ Where the header has no sampling rate, the values are pairs of time [s] and acce
 """
 
 import re
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing.channel import Channel
@@ -26,6 +28,7 @@ _KINDS = re.compile(
 )
 _FIRST_FIELD = re.compile(rb"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
 _HIGH_PRECISION = 8
+_PER_LINE = 8
 
 # places in the headers, counted from zero
 _MISSING, _YEAR, _VERTICAL, _HORIZONTAL, _COMMENTS, _COUNT, _PRECISION = 0, 1, 12, 13, 15, 16, 46
@@ -47,7 +50,7 @@ def _parse(text: TextFile) -> list[Channel]:
         text.fail("the SMC header has 27 lines; the file is cut short")
     held = (kind["kind"] or "").upper()
     if held and "ACCELEROGRAM" not in held and held != "UNKNOWN":
-        text.fail(f"this file holds {held.lower()}, not acceleration", 0)
+        text.refuse(f"this file holds {held.lower()}, not acceleration", 0)
     at_reals = _TEXT_LINES + _INTEGER_LINES
     whole = integers(text, _TEXT_LINES, at_reals, 10, 48)
     numbers = reals(text, at_reals, _FIRST_DATA, 15, 50)
@@ -59,7 +62,9 @@ def _parse(text: TextFile) -> list[Channel]:
     rate = numbers[_RATE]
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
-        values = pairs_of(section.samples(text), "cm/s2", text, start).channel()
+        samples, left_out = _without_surplus_lines(section, text)
+        values = pairs_of(samples, "cm/s2", text, start, count // 2).channel()
+        values = _noting(values, left_out)
     else:
         step = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
         dt = positive_step(text, step, at_reals)
@@ -84,6 +89,27 @@ def _parse(text: TextFile) -> list[Channel]:
             },
         )
     ]
+
+
+def _without_surplus_lines(section: Section, text: TextFile) -> tuple[NDArray[np.float64], int]:
+    """Return the values, and how many whole lines of values stand below the last one counted.
+
+    Old digitised records have a line of scattered points at the end that their header does not
+    count; a count that ends within a line is a wrong one.
+    """
+    values = text.numbers(section.start, section.stop, section.width)
+    surplus = values.size - section.count
+    if 0 < surplus <= _PER_LINE and section.count % _PER_LINE == 0:
+        return values[: section.count], surplus
+    return section.samples(text), 0
+
+
+def _noting(channel: Channel, left_out: int) -> Channel:
+    if not left_out:
+        return channel
+    step = {"step": "leave out values beyond the count of the header", "values": left_out}
+    details = {**channel.details, "steps": (step, *channel.details.get("steps", ()))}
+    return replace(channel, details=details)
 
 
 def _width(text: TextFile, start: int, whole: list[int]) -> int:

@@ -34,13 +34,14 @@ def _parse(text: TextFile) -> list[Channel]:
         stop = len(text) if following < 0 else following
         last = text.find(re.compile(rb"^[ \t]*/&", re.M), first, stop)
         pairs = read_pairs(text, first, stop if last < 0 else last)
-        channels.append(_channel(text, first, pairs.channel()))
+        channels.append(place_of(text.lines(first, first + _HEADER), pairs.channel()))
         first = following
     return channels
 
 
-def _channel(text: TextFile, first: int, values: Channel) -> Channel:
-    lines = [line[: _LENGTH.start].strip() for line in text.lines(first, first + _HEADER)]
+def place_of(words: list[str], values: Channel) -> Channel:
+    """Return a channel with the station, component and event of the text header above it."""
+    lines = [line[: _LENGTH.start].strip() for line in words]
     station = component = name = ""
     for number, line in enumerate(lines):
         found = re.match(r"STATION\s+(?:\w+\s*#)?\s*(\d+)", line, re.IGNORECASE)
@@ -55,8 +56,14 @@ def _channel(text: TextFile, first: int, values: Channel) -> Channel:
         unit=values.unit,
         station=station,
         component=component,
-        details={"station_name": name, "event": ", ".join(lines[1:3]), **values.details},
+        details={"station_name": name, "event": _event(lines), **values.details},
     )
+
+
+def _event(lines: list[str]) -> str:
+    """Return the earthquake's name and date, the two lines below the one that names the volume."""
+    volume = next((i for i, line in enumerate(lines) if "OF VOLUME" in line.upper()), 0)
+    return ", ".join(lines[volume + 1 : volume + 3])
 
 
 FORMAT = Format("USC", _recognise, _parse)

@@ -9,6 +9,14 @@ from numpy.typing import NDArray
 from obspy import Trace, UTCDateTime
 from obspy.core import AttribDict
 
+from rockfrag.errors import InputError
+
+SHORTEST_STEP = 1e-5
+"""Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
+
+LONGEST_STEP = 1.0
+"""Longest sampling interval [s] of a record; slower channels are not of strong motion."""
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -30,6 +38,10 @@ class Channel:
         The SEED names as far as the file has them; a station without a code has its name here.
     component
         Orientation as the file words it (``090``, ``N10E``, ``UP``).
+    member
+        Name of the file within an archive of several records, else empty.
+    raw
+        Whether this is a raw recording, whose mean is the zero of the sensor and not motion.
     details
         More facts for the metadata: ``station_name``, ``event``, ``title``, …
     """
@@ -44,12 +56,34 @@ class Channel:
     location: str = ""
     code: str = ""
     component: str = ""
+    member: str = ""
+    raw: bool = False
     details: Mapping[str, Any] = field(default_factory=dict)
+
+    def check(self, name: str) -> None:
+        """Check that the interval can be that of a record.
+
+        Parameters
+        ----------
+        name
+            Name of the file, for the message.
+
+        Raises
+        ------
+        InputError
+            If it is not, with the interval.
+        """
+        if not SHORTEST_STEP <= self.dt <= LONGEST_STEP:
+            raise InputError(
+                f"{name}: a sampling interval of {self.dt:g} s is none of a strong-motion record "
+                f"(from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s); mend the header, or give the "
+                "true one with dt=."
+            )
 
     @property
     def label(self) -> str:
-        """Name to choose the channel by: its code, else its orientation."""
-        return self.code or self.component
+        """Name to choose the channel by: its code, else its orientation, with its member if any."""
+        return f"{self.member} {self.code or self.component}".strip()
 
     def facts(self) -> dict[str, Any]:
         """Return the stated facts that SEED names have no room for."""

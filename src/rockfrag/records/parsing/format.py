@@ -1,14 +1,24 @@
 """A record format as ObsPy wants it: a test for it and a reader."""
 
+import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 from obspy import Stream, UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.channel import Channel
-from rockfrag.records.parsing.text_file import HEAD_BYTES, Source, name_of, read_head, read_text
+from rockfrag.records.parsing.text_file import (
+    HEAD_BYTES,
+    NotAcceleration,
+    Source,
+    TextFile,
+    name_of,
+    read_head,
+    read_text,
+)
 
 _LONGEST = 1_000
 """Characters of a line that are looked at to recognise a format."""
@@ -27,12 +37,15 @@ class Format:
     parse
         Gives the channels of a file of this format; with ``wants_dt`` also told the sampling
         interval that the user named.
+    encoding
+        Encoding of text that is not UTF-8, where the format's network writes in one.
     """
 
     name: str
     recognise: Callable[[list[str], str], bool]
     parse: Callable[..., list[Channel]]
     wants_dt: bool = False
+    encoding: str = ""
 
     def is_format(self, source: Source) -> bool:
         """Tell whether a file is of this format, from a bounded piece of its head; never raises."""
@@ -44,19 +57,42 @@ class Format:
         except (ValueError, IndexError, KeyError, ArithmeticError):
             return False
 
-    def channels(self, source: Source, dt: float | None = None) -> list[Channel]:
+    def channels(
+        self, source: Source, dt: float | None = None, cut_short: bool = False
+    ) -> list[Channel]:
         """Return the acceleration channels of a file.
 
-        ``dt`` [s] is for plain text that does not state its own.
+        Parameters
+        ----------
+        source
+            Path or file object.
+        dt
+            Sampling interval [s] for plain text that does not state its own.
+        cut_short
+            Whether to read what there is of a file with fewer samples than its header promises; a
+            step of the channel says so.
 
         Raises
         ------
         InputError
             If the file is broken, or holds something other than acceleration.
         """
-        text = read_text(source)
+        text = read_text(source, self.encoding)
+        try:
+            return self._parsed(text, dt)
+        except NotAcceleration:
+            raise
+        except InputError:
+            if not cut_short:
+                raise
+        return [_shortened(channel) for channel in self._parsed(text.up_to_last_line_end(), dt)]
+
+    def _parsed(self, text: TextFile, dt: float | None) -> list[Channel]:
         try:
             channels = self.parse(text, dt) if self.wants_dt else self.parse(text)
+            if not text.cut_short:
+                for channel in channels:
+                    channel.check(text.name)
         except (ValueError, IndexError, KeyError, ArithmeticError) as error:
             if isinstance(error, InputError):
                 raise
@@ -88,14 +124,43 @@ class Format:
         return stream
 
 
+def _shortened(channel: Channel) -> Channel:
+    """Return a channel with as many samples as there are, and a note where more were promised."""
+    samples = channel.samples()
+    if samples.size == channel.npts:
+        return channel
+    step = {
+        "step": "read a file that is cut short",
+        "samples_promised": channel.npts,
+        "samples_read": int(samples.size),
+    }
+    details = {**channel.details, "steps": (*channel.details.get("steps", ()), step)}
+    return replace(channel, npts=int(samples.size), samples=samples.copy, details=details)
+
+
 def head_lines(source: Source) -> list[str]:
     """Return the first whole lines of a text file; none for a binary file or one it cannot read."""
-    head = read_head(source)
+    if isinstance(source, (str, os.PathLike)):
+        try:
+            state = os.stat(source)
+        except (OSError, ValueError):
+            return []
+        return list(_lines_of_path(str(source), state.st_mtime_ns, state.st_size))
+    return list(_lines_of(read_head(source)))
+
+
+@lru_cache(maxsize=4)
+def _lines_of_path(path: str, changed: int, size: int) -> tuple[str, ...]:
+    """Return the lines of a file's head; every format looks at them, one after the other."""
+    return _lines_of(read_head(path))
+
+
+def _lines_of(head: bytes) -> tuple[str, ...]:
     if not head or b"\x00" in head:
-        return []
+        return ()
     text = head.decode("utf-8", errors="replace").removeprefix("\ufeff")
     lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     if len(head) >= HEAD_BYTES:
         # the last line of a head is cut anywhere
         lines = lines[:-1]
-    return [line[:_LONGEST].rstrip() for line in lines]
+    return tuple(line[:_LONGEST].rstrip() for line in lines)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.records.parsing.channel import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.text_file import TextFile
 
 QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
@@ -78,7 +79,7 @@ def refuse_others(text: TextFile, quantities: Iterable[str]) -> None:
     """
     held = sorted(set(quantities))
     if held and "acceleration" not in held:
-        text.fail(f"this file holds {' and '.join(held)}, not acceleration")
+        text.refuse(f"this file holds {' and '.join(held)}, not acceleration")
 
 
 def positive_step(text: TextFile, dt: float, line: int) -> float:
@@ -87,8 +88,12 @@ def positive_step(text: TextFile, dt: float, line: int) -> float:
     Raises
     ------
     InputError
-        If it is not a positive number of seconds.
+        If it is not a number of seconds that recorders have.
     """
-    if not (np.isfinite(dt) and 0 < dt < 3600):
-        text.fail(f"the header gives {dt:g} s as sampling interval", line)
+    if not (np.isfinite(dt) and SHORTEST_STEP <= dt <= LONGEST_STEP):
+        text.fail(
+            f"the header gives {dt:g} s as sampling interval; records have from "
+            f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} s",
+            line,
+        )
     return dt

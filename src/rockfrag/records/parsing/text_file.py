@@ -4,7 +4,7 @@ import gzip
 import os
 import re
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import IO, Any, NoReturn
@@ -25,6 +25,11 @@ MAX_LINE = 8_192
 """No line of a known format is longer, comments and citations included."""
 
 _BLOCK = 2**20
+
+
+class NotAcceleration(InputError):
+    """A file in order that holds something other than acceleration: spectra, counts, velocity."""
+
 
 Source = str | os.PathLike[str] | IO[bytes]
 
@@ -68,11 +73,17 @@ class TextFile:
     name
         Name for messages.
     data
-        All bytes, UTF-8, ``\n`` line ends.
+        All bytes, ``\n`` line ends.
+    encoding
+        Encoding of lines that are not UTF-8, where the format has another; empty if it has none.
+    cut_short
+        Whether fewer samples than the header promises are to be read and not refused.
     """
 
     name: str
     data: bytes
+    encoding: str = ""
+    cut_short: bool = False
 
     @cached_property
     def _ends(self) -> NDArray[np.int64]:
@@ -103,6 +114,8 @@ class TextFile:
         try:
             return self.raw(line).decode("utf-8").rstrip()
         except UnicodeDecodeError as error:
+            if self.encoding:
+                return self.raw(line).decode(self.encoding, errors="replace").rstrip()
             self.fail(
                 f"byte {error.object[error.start]:#04x} is not UTF-8 text; save the file as UTF-8",
                 line,
@@ -127,8 +140,15 @@ class TextFile:
 
     def fail(self, what: str, line: int | None = None) -> NoReturn:
         """Raise an :class:`InputError` about a line (from zero) or the whole file."""
+        raise InputError(self._sentence(what, line))
+
+    def refuse(self, what: str, line: int | None = None) -> NoReturn:
+        """Raise :class:`NotAcceleration`: the file is in order, but holds something else."""
+        raise NotAcceleration(self._sentence(what, line))
+
+    def _sentence(self, what: str, line: int | None) -> str:
         where = self.name if line is None else f"{self.name}, line {line + 1}"
-        raise InputError(f"{where}: {what.rstrip('.')}.")
+        return f"{where}: {what.rstrip('.')}."
 
     def numbers(
         self, start: int, stop: int | None = None, width: int | None = None
@@ -172,15 +192,28 @@ class TextFile:
         values = self.numbers(start, stop, width)
         if values.size != count and width is not None:
             # columns that are not where the format puts them may still be separated numbers
-            separated = self.numbers(start, stop)
+            separated = self._separated(start, stop)
             values = separated if separated.size == count else values
-        if values.size != count:
+        if values.size != count and not (self.cut_short and 0 < values.size < count):
             self.fail(
                 f"the header promises {count} samples but {values.size} follow; "
                 "the file is cut short, or its header is wrong",
                 start,
             )
         return values
+
+    def _separated(self, start: int, stop: int | None) -> NDArray[np.float64]:
+        """Parse lines as separated numbers; none if something is no number."""
+        end = len(self) if stop is None else min(stop, len(self))
+        try:
+            return parse_separated(self.data[self.offset(start) : self.offset(end)])
+        except NumberError:
+            return np.empty(0)
+
+    def up_to_last_line_end(self) -> "TextFile":
+        """Return the text without a last line that does not end, to be read as it is."""
+        whole = self.data[: self.data.rfind(b"\n") + 1]
+        return replace(self, data=whole, cut_short=True)
 
     def table(self, start: int, columns: int, stop: int | None = None) -> NDArray[np.float64]:
         """Parse lines as rows of numbers, shape (rows, columns); blank lines at the end do not count.
@@ -229,10 +262,11 @@ def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
     return widths
 
 
-def read_text(source: Source) -> TextFile:
+def read_text(source: Source, encoding: str = "") -> TextFile:
     """Read a text file within the bounds of size and line length.
 
-    A file whose name ends in ``.gz`` is unpacked.
+    A file whose name ends in ``.gz`` is unpacked. Lines that are not UTF-8 are of ``encoding``,
+    where one is given.
 
     Raises
     ------
@@ -247,7 +281,7 @@ def read_text(source: Source) -> TextFile:
         data = data.replace(b"\r\n", b"\n").replace(b"\r", b" ")
     if data.startswith(b"\xef\xbb\xbf"):
         data = data[3:]
-    text = TextFile(name, data.rstrip(b"\x1a\x00"))
+    text = TextFile(name, data.rstrip(b"\x1a\x00"), encoding)
     if not text.data.strip():
         raise InputError(f"{name}: the file is empty.")
     return text

@@ -2,11 +2,12 @@
 
 Text header, 100 integers, 50 reals, then five pairs a line. The 28th integer and the line ``NO. OF
 POINTS`` have the number of pairs; ``UNITS … SEC AND G/10`` the unit. Film records were digitised at
-uneven intervals; they are interpolated linearly to 200 samples a second.
+uneven intervals; they are interpolated linearly to even ones.
 """
 
 import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from rockfrag.records.parsing.fortran_sections import reals
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import UNEVEN_STEP, check_rising, step_of_times
+from rockfrag.records.parsing.timestamps import check_rising, even_step, step_of_times
 
 _POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.IGNORECASE)
 _UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.IGNORECASE)
@@ -28,18 +29,32 @@ _MAX_HEADER = 30
 
 @dataclass(frozen=True)
 class Pairs:
-    """Times [s] and accelerations of one channel, shape (n,) each."""
+    """Times [s] and accelerations of one channel, shape (n,) each.
+
+    ``promised`` is the number of pairs that the header states, where fewer were to be read.
+    """
 
     times: NDArray[np.float64]
     values: NDArray[np.float64]
     dt: float
     even: bool
     unit: str
+    promised: int = 0
 
     def channel(self) -> Channel:
         """Return them as a channel of equally spaced samples."""
+        steps: tuple[dict[str, Any], ...] = ()
+        if self.promised > self.values.size:
+            steps = (
+                {
+                    "step": "read a file that is cut short",
+                    "samples_promised": self.promised,
+                    "samples_read": int(self.values.size),
+                },
+            )
         if self.even:
-            return Channel(self.values.size, self.dt, self.values.copy, self.unit)
+            values, unit = self.values, self.unit
+            return Channel(values.size, self.dt, values.copy, unit, details={"steps": steps})
         count = int(np.floor((self.times[-1] - self.times[0]) / self.dt * (1 + 1e-12))) + 1
         even = np.interp(self.times[0] + np.arange(count) * self.dt, self.times, self.values)
         step = {
@@ -47,7 +62,7 @@ class Pairs:
             "dt_s": self.dt,
             "digitised_points": int(self.times.size),
         }
-        return Channel(count, self.dt, even.copy, self.unit, details={"steps": (step,)})
+        return Channel(count, self.dt, even.copy, self.unit, details={"steps": (*steps, step)})
 
 
 def is_pairs_header(text: TextFile, first: int) -> bool:
@@ -78,17 +93,23 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Pairs:
     # 100 integers (16I5) and 50 reals (8F10) are seven lines each
     reals(text, at_numbers + 7, at_numbers + 14, 10, 50)
     values = _flat(text, at_numbers + 14, stop, 2 * count)
-    return pairs_of(values, unit, text, at_numbers + 14)
+    return pairs_of(values, unit, text, at_numbers + 14, count)
 
 
-def pairs_of(values: NDArray[np.float64], unit: str, text: TextFile, line: int) -> Pairs:
+def pairs_of(
+    values: NDArray[np.float64], unit: str, text: TextFile, line: int, promised: int
+) -> Pairs:
     """Split times and accelerations that alternate, and tell whether the times are even.
+
+    ``promised`` is the number of pairs that the header states.
 
     Raises
     ------
     InputError
         If there are fewer than two pairs, or a time is before the one above it.
     """
+    if text.cut_short:
+        values = values[: 2 * (values.size // 2)]
     times, accelerations = values[0::2], values[1::2]
     if times.size < 2 or times.size != accelerations.size:
         text.fail("a record needs at least two pairs of time and acceleration", line)
@@ -96,9 +117,10 @@ def pairs_of(values: NDArray[np.float64], unit: str, text: TextFile, line: int) 
         # rounding may make neighbours equal, never reverse them
         check_rising(times, text, line)
     try:
-        return Pairs(times, accelerations, step_of_times(times, text, line), True, unit)
+        step = step_of_times(times, text, line)
+        return Pairs(times, accelerations, step, True, unit, promised)
     except InputError:
-        return Pairs(times, accelerations, UNEVEN_STEP, False, unit)
+        return Pairs(times, accelerations, even_step(times), False, unit, promised)
 
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
@@ -116,7 +138,7 @@ def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float
             values = parse_columns([line[shift:] for line in lines], _FIELD)
         except NumberError as error:
             text.fail(str(error), start + error.line)
-    if values.size != count:
+    if values.size != count and not (text.cut_short and 0 < values.size < count):
         text.fail(
             f"the header promises {count // 2} points but {values.size / 2:g} follow; "
             "the file is cut short, or its header is wrong",

@@ -13,8 +13,11 @@ _SHARE_OF_STEP = 1e-4
 
 _FINEST_DIGITS = 9
 
-UNEVEN_STEP = 0.005
-"""Sampling interval [s] that unevenly digitised film records are interpolated to (200 Hz)."""
+_EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
+"""Sampling intervals [s] that unevenly digitised film records are interpolated to."""
+
+_COARSEST = 1.25
+"""Largest ratio of that interval to the mean distance of the digitised points."""
 
 _HOURS_BEHIND = {
     "UTC": 0,
@@ -77,6 +80,16 @@ def step_of_times(times: NDArray[np.float64], text: TextFile, first_line: int) -
             first_line,
         )
     return dt
+
+
+def even_step(times: NDArray[np.float64]) -> float:
+    """Return the interval [s] to interpolate unevenly digitised points to.
+
+    The coarsest of 200, 500, 1000 and 2000 Hz that has about as many samples as there are points, so
+    that peaks between samples of a coarser one are not lost.
+    """
+    mean = float(times[-1] - times[0]) / max(times.size - 1, 1)
+    return next((step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1])
 
 
 def check_rising(times: NDArray[np.float64], text: TextFile, first_line: int) -> None:

@@ -8,8 +8,8 @@ import hdf5plugin  # noqa: F401 (its import registers the Blosc filter)
 import numpy as np
 
 from rockfrag.errors import InputError
+from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
-from rockfrag.records.sources.wheel import sha256_of
 from rockfrag.units import STANDARD_GRAVITY
 
 _EQUAL = 1e-9

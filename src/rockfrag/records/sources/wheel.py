@@ -15,6 +15,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from rockfrag.errors import InputError
+from rockfrag.records.digest import sha256_of
 
 _LOG = logging.getLogger(__name__)
 _PATIENCE = 300.0
@@ -148,12 +149,6 @@ def is_complete(folder: Path) -> bool:
         return bool(listed) and all(sha256_of(folder / n) == digest for n, digest in listed.items())
     except (OSError, ValueError, KeyError, AttributeError, TypeError):
         return False
-
-
-def sha256_of(path: Path) -> str:
-    """Return the SHA-256 of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _download(pinned: PinnedWheel, scratch: Path) -> Path:

@@ -1,0 +1,103 @@
+"""USGS AGRAM: blocks of acceleration, velocity and displacement, seven lines of header above each.
+
+The header ends with ``SAMPLES/SEC=200 … DATA TYPE=AC`` (``VL``, ``DP``) and ``NO OF POINTS=  5983,
+UNITS=CM/SEC**2, CM/SEC, AND CM``; the units are those of the three types in this order. Samples stand in
+rows of ten (F8.2), which need no blank between them.
+"""
+
+import re
+from itertools import pairwise
+
+from obspy import UTCDateTime
+
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import Section, positive_step, refuse_others
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import TextFile
+
+_RATE = re.compile(
+    r"^\s*SAMPLES/SEC\s*=\s*(?P<rate>[\d.]+).*\bDATA\s+TYPE\s*=\s*(?P<type>\w\w)", re.IGNORECASE
+)
+_RATE_LINE = re.compile(rb"^[ \t]*SAMPLES/SEC[ \t]*=", re.I | re.M)
+_SIZE = re.compile(
+    r"^\s*NO\.?\s+OF\s+POINTS\s*=\s*(?P<count>\d+),?\s*UNITS\s*=\s*(?P<units>.*)$", re.I
+)
+_TIME = re.compile(
+    r"YEAR\s*=\s*(\d+)\s+JULIAN\s+DAY\s*=\s*(\d+)\s+HOUR\s*=\s*(\d+)\s+MINUTE\s*=\s*(\d+)\s+"
+    r"SECOND\s*=\s*([\d.]+)\s*(?:COMPONENT\s*=\s*(\S+))?",
+    re.IGNORECASE,
+)
+_TYPES = {"AC": "acceleration", "VL": "velocity", "DP": "displacement"}
+_ABOVE = 5
+_WIDTH = 8
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    return any(_RATE.match(line) and _SIZE.match(below) for line, below in pairwise(lines[:20]))
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    channels, quantities = [], []
+    line = text.find(_RATE_LINE)
+    while line >= 0:
+        following = text.find(_RATE_LINE, line + 1)
+        stop = len(text) if following < 0 else following - _ABOVE
+        section, dt, unit = _section(text, line, stop)
+        samples = section.samples(text)
+        quantities.append(section.quantity)
+        if section.quantity == "acceleration":
+            plain = Channel(section.count, dt, samples.copy, unit)
+            channels.append(_channel(text.lines(max(0, line - _ABOVE), line), plain))
+        line = following
+    refuse_others(text, quantities)
+    return channels
+
+
+def _section(text: TextFile, line: int, stop: int) -> tuple[Section, float, str]:
+    rate, size = _RATE.match(text.line(line)), _SIZE.match(text.line(line + 1))
+    if rate is None or size is None:
+        text.fail("rate, type, number of points or units cannot be read here", line)
+    quantity = _TYPES.get(rate["type"].upper())
+    if quantity is None:
+        text.fail(f"data type {rate['type']} is none of AC, VL and DP", line)
+    units = [
+        canonical_unit(word)
+        for word in re.split(r",\s*(?:AND\b)?|\bAND\b", size["units"], flags=re.I)
+    ]
+    units = [unit for unit in units if unit]
+    place = list(_TYPES.values()).index(quantity)
+    if len(units) != len(_TYPES):
+        text.fail(f"{len(units)} units are stated where acceleration, velocity and "
+                  "displacement have one each", line + 1)  # fmt: skip
+    dt = positive_step(text, 1 / float(rate["rate"]) if float(rate["rate"]) else 0.0, line)
+    return Section(quantity, int(size["count"]), line + 2, stop, _WIDTH), dt, units[place]
+
+
+def _channel(words: list[str], values: Channel) -> Channel:
+    start, component = None, ""
+    for line in words:
+        match = _TIME.search(line)
+        if match:
+            year, day, hour, minute = (int(part) for part in match.groups()[:4])
+            component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
+            try:
+                start = UTCDateTime(year=year, julday=day, hour=hour, minute=minute)
+                start += float(match[5])
+            except (ValueError, OverflowError):
+                start = None
+    event = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
+    return Channel(
+        npts=values.npts,
+        dt=values.dt,
+        samples=values.samples,
+        unit=values.unit,
+        start_time=start,
+        station=words[0].strip() if words else "",
+        component=component,
+        details={"event": event},
+    )
+
+
+FORMAT = Format("AGRAM", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

@@ -1,0 +1,116 @@
+"""Iran Strong Motion Network (BHRC), volume 1: three components L, V and T in g/10.
+
+Each component has a text header that begins with ``* VOL1DS FILE`` and has its size and unit in
+``NO. OF POINTS = … DURATION = …`` and ``UNITS ARE SECONDS AND G/10``, seven lines of integers, seven
+of reals, then the samples in rows (E13.6), and ends with ``/&``. Header lines are cut after 70
+columns, so that only what is left of those is read. The interval is one over the rate, the ninth
+real number, and must agree with the duration.
+"""
+
+import re
+
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import Section, positive_step
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import TextFile
+
+_FIRST = re.compile(r"^\s*\*\s*VOL1DS\s+FILE", re.IGNORECASE)
+_HEAD = re.compile(rb"^[ \t]*\*[ \t]*VOL1DS[ \t]+FILE", re.I | re.M)
+_END = re.compile(rb"^[ \t]*/&", re.M)
+_UNITS_LINE = re.compile(rb"^[ \t]*UNITS\b.*\bAND\b", re.I | re.M)
+_UNIT = re.compile(r"\bUNITS\s+ARE\s+SEC\w*\s+AND\s+(?P<unit>\S+)", re.IGNORECASE)
+_SIZE = re.compile(
+    r"NO\.?\s+OF\s+POINTS\s*=\s*(?P<count>\d+)\s+DURATION\s*=\s*(?P<duration>[\d.]+)", re.IGNORECASE
+)
+_COMPONENT = re.compile(r"^\s*COMP\.?\s+(?P<name>[A-Z]+)", re.IGNORECASE | re.MULTILINE)
+_STATION = re.compile(
+    r"^\s*(?P<name>.*?)\s+Station\s+(?P<north>[\d.]+)\s*N\s*(?P<east>[\d.]+)\s*E"
+    r"(?:.*?Azimuth(?P<azimuths>.*))?$",
+    re.IGNORECASE | re.MULTILINE,
+)
+_INTEGER_LINES, _REAL_LINES, _WIDTH = 7, 7, 13
+_MAX_HEADER = 30
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    return bool(_FIRST.match(lines[0])) and any(_UNIT.search(line) for line in lines[:_MAX_HEADER])
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    channels = []
+    first = text.find(_HEAD)
+    while first >= 0:
+        stop = text.until(_END, first)
+        channels.append(_component(text, first, stop))
+        first = text.find(_HEAD, stop) if stop < len(text) else -1
+    return channels
+
+
+def _component(text: TextFile, first: int, stop: int) -> Channel:
+    at_units = text.find(_UNITS_LINE, first, min(stop, first + _MAX_HEADER))
+    words = "\n".join(text.lines(first, at_units + 1)) if at_units >= 0 else ""
+    unit, size = _UNIT.search(words), _SIZE.search(words)
+    if unit is None or size is None:
+        text.fail("no number of points, duration or unit below this line", first)
+    at_integers = at_units + 1
+    while at_integers < stop and not text.line(at_integers).strip():
+        at_integers += 1
+    at_reals = at_integers + _INTEGER_LINES
+    start = at_reals + _REAL_LINES
+    count = int(size["count"])
+    dt = _step(text, at_reals, count, float(size["duration"]))
+    section = Section("acceleration", count, start, stop, _WIDTH)
+    samples = section.samples(text)
+    component = _COMPONENT.search(words)
+    name = component["name"].upper() if component else ""
+    station = _STATION.search(words)
+    return Channel(
+        npts=count,
+        dt=dt,
+        samples=samples.copy,
+        unit=canonical_unit(unit["unit"]),
+        network="I1",
+        component=name,
+        station=station["name"].strip() if station else "",
+        details=_details(words, station, name),
+    )
+
+
+def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
+    """Return the interval [s] of the rate, checked against the duration."""
+    fields = text.line(at_reals + 1)[:_WIDTH]
+    try:
+        rate = float(fields)
+    except ValueError:
+        text.fail(
+            f"{fields.strip()[:20]!r} stands where the sampling rate is expected", at_reals + 1
+        )
+    dt = positive_step(text, 1 / rate if rate > 0 else 0.0, at_reals + 1)
+    if abs(count * dt - duration) > 2 * dt + 0.001:
+        text.fail(
+            f"the header gives {count} points at {rate:g} a second but a duration of "
+            f"{duration:g} s; one of them is wrong",
+            at_reals + 1,
+        )
+    return float(f"{dt:.9g}")
+
+
+def _details(words: str, station: re.Match[str] | None, component: str) -> dict[str, object]:
+    origin = re.search(r"Origin\s+Time\s*:\s*(.*)", words, re.IGNORECASE)
+    magnitude = re.search(r"\bM[wsblL]?\s*(\d\.\d)", words)
+    details: dict[str, object] = {
+        "event": " ".join(origin[1].split()) if origin else "",
+        "magnitude": float(magnitude[1]) if magnitude else None,
+    }
+    if station is None:
+        return details
+    details |= {"latitude": float(station["north"]), "longitude": float(station["east"])}
+    azimuth = re.search(rf"\b{component}\s*(\d{{1,3}})\b", station["azimuths"] or "")
+    if component and azimuth:
+        details["azimuth_deg"] = float(azimuth[1])
+    return details
+
+
+FORMAT = Format("BHRC", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read

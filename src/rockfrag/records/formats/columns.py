@@ -1,0 +1,180 @@
+"""Text with titled columns, of which some are acceleration: ``time, acc_NS(gal), acc_EW(gal)``.
+
+The titles stand directly above the numbers, or have a line of units (``s, g, g``) between. Columns
+of velocity, displacement and other quantities are left out. What a title states neither by a word
+nor by a unit, but by an orientation (``NS``, ``HNE``, ``090``), is taken for acceleration without a unit.
+"""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.records.headed_formats import HEADED
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.number_table import is_row, width_of
+from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
+from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import check_rising, step_of_times
+
+_TIME = re.compile(r"^(?:elapsed\s*)?(?:t|time|times|sec|seconds?)(?![a-z])", re.IGNORECASE)
+_SPECTRA = re.compile(r"^(?:period|freq|omega)|\bspectr|\bps[av]\b", re.IGNORECASE)
+_WORDS = {
+    "acceleration": re.compile(r"(?<![a-z])a(?:cc(?:el\w*|n)?)?(?![a-z])|accel", re.IGNORECASE),
+    "velocity": re.compile(r"(?<![a-z])(?:v|vel(?:oc\w*)?)(?![a-z])", re.IGNORECASE),
+    "displacement": re.compile(r"(?<![a-z])(?:d|u|dis(?:pl?\w*)?)(?![a-z])", re.IGNORECASE),
+}
+_ORIENTATION = re.compile(
+    r"^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTXYH]|UP|VERT\w*|H[12]|[BHE][NLGH][ENZ123]|[NS]\d{1,2}[EW]|\d{1,3}"
+    r"|north\w*|east\w*|radial|transverse|longitudinal|ch(?:annel)?\W?\d+)$",
+    re.IGNORECASE,
+)
+_BRACKETED = re.compile(r"[\[({](?P<unit>[^\[\](){}]*)[\])}]")
+_MIN_ROWS = 3
+_MAX_HEADER = 40
+
+
+@dataclass(frozen=True)
+class _Column:
+    """What a title says of its column: quantity, unit and the name of the component."""
+
+    title: str
+    quantity: str
+    unit: str
+    component: str
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    found = _titles(lines)
+    if found is None or any(headed.recognise(lines, name) for headed in HEADED):
+        return False
+    start, titles, _ = found
+    rows = [line for line in lines[start:] if line.strip()]
+    timed = any(_TIME.match(title) for title in titles)
+    return (
+        len(rows) >= _MIN_ROWS
+        and all(is_row(line) and width_of(line) == len(titles) for line in rows)
+        and len(titles) > (2 if timed else 1)
+        and not (len(titles) == 2 and any(_SPECTRA.search(title) for title in titles))
+    )
+
+
+def _titles(lines: list[str]) -> tuple[int, list[str], list[str]] | None:
+    """Return the first row of numbers, the titles above it and the units between, if any."""
+    start = next((i for i, line in enumerate(lines[:_MAX_HEADER]) if is_row(line)), 0)
+    width = width_of(lines[start]) if start else 0
+    above = [i for i in range(start) if lines[i].strip()]
+    if width < 2 or not above:
+        return None
+    cells = _cells(lines[above[-1]], lines[start], width)
+    if cells and len(above) > 1 and all(_is_unit(cell) for cell in cells):
+        titles = _cells(lines[above[-2]], lines[start], width)
+        return (start, titles, cells) if titles else None
+    return (start, cells, [""] * width) if cells else None
+
+
+def _cells(line: str, row: str, width: int) -> list[str]:
+    """Split a line into as many titles as a row has columns; empty if it cannot be."""
+    plain = line.strip().lstrip("#%!/ ")
+    separators = [separator for separator in (";", ",", "\t") if separator in row]
+    patterns = [re.escape(separator) for separator in separators] or [r"\s{2,}|\t", r"\s+"]
+    for pattern in patterns:
+        cells = [cell.strip(" \t\"'") for cell in re.split(pattern, plain)]
+        if len(cells) == width and all(cells):
+            return cells
+    return []
+
+
+def _is_unit(cell: str) -> bool:
+    unit = canonical_unit(cell.strip("[](){}"))
+    return unit in {"s", "ms", "-"} or quantity_of(unit) != ""
+
+
+def _column(title: str, unit_below: str) -> _Column:
+    bracketed = _BRACKETED.search(title)
+    words = title if bracketed is None else title[: bracketed.start()] + title[bracketed.end() :]
+    unit = (
+        canonical_unit(bracketed["unit"])
+        if bracketed
+        else canonical_unit(unit_below.strip("[](){}"))
+    )
+    if not unit:
+        # acc_g, NS_cm/s2, accel m/s^2
+        head, _, last = re.sub(r"[_\s]+", " ", words.strip()).rpartition(" ")
+        if head and quantity_of(canonical_unit(last)):
+            words, unit = head, canonical_unit(last)
+    quantity = quantity_of(unit) or next(
+        (name for name, pattern in _WORDS.items() if pattern.search(words.replace("_", " "))), ""
+    )
+    bare = words.strip(" _-.:,")
+    if not quantity and _ORIENTATION.match(bare):
+        quantity = "acceleration"
+    pattern = _WORDS.get(quantity)
+    component = pattern.sub("", words.replace("_", " "), count=1) if pattern else words
+    component = " ".join(component.replace("[]", "").split()).strip(" -.:,")
+    return _Column(title, quantity, unit if unit in TO_SI else "", component)
+
+
+def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
+    found = _titles(text.lines(0, _MAX_HEADER + 1))
+    if found is None:
+        text.fail("no titles of columns above the rows of numbers", 0)
+    start, titles, units = found
+    if _SPECTRA.search(titles[0]):
+        text.refuse(
+            f"the first column is {titles[0]!r}: a spectrum, not acceleration in time", start - 1
+        )
+    columns = [_column(title, unit) for title, unit in zip(titles, units, strict=True)]
+    timed = [i for i, title in enumerate(titles) if _TIME.match(title)]
+    chosen = [
+        i
+        for i, column in enumerate(columns)
+        if column.quantity == "acceleration" and i not in timed
+    ]
+    if not chosen:
+        text.fail(
+            f"none of the columns {', '.join(titles)} is titled as acceleration; "
+            "write the word or the unit into its title",
+            start - 1,
+        )
+    table = text.table(start, len(titles))
+    times = table[:, timed[0]] if timed else None
+    step = _interval(
+        text, start, times, f"{titles[timed[0]]} {units[timed[0]]}" if timed else "", dt
+    )
+    names = [columns[i].component for i in chosen]
+    return [
+        Channel(
+            npts=table.shape[0],
+            dt=positive_step(text, step, start),
+            samples=table[:, i].copy,
+            unit=columns[i].unit,
+            component=names[n] if names.count(names[n]) == 1 else titles[i],
+            details={"title": titles[i]},
+        )
+        for n, i in enumerate(chosen)
+    ]
+
+
+def _interval(
+    text: TextFile, start: int, times: NDArray[np.float64] | None, title: str, dt: float | None
+) -> float:
+    """Return the interval [s] of the time column, or the one that the user names."""
+    if dt is not None:
+        if not (np.isfinite(dt) and dt > 0):
+            raise InputError(f"dt must be a positive number of seconds, got {dt}.")
+        if times is not None:
+            check_rising(times, text, start)
+        return dt
+    if times is None:
+        text.fail("no column is titled as time; give the sampling interval with dt= (in seconds)")
+    step = step_of_times(times, text, start)
+    return step * 1e-3 if re.search(r"\b(?:ms|msec|millis\w*)\b", title, re.IGNORECASE) else step
+
+
+FORMAT = Format("COLUMNS", _recognise, _parse, wants_dt=True)
+is_format, read = FORMAT.is_format, FORMAT.read

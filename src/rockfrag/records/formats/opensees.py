@@ -1,0 +1,156 @@
+"""OpenSees Path series in a Tcl script: ``timeSeries Path 1 -dt 0.02 -values {…} -factor 9.81``.
+
+The values stand in the script, or in the file that ``-filePath`` names beside it. A comment such as ``#
+acceleration in m/s2`` states the unit of the values times the factor; OpenSees itself knows none.
+Older scripts say ``Series -dt .02 -filePath elcentro.txt -factor 1``.
+"""
+
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from obspy import Stream
+
+from rockfrag.errors import InputError
+from rockfrag.files import write_text
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import positive_step
+from rockfrag.records.parsing.number_fields import NumberError, parse_separated
+from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
+from rockfrag.records.parsing.text_file import TextFile, read_text
+from rockfrag.records.parsing.written_trace import one_trace, stated_unit
+
+_SERIES = re.compile(r"^[^#\n]*?(?:\btimeSeries\s+[\"']?Path\b|[{\"]\s*Series\s+-)", re.I | re.M)
+_SERIES_BYTES = re.compile(_SERIES.pattern.encode(), re.I | re.M)
+_UNIT = re.compile(
+    rb"^[ \t]*#.*\bacceleration\b.*?\bin[ \t]+(?P<unit>[^\s,]+)(?:,[ \t]*(?P<count>\d+)[ \t]+samples)?",
+    re.I | re.M,
+)
+_OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<word>[^\s{{}}\"]+))"
+_PER_LINE = 5
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    return any(_SERIES.search(line) for line in lines[:200])
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    at_series = text.find(_SERIES_BYTES)
+    if at_series < 0:
+        text.fail("no timeSeries Path in this script")
+    unit = _UNIT.search(text.data)
+    stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
+    promised = int(unit["count"]) if unit and unit["count"] else None
+    channels = []
+    while at_series >= 0:
+        following = text.find(_SERIES_BYTES, at_series + 1)
+        stop = len(text) if following < 0 else following
+        channels.append(_series(text, at_series, stop, stated, promised))
+        at_series = following
+    return channels
+
+
+def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | None) -> Channel:
+    script = _command(text, line, stop)
+    tag = re.search(r"Path[\"']?\s+(\w+)", script, re.IGNORECASE)
+    step, factor = _option(script, "dt"), _option(script, "factor")
+    if step is None:
+        text.fail("the Path series states no -dt; a series of -time or -fileTime is not read", line)
+    dt = positive_step(text, _number(text, line, "-dt", step), line)
+    scale = 1.0 if factor is None else _number(text, line, "-factor", factor)
+    samples = scale * _values(text, line, script)
+    if promised is not None and samples.size != promised:
+        text.fail(
+            f"the comment promises {promised} samples but {samples.size} follow; "
+            "the file is cut short, or its comment is wrong",
+            line,
+        )
+    return Channel(
+        npts=samples.size,
+        dt=dt,
+        samples=samples.copy,
+        unit=unit if unit in TO_SI else "",
+        component=tag[1] if tag else "",
+        details={"factor": scale},
+    )
+
+
+def _command(text: TextFile, line: int, stop: int) -> str:
+    """Return the whole command of a series: until braces close, with lines that a backslash joins."""
+    script = text.data[text.offset(line) : text.offset(stop)].decode("utf-8", errors="replace")
+    end = 0
+    while True:
+        following = script.find("\n", end)
+        if following < 0:
+            return script
+        whole = script[:following]
+        if whole.count("{") <= whole.count("}") and not whole.endswith("\\"):
+            return whole.replace("\\\n", " ")
+        end = following + 1
+
+
+def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
+    listed, file = _option(script, "values"), _option(script, "filePath")
+    if listed is not None:
+        body, where = listed.encode(), text.name
+    elif file is not None:
+        path = Path(text.name).parent / file
+        body, where = read_text(path).data, str(path)
+    else:
+        text.fail("the Path series has neither -values nor -filePath", line)
+    try:
+        values = parse_separated(body)
+    except NumberError as error:
+        raise InputError(f"{where}, line {error.line + 1}: {error}.") from None
+    if values.size == 0:
+        text.fail("the Path series has no values; the file is cut short", line)
+    return values
+
+
+def _option(script: str, name: str) -> str | None:
+    match = re.search(_OPTION.format(name=name), script, re.IGNORECASE)
+    if match is None:
+        return None
+    return next(group for group in match.groups() if group is not None)
+
+
+def _number(text: TextFile, line: int, name: str, words: str) -> float:
+    try:
+        value = float(words)
+    except ValueError:
+        value = float("nan")
+    if not np.isfinite(value):
+        text.fail(
+            f"{name} is {words[:40]!r}, which is no number; write its value into the script", line
+        )
+    return value
+
+
+FORMAT = Format("OPENSEES", _recognise, _parse)
+is_format, read = FORMAT.is_format, FORMAT.read
+
+
+def write(stream: Stream, filename: str | os.PathLike[str], **_: object) -> None:
+    """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file.
+
+    Raises
+    ------
+    InputError
+        If the stream has more or fewer than one trace, a sample is not finite, or the trace does not
+        state a unit of acceleration.
+    """
+    trace, samples = one_trace(stream, filename)
+    unit = stated_unit(trace, filename)
+    dt = float(f"{trace.stats.delta:.12g}")
+    values = [repr(value) for value in samples.tolist()]
+    rows = [" ".join(values[i : i + _PER_LINE]) for i in range(0, len(values), _PER_LINE)]
+    lines = [
+        f"# acceleration in {unit}, {samples.size} samples",
+        f"timeSeries Path 1 -dt {dt!r} -values {{",
+        *rows,
+        "}",
+    ]
+    write_text("\n".join(lines) + "\n", filename)

@@ -1,0 +1,128 @@
+"""UNAM "archivo estándar de aceleración" (Mexico), version 2: ``KEY : value`` lines, a column a channel.
+
+Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and
+the orientations of the channels between two rulers, then one row a sample in the Fortran format
+that the header gives (``3F10.3``). The total of samples is that of the nominal duration: up to a second
+of samples more may follow.
+"""
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+from obspy import UTCDateTime
+
+from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.format import Format
+from rockfrag.records.parsing.fortran_sections import field_width, positive_step
+from rockfrag.records.parsing.header_keys import header_keys
+from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.text_file import TextFile
+
+_TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.IGNORECASE)
+_DATA = re.compile(rb"^[ \t]*DATOS DE ACELERACI", re.I | re.M)
+_RULER = re.compile(r"^-+\+-+\+[-+]*$")
+_MAX_HEADER = 200
+_HALF_A_DAY = 12 * 3600
+
+
+def _recognise(lines: list[str], name: str) -> bool:
+    return any(_TITLE.match(line) for line in lines[:30])
+
+
+def _parse(text: TextFile) -> list[Channel]:
+    at_data = text.find(_DATA, 0, _MAX_HEADER)
+    if at_data < 0:
+        text.fail("no line DATOS DE ACELERACION; the file is cut short")
+    facts = header_keys(text.lines(0, at_data))
+    rulers = [i for i in range(at_data, at_data + 10) if _RULER.match(text.line(i))]
+    if len(rulers) < 2:
+        text.fail("the two rulers above the samples are missing", at_data)
+    steps, counts = _list(facts, "intervalo de muestreo"), _list(facts, "num. total de muestras")
+    orientations = _list(facts, "orientacion")
+    if not steps or len(set(steps)) != 1 or len({len(steps), len(counts), len(orientations)}) != 1:
+        text.fail("the channels of the header have no common sampling interval")
+    try:
+        dt, promised = float(steps[0]), int(counts[0])
+    except ValueError:
+        text.fail("sampling interval or number of samples is not a number")
+    dt = positive_step(text, dt, at_data)
+    table = _table(text, rulers[1] + 1, facts, len(steps))
+    _check_count(text, rulers[1] + 1, table.shape[0], promised, dt)
+    extra = table.shape[0] - promised
+    step = {"step": "read samples beyond the nominal duration", "samples": extra}
+    unit = canonical_unit(facts.get("unidades de los datos", "").split("(")[0])
+    return [
+        Channel(
+            npts=max(table.shape[0], promised),
+            dt=dt,
+            samples=table[:, column].copy,
+            unit=unit,
+            start_time=_start(facts),
+            station=facts.get("clave de la estacion", ""),
+            component=orientation,
+            details={**_details(facts), "steps": (step,) if extra > 0 else ()},
+        )
+        for column, orientation in enumerate(orientations)
+    ]
+
+
+def _table(text: TextFile, start: int, facts: dict[str, str], columns: int) -> NDArray[np.float64]:
+    form = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
+    values = text.numbers(start, None, field_width(f"({form})"))
+    if text.cut_short:
+        values = values[: values.size // columns * columns]
+    if values.size == 0 or values.size % columns:
+        text.fail(
+            f"{values.size} values do not fill rows of {columns}; the file is cut short", start
+        )
+    return values.reshape(-1, columns)
+
+
+def _check_count(text: TextFile, line: int, found: int, promised: int, dt: float) -> None:
+    if not promised <= found < promised + 1 / dt and not (text.cut_short and found < promised):
+        text.fail(
+            f"the header promises {promised} samples but {found} follow; "
+            "the file is cut short, or its header is wrong",
+            line,
+        )
+
+
+def _list(facts: dict[str, str], key: str) -> list[str]:
+    """Return the values ``/a/b/c`` of the first six channels, then those of the others."""
+    values = [value for name, value in facts.items() if name.startswith(key)]
+    return [part.strip() for value in values for part in value.split("/") if part.strip()]
+
+
+def _start(facts: dict[str, str]) -> UTCDateTime | None:
+    """Return the time of the first sample, on the day of the earthquake or the one beside it."""
+    day, origin = facts.get("fecha del sismo", ""), facts.get("hora epicentro", "")
+    first = facts.get("hora de la primera muestra", "")
+    try:
+        start = UTCDateTime(f"{day} {first}")
+        late = start - UTCDateTime(f"{day} {origin}")
+    except Exception:  # UTCDateTime raises several kinds
+        return None
+    shift = 86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0
+    return start + shift
+
+
+def _details(facts: dict[str, str]) -> dict[str, object]:
+    coordinates = re.findall(r"(\d+(?:\.\d+)?)\s*(LAT|LONG)\.?\s*([NSEW])",
+                             facts.get("coordenadas de la estacion", ""))  # fmt: skip
+    place = {
+        "latitude" if axis == "LAT" else "longitude": float(value) * (-1 if side in "SW" else 1)
+        for value, axis, side in coordinates
+    }
+    magnitudes = re.findall(r"M\w*\s*=\s*(\d+(?:\.\d+)?)", facts.get("magnitud(es)", ""))
+    magnitudes = magnitudes or re.findall(r"=\s*(\d\.\d)", facts.get("magnitud", ""))
+    return {
+        "station_name": facts.get("nombre de la estacion", ""),
+        "event": f"{facts.get('fecha del sismo', '')} {facts.get('hora epicentro', '')}".strip(),
+        "magnitude": max(map(float, magnitudes), default=None),
+        **place,
+    }
+
+
+FORMAT = Format("UNAM", _recognise, _parse, encoding="latin-1")
+is_format, read = FORMAT.is_format, FORMAT.read

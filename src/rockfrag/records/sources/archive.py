@@ -1,0 +1,177 @@
+"""Archives of records, as data centres send them: zip and tar, unpacked within bounds."""
+
+import lzma
+import os
+import re
+import struct
+import tarfile
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
+from typing import IO
+
+from rockfrag.errors import InputError
+from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
+
+MAX_MEMBERS = 5_000
+"""Files of an archive; a download of a data centre has some hundred."""
+
+MAX_TOTAL = 2 * MAX_BYTES
+"""Bytes that an archive may unpack to."""
+
+_BLOCK = 2**20
+_TAR_NAMES = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
+_UNREADABLE = (
+    OSError,
+    EOFError,
+    ValueError,
+    RuntimeError,
+    NotImplementedError,
+    KeyError,
+    IndexError,
+    struct.error,
+    zlib.error,
+    lzma.LZMAError,
+    zipfile.BadZipFile,
+    tarfile.TarError,
+)
+"""What the modules of the standard library raise for a damaged, locked or unusual archive."""
+
+
+@dataclass(frozen=True)
+class Member:
+    """A file of an archive: its name there and where it lies unpacked."""
+
+    name: str
+    path: Path
+
+
+def is_archive(path: str | os.PathLike[str]) -> bool:
+    """Tell whether a file is a zip or tar archive; Excel workbooks, zip files too, are as well."""
+    return bool(_kind(path))
+
+
+@contextmanager
+def unpacked(path: str | os.PathLike[str]) -> Iterator[list[Member]]:
+    """Give the files of an archive, in order of name, unpacked into a folder that is then removed.
+
+    An archive within the archive is unpacked as well, one within that is not.
+
+    Raises
+    ------
+    InputError
+        If the archive is damaged, locked, an Excel workbook, or unpacks to too much.
+    """
+    with TemporaryDirectory(prefix="rockfrag.") as scratch:
+        room = _Room(Path(scratch), MAX_TOTAL, MAX_MEMBERS)
+        members = _take_out(path, room, "")
+        nested = [member for member in members if is_archive(member.path)]
+        for member in nested:
+            try:
+                members += _take_out(member.path, room, f"{member.name}/")
+            except InputError as error:
+                raise InputError(f"{path}: member {member.name}: {error}") from None
+        whole = [member for member in members if member not in nested]
+        yield sorted(whole, key=lambda member: _by_number(member.name))
+
+
+class _Room:
+    """The folder that an archive is unpacked into, and what may still be put there."""
+
+    def __init__(self, folder: Path, size: int, members: int) -> None:
+        self.folder, self.size, self.members, self.count = folder, size, members, 0
+
+    def put(self, name: str, file: IO[bytes], archive: str | os.PathLike[str]) -> Member:
+        """Write one member, in a folder like that of the archive, whatever its name says."""
+        parts = [
+            part for part in PurePosixPath(name.replace("\\", "/")).parts if part not in ("/", "..")
+        ]
+        safe = [re.sub(r"[^\w.+@=, ()\[\]-]", "_", part)[-100:] for part in parts] or ["unnamed"]
+        self.count += 1
+        if self.count > self.members:
+            raise InputError(f"{archive}: it has more than {self.members} members.")
+        # the number keeps members apart whose names differ only in what is replaced
+        target = self.folder.joinpath(*safe)
+        if target.exists():
+            target = self.folder / str(self.count) / safe[-1]
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with target.open("wb") as out:
+            while block := file.read(_BLOCK):
+                self.size -= len(block)
+                if self.size < 0:
+                    raise InputError(
+                        f"{archive}: it unpacks to more than {MAX_TOTAL // 2**20} MiB."
+                    )
+                out.write(block)
+        return Member(name, target)
+
+
+def _kind(path: str | os.PathLike[str]) -> str:
+    head = read_head(str(path), 512)
+    if head.startswith((b"PK\x03\x04", b"PK\x05\x06")):
+        return "zip"
+    named = str(path).lower().endswith(_TAR_NAMES)
+    return "tar" if head[257:262] == b"ustar" or (named and _opens_as_tar(path)) else ""
+
+
+def _opens_as_tar(path: str | os.PathLike[str]) -> bool:
+    try:
+        return os.path.getsize(path) <= MAX_BYTES and tarfile.is_tarfile(path)
+    except _UNREADABLE:
+        return False
+
+
+def _take_out(path: str | os.PathLike[str], room: _Room, prefix: str) -> list[Member]:
+    try:
+        members = _from_zip(path, room) if _kind(path) == "zip" else _from_tar(path, room)
+    except _UNREADABLE as error:
+        if isinstance(error, InputError):
+            raise
+        words = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(f"{path}: the archive cannot be unpacked ({words}).") from None
+    return [Member(prefix + member.name, member.path) for member in members]
+
+
+def _from_zip(path: str | os.PathLike[str], room: _Room) -> list[Member]:
+    members = []
+    with zipfile.ZipFile(path) as archive:
+        names = archive.namelist()
+        if "[Content_Types].xml" in names:
+            raise InputError(f"{path}: this is an Excel workbook or a document; save it as CSV.")
+        for info in archive.infolist():
+            if info.is_dir() or _hidden(info.filename):
+                continue
+            if info.flag_bits & 1:
+                raise InputError(f"{path}: the archive is locked by a password; unpack it first.")
+            with archive.open(info) as file:
+                members.append(room.put(info.filename, file, path))
+    return members
+
+
+def _from_tar(path: str | os.PathLike[str], room: _Room) -> list[Member]:
+    members = []
+    with tarfile.open(path) as archive:
+        for info in archive:
+            # links and devices are nothing that a record can be
+            if not info.isfile() or _hidden(info.name):
+                continue
+            file = archive.extractfile(info)
+            if file is not None:
+                members.append(room.put(info.name, file, path))
+    return members
+
+
+def _hidden(name: str) -> bool:
+    return any(part.startswith(".") or part == "__MACOSX" for part in PurePosixPath(name).parts)
+
+
+def _by_number(name: str) -> list[tuple[int, str]]:
+    """Return what sorts RSN9 before RSN10."""
+    return [
+        (int(part), "") if part.isdecimal() and len(part) < 19 else (-1, part)
+        for part in re.split(r"(\d+)", name)
+    ]
