@@ -19,7 +19,7 @@ from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
-from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.text_file import TextFile, last_row
 from rockfrag.records.parsing.written_trace import one_trace, stated_unit
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
@@ -50,7 +50,6 @@ _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
-_END = re.compile(rb"^[ \t]*\*\*+[ \t]*[A-Za-z]", re.M)
 _COMPONENT = re.compile(
     r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?|FN|FP)"
     r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
@@ -162,7 +161,7 @@ def _samples(text: TextFile, start: int, npts: int) -> NDArray[np.float64]:
 
     A line of asterisks, such as ``*** End Data ***``, ends them.
     """
-    stop = text.until(_END, start)
+    stop = last_row(text, start)
     try:
         return text.counted(start, stop, npts)
     except InputError as error:

@@ -80,7 +80,7 @@ def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | Non
 
 def _command(text: TextFile, line: int, stop: int) -> str:
     """Return the whole command of a series: until braces close, with lines that a backslash joins."""
-    script = text.data[text.offset(line) : text.offset(stop)].decode("utf-8", errors="replace")
+    script = text.data[text.offset(line) : text.offset(stop)].decode("latin-1")
     end = 0
     while True:
         following = script.find("\n", end)
@@ -95,16 +95,17 @@ def _command(text: TextFile, line: int, stop: int) -> str:
 def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
     listed, file = _option(script, "values"), _option(script, "filePath")
     if listed is not None:
-        body, where = listed.encode(), text.name
+        body, where = listed.encode("latin-1"), text.name
+        first = text.data.count(b"\n", 0, max(0, text.data.find(body, text.offset(line))))
     elif file is not None:
         path = Path(text.name).parent / file
-        body, where = read_text(path).data, str(path)
+        body, where, first = read_text(path).data, str(path), 0
     else:
         text.fail("the Path series has neither -values nor -filePath", line)
     try:
         values = parse_separated(body)
     except NumberError as error:
-        raise InputError(f"{where}, line {error.line + 1}: {error}.") from None
+        raise InputError(f"{where}, line {first + error.line + 1}: {error}.") from None
     if values.size == 0:
         text.fail("the Path series has no values; the file is cut short", line)
     return values

@@ -73,17 +73,6 @@ def _recognise(lines: list[str], name: str) -> bool:
     return bool((np.diff(times) > 0).mean() > 0.5)
 
 
-def first_odd_row(lines: list[str]) -> int | None:
-    """Return the first line (from zero) that keeps mostly numeric text from being plain text."""
-    layout = _layout(lines)
-    if layout is None:
-        return None
-    rows = [i for i in range(layout.table.start, len(lines)) if lines[i].strip()]
-    columns = layout.table.columns
-    odd = [i for i in rows if not is_row(lines[i]) or width_of(lines[i]) != columns]
-    return odd[0] if odd and 2 * len(odd) < len(rows) else None
-
-
 def _layout(lines: list[str]) -> _Layout | None:
     """Find the numbers and the titles of two columns above them."""
     table = number_table(lines)

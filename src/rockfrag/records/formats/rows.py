@@ -5,8 +5,6 @@ of their column. Else the numbers are one series, row after row, as OpenSees rea
 interval is the user's. The unit is always the user's.
 """
 
-import re
-
 import numpy as np
 
 from rockfrag.records.formats import columns
@@ -22,10 +20,9 @@ from rockfrag.records.parsing.number_table import (
     numbers_of,
     width_of,
 )
-from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import step_of_times
 
-_END = re.compile(rb"^[ \t]*(?:\*\*+|#+)[^\n]*[A-Za-z]", re.M)
 _LEAST, _MOST = 3, 40
 _MIN_ROWS = 3
 _MAX_WORDS = 2
@@ -37,7 +34,7 @@ def _recognise(lines: list[str], name: str) -> bool:
     if table is None or table.npts is not None or not _LEAST <= table.columns <= _MOST:
         return False
     rows = [line for line in lines[table.start :] if line.strip()]
-    while rows and re.match(r"\s*(?:\*\*|#)", rows[-1]):
+    while rows and is_remark(rows[-1]):
         rows.pop()
     widths = [width_of(line) for line in rows]
     return (
@@ -55,7 +52,7 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
     table = number_table(text.lines(0, MAX_HEADER + 1))
     if table is None:
         text.fail("no rows of numbers below a short header", 0)
-    stop = text.until(_END, table.start)
+    stop = last_row(text, table.start)
     if _is_timed([numbers_of(line) for line in text.lines(table.start, table.start + 50)]):
         values = text.table(table.start, table.columns, stop)
         step = step_of_times(values[:, 0], text, table.start) if dt is None else dt

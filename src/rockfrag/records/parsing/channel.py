@@ -61,7 +61,7 @@ class Channel:
     details: Mapping[str, Any] = field(default_factory=dict)
 
     def check(self, name: str) -> None:
-        """Check that the interval can be that of a record.
+        """Check that number of samples and interval can be those of a record.
 
         Parameters
         ----------
@@ -71,8 +71,10 @@ class Channel:
         Raises
         ------
         InputError
-            If it is not, with the interval.
+            If they are not, with the one that is wrong.
         """
+        if self.npts < 1:
+            raise InputError(f"{name}: the header promises {self.npts} samples.")
         if not SHORTEST_STEP <= self.dt <= LONGEST_STEP:
             raise InputError(
                 f"{name}: a sampling interval of {self.dt:g} s is none of a strong-motion record "

@@ -77,6 +77,16 @@ def _is_count_line(match: re.Match[str], below: str) -> bool:
     return width_of(below) != 2 or number_in(numbers_of(below)[0]) < npts
 
 
+def first_odd_row(lines: list[str]) -> int | None:
+    """Return the first line (from zero) that keeps mostly numeric text from being plain text."""
+    table = number_table(lines)
+    if table is None:
+        return None
+    filled = [i for i in range(table.start, len(lines)) if lines[i].strip()]
+    odd = [i for i in filled if not is_row(lines[i]) or width_of(lines[i]) != table.columns]
+    return odd[0] if odd and 2 * len(odd) < len(filled) else None
+
+
 def is_row(line: str) -> bool:
     """Tell whether a line is numbers and nothing else."""
     numbers = numbers_of(line)

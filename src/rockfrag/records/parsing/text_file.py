@@ -25,6 +25,7 @@ MAX_LINE = 8_192
 """No line of a known format is longer, comments and citations included."""
 
 _BLOCK = 2**20
+_REMARK = re.compile(r"[ \t]*(?:\*\*|#)[^\d\nA-Za-z]*[A-Za-z][^\d\n]*$")
 
 
 class NotAcceleration(InputError):
@@ -249,6 +250,22 @@ class TextFile:
                 start + first,
             )
         return values.reshape(-1, columns)
+
+
+def last_row(text: TextFile, start: int) -> int:
+    """Return the line after the last that is no remark, such as ``*** End Data ***``."""
+    stop = len(text)
+    while stop > start:
+        line = text.raw(stop - 1).decode("latin-1")
+        if line.strip() and not is_remark(line):
+            break
+        stop -= 1
+    return stop
+
+
+def is_remark(line: str) -> bool:
+    """Tell whether a line is a remark in words below the samples: ``** End``, ``# end of data``."""
+    return bool(_REMARK.match(line))
 
 
 def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
