@@ -133,8 +133,8 @@ def test_the_wider_ensemble_of_peer_records_has_the_listed_peaks(shared):
         ("Northridge", 3989, 0.57, 52.01, 9.03),
     ],
 )
-def test_table_3_3_of_the_thesis_to_the_printed_digit(shared, name, npts, pga, pgv, pgd):
-    motion = read_motion(shared / f"records/{name}.dat")
+def test_table_3_3_of_the_thesis_to_the_printed_digit(four_records, name, npts, pga, pgv, pgd):
+    motion = four_records[name]
     assert motion.acceleration.size == npts
     assert round(motion.pga / STANDARD_GRAVITY, 2) == pga
     assert 100 * intensity.pgv(motion) == pytest.approx(pgv, abs=0.006)

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -212,17 +211,8 @@ def test_copies_stay_within_their_tolerances() -> None:
 
 
 @pytest.mark.slow
-def test_thesis_motions_give_the_ledger(
-    shared: object, motion_set: Callable[[], list[Motion]]
-) -> None:
-    results = {one.number: one for one in theory_claims(THESIS_BODIES, motion_set(), seed=1)}
+def test_thesis_motions_give_the_ledger(four_records: dict[str, Motion]) -> None:
+    motions = list(four_records.values())
+    results = {one.number: one for one in theory_claims(THESIS_BODIES, motions, seed=1)}
     for number in (14, 15, 17):
         assert results[number].verdict == "supported", results[number]
-
-
-@pytest.fixture
-def motion_set(shared) -> Callable[[], list[Motion]]:  # type: ignore[no-untyped-def]
-    from rockfrag.records.read import read_motion
-
-    names = ("Friuli", "Kobe", "Loma_Prieta", "Northridge")
-    return lambda: [read_motion(shared / "records" / f"{name}.dat") for name in names]
