@@ -13,8 +13,14 @@ class InputError(ValueError):
     """
 
     def __init__(self, message: object) -> None:
-        words = str(message)
+        text = str(message)
+        words = text if text.isprintable() else _on_one_line(text)
         if len(words) > LONGEST_MESSAGE:
             kept = (LONGEST_MESSAGE - 3) // 2
             words = f"{words[:kept]} … {words[-kept:]}"
         super().__init__(words)
+
+
+def _on_one_line(text: str) -> str:
+    """Escape what would break the line, such as a line feed in a name."""
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)

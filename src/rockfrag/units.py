@@ -1,6 +1,128 @@
-"""Physical constants and the few units that data enter or leave with; everything inside is SI."""
+"""Units that data enter or leave with; everything inside is SI.
+
+A unit stands in the name of a key or column (``width_cm``), or beside the number (``35 cm``).
+"""
+
+import math
+import re
+from collections.abc import Mapping
+
+from rockfrag.errors import InputError
 
 STANDARD_GRAVITY = 9.81
 """Acceleration of gravity [m/s²] of the thesis; its tables follow from it to the printed digit."""
 
 CENTIMETRES_PER_METRE = 100.0
+
+_LENGTHS = {
+    "m": (1.0, 1.0),
+    "cm": (1.0, 100.0),
+    "mm": (1.0, 1000.0),
+    "in": (0.0254, 1.0),
+    "ft": (0.3048, 1.0),
+}
+_MASSES = {"kg": (1.0, 1.0), "g": (1.0, 1000.0), "t": (1000.0, 1.0), "lb": (0.45359237, 1.0)}
+_INERTIAS = {
+    "kg_m2": (1.0, 1.0),
+    "kg_cm2": (1.0, 1e4),
+    "g_cm2": (1.0, 1e7),
+    "t_m2": (1000.0, 1.0),
+    "lb_ft2": (0.45359237 * 0.3048**2, 1.0),
+}
+DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
+    "length": _LENGTHS,
+    "mass": _MASSES,
+    "moment of inertia": _INERTIAS,
+}
+"""Of each dimension its units, and of each unit the factor and the divisor that lead to SI."""
+
+_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+
+
+def dimension_of(unit: str) -> str:
+    """Dimension of a unit as it stands in names, such as ``cm`` or ``kg_m2``."""
+    return next(name for name, units in DIMENSIONS.items() if unit in units)
+
+
+def convert(value: float, unit: str, to: str) -> float:
+    """Express a value in another unit of the same dimension.
+
+    Units written in decimals differ by a division, which rounds once: 12.4 cm are 0.124 m.
+    """
+    if unit == to:
+        return value
+    units = DIMENSIONS[dimension_of(to)]
+    (factor, divisor), (to_factor, to_divisor) = units[unit], units[to]
+    return value * factor / divisor * to_divisor / to_factor
+
+
+def quantity(given: object, to: str, unit: str | None) -> float:
+    """Read a number, or a text with a number and a unit such as ``35 cm``.
+
+    Parameters
+    ----------
+    given
+        Number or text.
+    to
+        Unit of the result, such as ``m``.
+    unit
+        Unit of a number without one, or None where it must stand beside the number.
+
+    Raises
+    ------
+    InputError
+        If it is no finite number, or the unit is not one of that dimension. The message is to be
+        put behind the place where it was found.
+    """
+    dimension = dimension_of(to)
+    units = DIMENSIONS[dimension]
+    expected = f"expected a {dimension} such as 35 {next(iter(units))}"
+    number = _NUMBER.fullmatch(given) if isinstance(given, str) else None
+    if isinstance(given, int | float) and not isinstance(given, bool):
+        value, written = float(given), ""
+    elif number:
+        value, written = float(number[1]), number[2]
+    else:
+        raise InputError(f"{expected}, found {given!r:.60}.")
+    if not math.isfinite(value):
+        raise InputError(f"{expected}, found {given!r:.60}.")
+    found = _as_in_names(written) if written else unit
+    if found is None:
+        raise InputError(f"{expected}, found {given!r:.60} without a unit.")
+    if found not in units:
+        known = ", ".join(one.replace("_", " ") for one in units)
+        raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
+    return convert(value, found, to)
+
+
+def _as_in_names(written: str) -> str:
+    """``kg m²``, ``kg·m^2`` and ``kg*m2`` are ``kg_m2``."""
+    plain = written.replace("²", "2").replace("^", "")
+    return "_".join(re.split(r"[\s·*_]+", plain.strip()))
+
+
+def other_names(name: str) -> dict[str, str | None]:
+    """Names under which a quantity may be given, and the unit that each states.
+
+    Parameters
+    ----------
+    name
+        The usual name with its unit, such as ``width_cm``.
+
+    Returns
+    -------
+    ``{"width": None, "width_m": "m", "width_cm": "cm", …}``; None where the unit stands beside the
+    number.
+    """
+    stem, unit = split_name(name)
+    units = DIMENSIONS[dimension_of(unit)]
+    return {stem: None, **{f"{stem}_{one}": one for one in units}}
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """Split a name such as ``inertia_kg_m2`` into what it names and its unit."""
+    for units in (_INERTIAS, _MASSES, _LENGTHS):
+        for unit in units:
+            if name.endswith(f"_{unit}"):
+                return name.removesuffix(f"_{unit}"), unit
+    raise ValueError(f"{name} names no unit")

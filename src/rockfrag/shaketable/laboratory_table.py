@@ -10,16 +10,15 @@ survived, ``upper`` the one that overturned; a test that did not overturn has ``
 where it is not ``lower``, and ``motion`` the input motion where it is not ``<event>_<floor>``.
 """
 
-import csv
 import math
 import os
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.shaketable.tests_table import BODIES, CENSORED, PEDESTALS, as_tests_table
+from rockfrag.tabular import read_cells
 from rockfrag.units import STANDARD_GRAVITY
 
 _TEXT = (
@@ -51,13 +50,12 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
     InputError
         If the file cannot be read or a field makes no sense; the message names line and column.
     """
-    lines = _lines(path)
+    lines = read_cells(path)
     if not lines:
         raise InputError(
             f"{path}: holds no table; the first line that is no comment is its header."
         )
     (_, header), rows = lines[0], lines[1:]
-    header = [name.strip() for name in header]
     unit = _unit(str(path), header)
     tests = []
     seen: dict[tuple[str, str], int] = {}
@@ -67,7 +65,7 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
                 f"{path}, line {line}: has {len(fields)} fields, but the header has {len(header)}; "
                 "put a remark that holds commas in double quotes."
             )
-        row = {name: field.strip() for name, field in zip(header, fields, strict=True)}
+        row = dict(zip(header, fields, strict=True))
         test = _test(_Row(f"{path}, line {line}", row), unit)
         key = (row["test"], row["repetition"])
         if key in seen:
@@ -78,21 +76,6 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
         seen[key] = line
         tests.append(test)
     return as_tests_table(tests)
-
-
-def _lines(path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
-    """Rows of a CSV file without comments and empty lines, each with the number of its line."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: is not UTF-8 text; save the table as CSV in UTF-8.") from error
-    return [
-        (number, next(csv.reader([line])))
-        for number, line in enumerate(text.splitlines(), start=1)
-        if line.strip() and not line.startswith("#")
-    ]
 
 
 def _unit(path: str, header: list[str]) -> str:

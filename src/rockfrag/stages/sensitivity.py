@@ -3,7 +3,7 @@
 from rockfrag.stages.protocol import protocol_of
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
-from rockfrag.study.yaml_file import read_yaml
+from rockfrag.yaml_file import read_yaml
 
 
 def run(job: Job[Study]) -> Results:

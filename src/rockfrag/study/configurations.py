@@ -4,11 +4,9 @@ import os
 from dataclasses import dataclass
 
 from rockfrag.errors import InputError
+from rockfrag.plausibility import check_density
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.study.tables import Row, read_rows
-
-CENTIMETRES_PER_METRE = 100.0
-GRAMS_PER_KILOGRAM = 1000.0
+from rockfrag.tabular import Row, read_rows
 
 
 @dataclass(frozen=True)
@@ -49,20 +47,20 @@ class Configuration:
 def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
     """Read a table of blocks.
 
-    Columns: ``name``, ``width_cm``, ``height_cm``, ``mass_g`` and, where the block is not a
-    uniform rectangle, ``inertia_kg_m2`` (about the centre of gravity), ``cg_height_cm`` and
-    ``cg_offset_cm``.
+    Columns: ``name``, ``width_m``, ``height_m``, ``mass_kg`` and, where the block is not a uniform
+    rectangle, ``inertia_kg_m2`` (about the centre of gravity), ``cg_height_m`` and ``cg_offset_m``.
+    Any other unit may stand in the name of a column (``width_cm``, ``mass_g``), or beside each number
+    where the name has none.
 
     Raises
     ------
     InputError
-        If the file, a column or a cell is not as expected, or a name is given twice.
+        If the file, a column or a cell is not as expected, a name is given twice, or a block cannot
+        be of any solid.
     """
-    rows = read_rows(
-        path,
-        ["name", "width_cm", "height_cm", "mass_g"],
-        ["inertia_kg_m2", "cg_height_cm", "cg_offset_cm"],
-    )
+    shape = ("inertia_kg_m2", "cg_height_m", "cg_offset_m")
+    needed = ("width_m", "height_m", "mass_kg")
+    rows = read_rows(path, ["name", *needed], shape, quantities=(*needed, *shape))
     blocks: dict[str, Block] = {}
     for row in rows:
         name = row.text("name")
@@ -73,21 +71,19 @@ def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
 
 
 def _block(row: Row) -> Block:
-    def has(column: str) -> bool:
-        return bool(row.cells.get(column))
-
     values = {
-        "width": row.positive("width_cm") / CENTIMETRES_PER_METRE,
-        "height": row.positive("height_cm") / CENTIMETRES_PER_METRE,
-        "mass": row.positive("mass_g") / GRAMS_PER_KILOGRAM,
+        "width": row.positive_quantity("width_m"),
+        "height": row.positive_quantity("height_m"),
+        "mass": row.positive_quantity("mass_kg"),
     }
-    if has("inertia_kg_m2"):
-        values["inertia"] = row.positive("inertia_kg_m2")
-    if has("cg_height_cm"):
-        values["cg_height"] = row.positive("cg_height_cm") / CENTIMETRES_PER_METRE
-    if has("cg_offset_cm"):
-        values["cg_offset"] = row.number("cg_offset_cm") / CENTIMETRES_PER_METRE
+    if row.has("inertia_kg_m2"):
+        values["inertia"] = row.positive_quantity("inertia_kg_m2")
+    if row.has("cg_height_m"):
+        values["cg_height"] = row.positive_quantity("cg_height_m")
+    if row.has("cg_offset_m"):
+        values["cg_offset"] = row.quantity("cg_offset_m")
     try:
+        check_density(values["width"], values["height"], values["mass"])
         return Block(**values)
     except InputError as error:
         raise InputError(f"{row.path}, line {row.line}: {error}") from error

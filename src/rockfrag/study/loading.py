@@ -14,7 +14,7 @@ from rockfrag.study.measured_table import (
     measured_table_from,
 )
 from rockfrag.study.study import Study, study_from
-from rockfrag.study.yaml_file import read_yaml
+from rockfrag.yaml_file import read_yaml
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:

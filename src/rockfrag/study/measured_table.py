@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rockfrag.errors import InputError
-from rockfrag.study.validation import check_schema, read_schema
+from rockfrag.schema import checked
 
 TABLE_KEY = "table"
 """Key that only a study of a measured table has."""
@@ -63,7 +63,7 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
         One sentence with the file, the key, what was expected and what was found.
     """
     source = Path(path)
-    check_schema(content, read_schema("measured.schema.json"), str(source))
+    content = checked(content, "measured_table", str(source))
     table = Path(os.path.normpath(source.parent / content[TABLE_KEY]))
     if not table.is_file():
         raise InputError(

@@ -14,10 +14,10 @@ from rockfrag.errors import InputError
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration, read_configurations, read_specimens
 from rockfrag.study.supplementary import Supplementary, supplementary_from
-from rockfrag.study.validation import check_schema, read_schema
 
 GROUND = "ground"
 """Label of the only floor of a study without a building."""
@@ -148,7 +148,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         One sentence with the file, the key or row, what was expected and what was found.
     """
     source = Path(path)
-    check_schema(content, read_schema("study.schema.json"), str(source))
+    content = checked(content, "study", str(source))
     bodies, motions = content["bodies"], content["motions"]
     specimens_file = _file(source, "bodies.specimens", bodies["specimens"])
     configurations_file = _file(source, "bodies.configurations", bodies["configurations"])

@@ -11,7 +11,7 @@ from rockfrag.motions.intensity import pga, pgd, pgv
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.study.configurations import Configuration
-from rockfrag.study.tables import read_rows
+from rockfrag.tabular import read_rows
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
 
 FOLDER = Path(__file__).parent / "printed"

@@ -1,0 +1,85 @@
+"""What looks like a mistake of unit: densities no solid has, sizes and accelerations out of range."""
+
+from rockfrag.errors import InputError
+
+DENSITIES = (20.0, 22_600.0)
+"""Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
+
+DEPTHS = (0.1, 3.0)
+"""Least depth of an object over its width, largest over the longer of width and height: a panel rocking in its
+strong direction, and a long shelf seen from its end."""
+
+LARGEST_SIZE = 20.0
+"""Free-standing objects are hardly taller [m]."""
+
+LARGEST_PEAK = 50.0
+"""No accelerometer has recorded a larger ground acceleration [m/s²]; floors hardly feel more."""
+
+LEAST_PEAK = 0.05
+"""A motion whose peak is below this [m/s²] moves nothing that stands."""
+
+
+def check_density(width: float, height: float, mass: float) -> None:
+    """Refuse a block that no solid can have, whatever its depth, which is not known.
+
+    Parameters
+    ----------
+    width, height
+        Full width and height [m].
+    mass
+        Mass [kg].
+
+    Raises
+    ------
+    InputError
+        If the mass over width, height and any depth within ``DEPTHS`` is outside ``DENSITIES``.
+    """
+    thin = DEPTHS[0] * width
+    thick = DEPTHS[1] * max(width, height)
+    most = mass / (width * height * thin)
+    least = mass / (width * height * thick)
+    if most < DENSITIES[0]:
+        wrong = f"at most {most:.3g} kg/m³ at a depth of {thin:.3g} m, less than any solid"
+    elif least > DENSITIES[1]:
+        wrong = f"at least {least:.3g} kg/m³ at a depth of {thick:.3g} m, more than any solid"
+    else:
+        return
+    raise InputError(
+        f"a block {width:g} m wide, {height:g} m high and of {mass:g} kg would have a density of "
+        f"{wrong}; check the units."
+    )
+
+
+def size_warning(width: float, height: float) -> str:
+    """Say that a block is unusually large, or return an empty text."""
+    if max(width, height) <= LARGEST_SIZE:
+        return ""
+    return f"a block {width:g} m wide and {height:g} m high is unusually large; check the unit"
+
+
+def peak_warning(peak: float, least_uplift: float | None = None) -> str:
+    """Say that a peak acceleration looks like one in g or cm/s², or return an empty text.
+
+    Parameters
+    ----------
+    peak
+        Largest absolute acceleration [m/s²].
+    least_uplift
+        Least acceleration at which any of the bodies starts to rock [m/s²]. A motion that falls short
+        of it, and would not if it were in g, is doubtful too.
+    """
+    from rockfrag.units import STANDARD_GRAVITY
+
+    if peak > LARGEST_PEAK:
+        return (
+            f"the peak acceleration is {peak:.3g} m/s², {peak / STANDARD_GRAVITY:.3g} g; if the motion "
+            "is in cm/s², divide it by 100"
+        )
+    doubtful = least_uplift is not None and peak < least_uplift <= peak * STANDARD_GRAVITY
+    if 0 < peak < LEAST_PEAK or doubtful:
+        short = f", less than the {least_uplift:.3g} m/s² that start rocking" if doubtful else ""
+        return (
+            f"the peak acceleration is {peak:.3g} m/s²{short}; if the motion is in g, multiply it by "
+            f"{STANDARD_GRAVITY:g}"
+        )
+    return ""

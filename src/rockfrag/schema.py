@@ -1,0 +1,186 @@
+"""Checking what a file holds against its schema, with one sentence for the first thing wrong.
+
+The schemas of all files, of a study, a table of measured tests, a building and a shaker, are the
+``$defs`` of ``schema.json``.
+"""
+
+import difflib
+import json
+import math
+import reprlib
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from jsonschema import Draft202012Validator, ValidationError
+from jsonschema.validators import extend
+
+from rockfrag.errors import InputError
+from rockfrag.units import other_names, quantity, split_name
+
+_Schema = Mapping[str, Any]
+
+
+@cache
+def read_schema(name: str) -> dict[str, Any]:
+    """Read the schema of one kind of file: ``study``, ``measured_table``, ``building`` or ``shaker``."""
+    text = files("rockfrag").joinpath("schema.json").read_text(encoding="utf-8")
+    schema: dict[str, Any] = json.loads(text)["$defs"][name]
+    return schema
+
+
+def checked(content: object, name: str, where: str) -> dict[str, Any]:
+    """Check the content of a file against its schema, and return it with quantities in usual units.
+
+    Parameters
+    ----------
+    content
+        The content as read from YAML.
+    name
+        Name of the schema, see :func:`read_schema`; ``description`` of a key says in words what is
+        expected. A key with ``quantity`` may be given in any unit of its dimension.
+    where
+        The file it came from, for the message.
+
+    Raises
+    ------
+    InputError
+        One sentence that names the file, the key, what was expected and what was found.
+    """
+    schema = read_schema(name)
+    try:
+        plain = _in_usual_units(_with_text_keys(content, ""), schema, "")
+        for key, value in _leaves(plain):
+            if isinstance(value, float) and not math.isfinite(value):
+                raise InputError(f"key {key}: expected a finite number, found {value}.")
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    found = sorted(_validator(name).iter_errors(plain), key=_importance)
+    if found:
+        raise InputError(f"{where}: {_sentence(_deepest(found[0]))}")
+    result: dict[str, Any] = plain
+    return result
+
+
+@cache
+def _validator(name: str) -> Draft202012Validator:
+    # JSON knows no difference between 1 and 1.0; a seed or a count is a whole number
+    types = Draft202012Validator.TYPE_CHECKER.redefine(
+        "integer", lambda checker, value: isinstance(value, int) and not isinstance(value, bool)
+    )
+    validator: Draft202012Validator = extend(Draft202012Validator, type_checker=types)(
+        read_schema(name)
+    )
+    return validator
+
+
+def _with_text_keys(value: Any, key: str) -> Any:
+    if isinstance(value, Mapping):
+        for name in value:
+            if not isinstance(name, str):
+                raise InputError(f"key {_joined(key, str(name))}: expected a word in quotes.")
+        return {name: _with_text_keys(inner, _joined(key, name)) for name, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_with_text_keys(inner, f"{key}[{i}]") for i, inner in enumerate(value)]
+    return value
+
+
+def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
+    """Express every quantity in the unit of its usual key, whatever key it was given under."""
+    if not isinstance(value, Mapping):
+        return value
+    properties = schema.get("properties", {})
+    usual = {
+        other: (name, unit)
+        for name, inner in properties.items()
+        if inner.get("quantity")
+        for other, unit in other_names(name).items()
+    }
+    plain: dict[str, Any] = {}
+    for name, inner in value.items():
+        own, unit = usual.get(name, (name, None))
+        if own in plain:
+            raise InputError(f"key {_joined(key, name)}: {own} is given in another unit already.")
+        where = _joined(key, name)
+        if name in usual:
+            plain[own] = _converted(inner, own, unit, where)
+        else:
+            plain[own] = _in_usual_units(inner, properties.get(name, {}), where)
+    return plain
+
+
+def _converted(value: Any, name: str, unit: str | None, key: str) -> Any:
+    if isinstance(value, list):
+        return [_converted(one, name, unit, f"{key}[{i}]") for i, one in enumerate(value)]
+    usual = split_name(name)[1]
+    if not isinstance(value, str) and unit == usual:
+        return value  # the schema says what is wrong with it, if anything
+    try:
+        return quantity(value, usual, unit)
+    except InputError as error:
+        raise InputError(f"key {key}: {error}") from None
+
+
+def _joined(key: str, name: str) -> str:
+    return f"{key}.{name}" if key else name
+
+
+def _leaves(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _leaves(inner, _joined(key, name))
+    elif isinstance(value, list):
+        for i, inner in enumerate(value):
+            yield from _leaves(inner, f"{key}[{i}]")
+    else:
+        yield key, value
+
+
+def _importance(error: ValidationError) -> tuple[int, list[str]]:
+    # a misspelt key is also a missing one: name the misspelling, which is what the user typed
+    rank = {"additionalProperties": 0, "required": 2}.get(str(error.validator), 1)
+    return rank, [str(part) for part in error.absolute_path]
+
+
+def _deepest(error: ValidationError) -> ValidationError:
+    """Of the alternatives of a oneOf, take the errors of the one whose type was meant."""
+    if error.validator not in ("oneOf", "anyOf") or not error.context:
+        return error
+    meant = [inner for inner in error.context if inner.validator not in ("type", "const", "enum")]
+    return _deepest(meant[0]) if meant else error
+
+
+def _key(error: ValidationError, last: str | None = None) -> str:
+    key = ""
+    for part in error.absolute_path:
+        key = f"{key}[{part}]" if isinstance(part, int) else _joined(key, str(part))
+    if last is not None:
+        key = _joined(key, last)
+    return key or "(top level)"
+
+
+def _sentence(error: ValidationError) -> str:
+    schema: _Schema = error.schema if isinstance(error.schema, Mapping) else {}
+    instance: Any = error.instance
+    if error.validator == "additionalProperties" and "properties" in schema:
+        known = sorted(schema["properties"])
+        wrong = sorted(name for name in instance if name not in known)[0]
+        close = difflib.get_close_matches(wrong, known, n=1)
+        hint = f"did you mean {close[0]}?" if close else f"expected one of {', '.join(known)}."
+        return f"key {_key(error, _short(wrong))} is not known; {hint}"
+    if error.validator == "required":
+        missing = next(name for name in schema["required"] if name not in instance)
+        wanted = schema.get("properties", {}).get(missing, {})
+        expected = wanted.get("description", "a value")
+        return f"key {_key(error, missing)} is missing; expected {expected}."
+    expected = schema.get("description", error.message)
+    return f"key {_key(error)}: expected {expected}, found {_short(instance)}."
+
+
+def _short(value: Any) -> str:
+    return value[:60] if isinstance(value, str) and value.isidentifier() else _REPR.repr(value)
+
+
+_REPR = reprlib.Repr()
+_REPR.maxstring = _REPR.maxother = 80

@@ -1,0 +1,178 @@
+"""Reading small CSV tables with errors that name the row and the column."""
+
+import csv
+import math
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rockfrag.errors import InputError
+from rockfrag.units import other_names, quantity, split_name
+
+DELIMITERS = (",", ";", "\t")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One row of a table: its cells by column, and where it stands.
+
+    Attributes
+    ----------
+    path, line
+        The file and the number of the line in it.
+    cells
+        Texts by the usual name of their column.
+    titles
+        Names of the columns as the file has them, where they differ.
+    """
+
+    path: str
+    line: int
+    cells: dict[str, str]
+    titles: dict[str, str] = field(default_factory=dict)
+
+    def error(self, column: str, what: str) -> InputError:
+        """Return an error about one cell, to be raised."""
+        title = self.titles.get(column, column)
+        return InputError(f"{self.path}, line {self.line}, column {title}: {what.rstrip('.')}.")
+
+    def has(self, column: str) -> bool:
+        """Whether a cell holds anything."""
+        return bool(self.cells.get(column))
+
+    def text(self, column: str) -> str:
+        """Return a cell that must not be empty."""
+        value = self.cells.get(column, "")
+        if not value:
+            raise self.error(column, "expected a name, found nothing")
+        return value
+
+    def positive(self, column: str) -> float:
+        """Return a cell that must be a finite number above zero."""
+        value = self.number(column)
+        if value <= 0:
+            raise self.error(column, f"expected a number above 0, found {self.cells[column]}")
+        return value
+
+    def number(self, column: str) -> float:
+        """Return a cell that must be a finite number."""
+        text = self.cells.get(column, "")
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise self.error(column, f"expected a number, found {text or 'nothing'}")
+        return value
+
+    def quantity(self, column: str) -> float:
+        """Return a cell in the unit of the column's usual name, whatever unit it is given in."""
+        usual = split_name(column)[1]
+        text = self.cells.get(column, "")
+        if not text:
+            raise self.error(column, f"expected a number of {usual}, found nothing")
+        title = self.titles.get(column, column)
+        unit = other_names(column)[title]
+        try:
+            return quantity(text, usual, unit)
+        except InputError as error:
+            raise self.error(column, str(error)) from None
+
+    def positive_quantity(self, column: str) -> float:
+        """Return a quantity that must be above zero."""
+        value = self.quantity(column)
+        if value <= 0:
+            raise self.error(column, f"expected more than 0, found {self.cells[column]}")
+        return value
+
+
+def read_rows(
+    path: str | os.PathLike[str],
+    required: Iterable[str],
+    optional: Iterable[str] = (),
+    *,
+    quantities: Sequence[str] = (),
+    least: int = 1,
+) -> list[Row]:
+    """Read a CSV file with a header line; lines that start with ``#`` are comments.
+
+    Parameters
+    ----------
+    path
+        The file; cells are separated by commas, semicolons or tabulators.
+    required, optional
+        Names of columns.
+    quantities
+        Those of them that may be given in any unit: ``width_m`` stands for ``width_cm`` too, or for
+        ``width`` with the unit in each cell.
+    least
+        Least number of rows.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, has too few rows, lacks a required column, has one that is not
+        known, or a row has more or fewer cells than the header.
+    """
+    needed, known = list(required), [*required, *optional]
+    lines = read_cells(path)
+    if not lines or len(lines) <= least:
+        rows = "no row" if least == 0 else "at least one row"
+        raise InputError(f"{path}: expected a header line and {rows}, found {len(lines)} lines.")
+    (_, header), body = lines[0], lines[1:]
+    usual = {other: name for name in quantities for other in other_names(name)}
+    names = [usual.get(title, title) for title in header]
+    for name, title in zip(names, header, strict=True):
+        if name not in known:
+            raise InputError(
+                f"{path}: column {title[:60]!r} is not known; expected {', '.join(known)}."
+            )
+        if names.count(name) > 1:
+            raise InputError(f"{path}: column {title!r} is given twice.")
+    for name in needed:
+        if name not in names:
+            raise InputError(f"{path}: column {name} is missing; expected {', '.join(needed)}.")
+    titles = {name: title for name, title in zip(names, header, strict=True) if name != title}
+    rows = []
+    for line, cells in body:
+        if len(cells) != len(header):
+            raise InputError(
+                f"{path}, line {line}: expected {len(header)} cells as in the header, found "
+                f"{len(cells)}; a text that holds the separator needs double quotes."
+            )
+        rows.append(Row(str(path), line, dict(zip(names, cells, strict=True)), titles))
+    return rows
+
+
+def read_cells(path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
+    """Cells of every line that is neither empty nor a comment, with the number of the line.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or is not CSV in UTF-8.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: is not UTF-8 text (byte {error.start}); save the table as CSV in UTF-8."
+        ) from error
+    numbered = [
+        (number, line)
+        for number, line in enumerate(text.splitlines(), start=1)
+        if line.strip() and not line.startswith("#")
+    ]
+    if not numbered:
+        return []
+    delimiter = max(DELIMITERS, key=numbered[0][1].count)
+    try:
+        return [
+            (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))])
+            for number, line in numbered
+        ]
+    except csv.Error as error:
+        raise InputError(f"{path}: is not a readable CSV file ({error}).") from error
