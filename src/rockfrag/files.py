@@ -1,12 +1,58 @@
 """Writing files so that they appear whole or not at all, and tables so that they are reproducible."""
 
+import hashlib
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pandas as pd
+
+from rockfrag.errors import InputError
+
+LONGEST_NAME = 80
+"""Characters of a name, and of the file name made of it."""
+
+
+def file_name(name: str) -> str:
+    """Make a name that users gave into one that files may bear on every system.
+
+    ASCII letters, digits, ``-``, ``_`` and ``.`` stay, other characters become ``-``; a digest follows
+    where letters of other scripts were lost, so that their names stay different.
+
+    Raises
+    ------
+    InputError
+        If the name is too long, cannot be printed, or holds no letter or digit.
+    """
+    if len(name) > LONGEST_NAME or not name.isprintable() or not any(c.isalnum() for c in name):
+        raise InputError(
+            f"expected a name with a letter or digit and of at most {LONGEST_NAME} characters, "
+            f"found {name[:LONGEST_NAME]!r}."
+        )
+    plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in name)
+    # neither hidden nor an option, and never a folder
+    if plain[0] in ".-":
+        plain = f"_{plain[1:]}"
+    if name.isascii():
+        return plain
+    return f"{plain}-{hashlib.sha256(name.encode()).hexdigest()[:6]}"
+
+
+def distinct_file_names(names: Iterable[str]) -> None:
+    """Check that names can be made into files that stay apart, on systems that ignore case too.
+
+    Raises
+    ------
+    InputError
+        If a name is given twice, cannot be a file's, or two would share one.
+    """
+    found: dict[str, str] = {}
+    for name in names:
+        other = found.setdefault(file_name(name).casefold(), name)
+        if other != name:
+            raise InputError(f"{name} and {other} would share a file name; rename one.")
 
 
 @contextmanager

@@ -118,8 +118,9 @@ def read_rows(
     needed, known = list(required), [*required, *optional]
     lines = read_cells(path)
     if not lines or len(lines) <= least:
-        rows = "no row" if least == 0 else "at least one row"
-        raise InputError(f"{path}: expected a header line and {rows}, found {len(lines)} lines.")
+        raise InputError(
+            f"{path}: expected a header line and {least} rows or more, found {len(lines)} lines."
+        )
     (_, header), body = lines[0], lines[1:]
     usual = {other: name for name in quantities for other in other_names(name)}
     names = [usual.get(title, title) for title in header]

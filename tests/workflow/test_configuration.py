@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.study.loading import load_study
+from rockfrag.study.loading import load_study, study_from
 
 from .conftest import SPECIMENS, study_content, write_study
 
@@ -75,9 +75,14 @@ def test_a_wrong_key_or_value_is_named_with_what_was_expected(
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        (SPECIMENS.replace("12.4,37.2", "-12.4,37.2"), ["line 2", "width_cm", "above 0", "-12.4"]),
-        (SPECIMENS.replace("width_cm", "width_inch"), ["width_inch", "width_cm"]),
-        (SPECIMENS.replace("2172", "2 kg"), ["line 2", "mass_g", "2 kg"]),
+        (
+            SPECIMENS.replace("12.4,37.2", "-12.4,37.2"),
+            ["line 2", "width_cm", "more than 0", "-12.4"],
+        ),
+        (SPECIMENS.replace("width_cm", "width_inch"), ["width_inch", "width_m"]),
+        (SPECIMENS.replace("2172", "2 cm"), ["line 2", "mass_g", "2 cm"]),
+        (SPECIMENS.replace("2172", "2"), ["line 2", "density", "less than any solid"]),
+        (SPECIMENS.replace("mass_g", "mass"), ["line 2", "column mass", "without a unit"]),
         (SPECIMENS.replace("2172", "nan"), ["line 2", "mass_g"]),
         (SPECIMENS.replace("2172", "1e400"), ["line 2", "mass_g"]),
         (SPECIMENS.replace("T2,", "T1,"), ["line 3", "T1", "twice"]),
@@ -152,11 +157,9 @@ ANYTHING = st.recursive(
 def test_no_value_of_any_key_gives_anything_but_a_study_or_one_sentence(
     study_folder: Path, key: str, value: object
 ):
-    from rockfrag.study.loading import checked_study
-
     content = {**study_content(), key: value}
     try:
-        checked_study(content, study_folder / "study.yaml")
+        study_from(content, study_folder / "study.yaml")
     except InputError as error:
         assert "\n" not in str(error)
         assert key in str(error)

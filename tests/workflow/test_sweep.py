@@ -54,7 +54,7 @@ def test_the_digest_of_a_stage_is_of_what_it_imports_and_of_nothing_else():
     assert not rooms & {"fragility", "pedestal", "report", "sections", "thesis"}
     assert "fragility" in {path.parent.name for path in source_files("rockfrag.stages.fragility")}
     names = {path.name for path in source_files("rockfrag.stages.pedestal")}
-    assert {"study.schema.json", "mixed.py", "__init__.py"} <= names
+    assert {"schema.json", "mixed.py", "__init__.py"} <= names
     assert source_digest("rockfrag.stages.sweep") != source_digest("rockfrag.stages.fragility")
 
 

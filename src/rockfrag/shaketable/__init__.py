@@ -15,7 +15,7 @@ if TYPE_CHECKING:
         step_protocol,
         tests_from_sweep,
     )
-    from rockfrag.shaketable.settings import make_protocol, make_shaker, read_shaker
+    from rockfrag.shaketable.settings import make_shaker, read_shaker
     from rockfrag.shaketable.shaker import (
         Demand,
         Shaker,
@@ -42,7 +42,6 @@ __all__ = [
     "filter_effect",
     "first_overturning",
     "limits_g",
-    "make_protocol",
     "make_shaker",
     "produced_motion",
     "read_measured",
@@ -73,7 +72,6 @@ _HOMES = {
         "tests_from_sweep",
     ),
     "settings": (
-        "make_protocol",
         "make_shaker",
         "read_shaker",
     ),

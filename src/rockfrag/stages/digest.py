@@ -43,7 +43,7 @@ def source_files(module: str) -> tuple[Path, ...]:
         waiting += _imports(name)
     sources = {_file(name) for name in found}
     sources |= {_file(parent) for name in found for parent in _packages(name)}
-    folders = {path.parent for path in sources} - {ROOT}
+    folders = {path.parent for path in sources}
     data = {path for folder in folders for path in _data(folder)}
     return tuple(sorted(sources | data))
 

@@ -10,7 +10,7 @@ from rockfrag.study.study import Study
 def run(job: Job[Study]) -> Results:
     """Yield curves, survival windows and the comparison of measures; write curves for export."""
     from rockfrag.fragility.empirical import survival_windows
-    from rockfrag.fragility.sweeps import fragility_table, record_set_hash, with_measures
+    from rockfrag.fragility.sweeps import fragility_tables, record_set_hash, with_measures
 
     settings, measures = job.study.fragility, job.table("measures")
     sweep = pd.concat([job.table(name) for name in job.study.sweep_tables], ignore_index=True)
@@ -18,8 +18,10 @@ def run(job: Job[Study]) -> Results:
     record_set = record_set_hash(motions)
     columns = list(settings.measures)
     measured = with_measures(sweep, measures, columns)
-    curves = fragility_table(measured, columns, record_set=record_set, level=settings.confidence)
-    yield "fragility", curves
+    found = fragility_tables(measured, columns, record_set=record_set, level=settings.confidence)
+    yield "fragility", found.curves
+    yield "fragility_bands", found.bands
+    yield "fragility_bins", found.bins
     by = ["configuration", "event", "floor", "motion"]
     yield "survival_windows", survival_windows(measured, by=by)
     choice = measure_choice(sweep, measures, settings.confidence, job.study.seed)
@@ -32,7 +34,7 @@ def run(job: Job[Study]) -> Results:
         exports.mkdir(parents=True, exist_ok=True)
         job.log.info("exported %s", ", ".join(export_curves(on_ground, exports)) or "no curve")
     best = choice.loc[choice["recommended"], "im"]
-    job.log.info("%d curves; best measures: %s", len(curves), ", ".join(dict.fromkeys(best)))
+    job.log.info("%d curves; best measures: %s", len(found.curves), ", ".join(dict.fromkeys(best)))
 
 
 def ground_floor(study: Study) -> str | None:
@@ -46,6 +48,8 @@ STAGE = Stage(
     inputs=lambda study: ("measures", "motions/floors.parquet", *study.sweep_tables),
     outputs=lambda study: (
         "fragility",
+        "fragility_bands",
+        "fragility_bins",
         "survival_windows",
         "measure_choice",
         *([] if ground_floor(study) is None else ["fragility_ground", "exports/"]),

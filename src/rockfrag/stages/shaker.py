@@ -21,12 +21,11 @@ def heaviest(configurations: Sequence[Configuration]) -> float:
 
 def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
     """What each motion asks of the study's shaker, see :func:`rockfrag.shaketable.shaker_table`."""
-    from rockfrag.shaketable.settings import read_shaker
     from rockfrag.shaketable.shaker import shaker_table
 
     if study.more.shaker is None:
         raise ValueError("the study has no shaker")
-    return shaker_table(read_shaker(study.more.shaker), motions, heaviest(study.configurations))
+    return shaker_table(study.more.shaker, motions, heaviest(study.configurations))
 
 
 def limited_tests(sweeps: pd.DataFrame, protocol: Protocol, limits: pd.DataFrame) -> pd.DataFrame:

@@ -10,6 +10,7 @@ from rockfrag.study.study import Study
 
 def run(job: Job[Study]) -> Results:
     """Yield the tests in every reading, the shaker's limits, and the forces in each test."""
+    from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
     from rockfrag.shaketable.readings import READING, tests_from_sweep
     from rockfrag.stages.protocol import protocol_of
 
@@ -24,6 +25,7 @@ def run(job: Job[Study]) -> Results:
         tests = pd.concat([tests, limited_tests(sweeps, protocol, limits)], ignore_index=True)
     yield "tests", tests
     laboratory = tests[tests["reading"] == READING]
+    yield "mean_amplitudes", mean_amplitudes(laboratory)
     by_name = {motion.name: motion for motion in motions}
     yield "validity", validity_table(laboratory, study.configurations, by_name)
     censored = int((laboratory["censored"] != "none").sum())
@@ -36,10 +38,11 @@ STAGE = Stage(
     inputs=lambda study: ("motions/floors.parquet", *study.sweep_tables),
     files=lambda study: [
         *study.body_files,
-        *([] if study.more.shaker is None else [str(study.more.shaker)]),
+        *([] if study.more.shaker is None else [str(study.more.shaker_file)]),
     ],
     outputs=lambda study: (
         "tests",
+        "mean_amplitudes",
         "validity",
         *([] if study.more.shaker is None else ["shaker"]),
     ),

@@ -33,13 +33,13 @@ def validity_table(
     """
     from rockfrag.rocking import simulate
 
-    bodies = {(one.object, one.label): one.body for one in configurations}
+    bodies = {one.name: one.body for one in configurations}
     known = tests[tests["amplitude_g"].notna()]
     rows = []
     for test in known.to_dict("records"):
         motion = motions[test["motion"]]
         scale = test["amplitude_g"] * STANDARD_GRAVITY / motion.pga
-        body = bodies[(test["object"], test["pedestal"])]
+        body = bodies[test["configuration"]]
         response = simulate(body, motion.acceleration * scale, motion.dt)
         rows.append(
             (

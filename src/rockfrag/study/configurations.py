@@ -4,6 +4,7 @@ import os
 from dataclasses import dataclass
 
 from rockfrag.errors import InputError
+from rockfrag.files import distinct_file_names, file_name
 from rockfrag.plausibility import check_density
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.tabular import Row, read_rows
@@ -40,8 +41,8 @@ class Configuration:
 
     @property
     def slug(self) -> str:
-        """The name as a file name: letters, digits, ``-``, ``_`` and ``.`` only."""
-        return "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in self.name)
+        """The name as a file name."""
+        return file_name(self.name)
 
 
 def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
@@ -66,6 +67,10 @@ def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
         name = row.text("name")
         if name in blocks:
             raise row.error("name", f"{name} is given twice")
+        try:
+            distinct_file_names([*blocks, name])
+        except InputError as error:
+            raise row.error("name", str(error)) from None
         blocks[name] = _block(row)
     return blocks
 
@@ -92,7 +97,9 @@ def _block(row: Row) -> Block:
 def read_configurations(
     path: str | os.PathLike[str], blocks: dict[str, Block]
 ) -> list[Configuration]:
-    """Read which block stands on which: columns ``name``, ``object``, ``pedestal`` (may be empty).
+    """Read which block stands on which.
+
+    Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none.
 
     Raises
     ------
@@ -101,9 +108,9 @@ def read_configurations(
         the object does not fit on the pedestal.
     """
     found: dict[str, Configuration] = {}
-    slugs: dict[str, str] = {}
-    for row in read_rows(path, ["name", "object", "pedestal"]):
-        name, object_name, pedestal = row.text("name"), row.text("object"), row.cells["pedestal"]
+    for row in read_rows(path, ["name", "object"], ["pedestal"]):
+        name, object_name = row.text("name"), row.text("object")
+        pedestal = row.cells.get("pedestal", "")
         for column, block in (("object", object_name), ("pedestal", pedestal)):
             if block and block not in blocks:
                 known = ", ".join(blocks)
@@ -113,10 +120,13 @@ def read_configurations(
         try:
             statue = blocks[object_name]
             body = Stack(blocks[pedestal], statue) if pedestal else statue
+            distinct_file_names([*found, name])
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
-        one = Configuration(name, object_name, pedestal, body)
-        if slugs.setdefault(one.slug, name) != name:
-            raise row.error("name", f"{name} and {slugs[one.slug]} would share a file name")
-        found[name] = one
+        found[name] = Configuration(name, object_name, pedestal, body)
     return list(found.values())
+
+
+def each_alone(blocks: dict[str, Block]) -> list[Configuration]:
+    """Every block as an object that stands alone."""
+    return [Configuration(name, name, "", block) for name, block in blocks.items()]

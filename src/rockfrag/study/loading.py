@@ -1,19 +1,36 @@
-"""Reading a study before anything runs, with every check that can be made beforehand."""
+"""Reading a study before anything runs, with every check that can be made beforehand.
+
+Nothing is checked twice: :func:`any_study` makes the one object that command line, rules and jobs
+use. Only what is in the user's records is left to :mod:`rockfrag.study.records`, as it takes seconds.
+"""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
+from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
-from rockfrag.motions.processing import check_steps
-from rockfrag.shaketable.laboratory_table import read_measured
-from rockfrag.shaketable.settings import read_shaker
+from rockfrag.files import distinct_file_names
+from rockfrag.records.catalogue import read_catalogue
+from rockfrag.schema import checked
+from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.configurations import (
+    Configuration,
+    each_alone,
+    read_configurations,
+    read_specimens,
+)
 from rockfrag.study.measured_table import (
     MeasuredTable,
     is_measured_table,
     measured_table_from,
 )
-from rockfrag.study.study import Study, study_from
+from rockfrag.study.paths import existing_file
+from rockfrag.study.study import FragilitySettings, Study
+from rockfrag.study.supplementary import supplementary_from
 from rockfrag.yaml_file import read_yaml
 
 
@@ -25,7 +42,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     InputError
         One sentence with the file, the key or row, what was expected and what was found.
     """
-    return checked_study(read_yaml(path), path)
+    return study_from(read_yaml(path), path)
 
 
 def load_any(path: str | os.PathLike[str]) -> Study | MeasuredTable:
@@ -49,10 +66,10 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study
     """
     if is_measured_table(content):
         return measured_table_from(content, path)
-    return checked_study(content, path)
+    return study_from(content, path)
 
 
-def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
+def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
     """Make a study of a configuration that was read from ``path``, and check what it refers to.
 
     Raises
@@ -60,35 +77,150 @@ def checked_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> S
     InputError
         As :func:`load_study`.
     """
-    study = study_from(content, path)
+    source = Path(path)
+    content = checked(content, "study", str(source))
+    bodies, motions = content["bodies"], content["motions"]
+    specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
+    specimens = read_specimens(specimens_file)
+    configurations_file, known = None, each_alone(specimens)
+    if "configurations" in bodies:
+        name = bodies["configurations"]
+        configurations_file = existing_file(source, "bodies.configurations", name)
+        known = read_configurations(configurations_file, specimens)
+    building = content.get("building")
+    building_file = None if building is None else existing_file(source, "building", building)
+    catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
+    study = Study(
+        name=content["study"],
+        title=content["title"],
+        seed=content["seed"],
+        source=source,
+        catalogue_file=catalogue_file,
+        catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
+        processing=_steps(source, motions.get("processing", ())),
+        building_file=building_file,
+        building=None if building_file is None else read_building(building_file),
+        specimens_file=specimens_file,
+        configurations_file=configurations_file,
+        specimens=specimens,
+        configurations=_chosen(source, known, bodies.get("use")),
+        amplitudes=_amplitudes(source, content["amplitudes"]),
+        protocol_step_percent=float(content["protocol"]["step_percent"]),
+        fragility=FragilitySettings(
+            measures=tuple(content["fragility"]["measures"]),
+            confidence=content["fragility"]["confidence"],
+        ),
+        compare_with=content.get("compare_with"),
+        more=supplementary_from(content, source),
+    )
+    _check_names(study)
+    _check_records_exist(study)
+    _check_optional_parts(study)
+    return study
+
+
+def _amplitudes(source: Path, content: Mapping[str, float]) -> Amplitudes:
     try:
-        check_steps(study.processing)
+        return Amplitudes(**content)
     except InputError as error:
-        raise InputError(f"{study.source}: key motions.processing: {error}") from error
-    _check_varied_floors(study)
-    if study.more.shaker is not None:
-        read_shaker(study.more.shaker)
+        raise InputError(f"{source}: {error}") from error
+
+
+def _steps(source: Path, steps: Sequence[Mapping[str, Any]]) -> tuple[Mapping[str, Any], ...]:
+    if steps:
+        # the steps need SciPy and ObsPy, which a study without any need not wait for
+        from rockfrag.motions.processing import check_steps
+
+        try:
+            check_steps(steps)
+        except InputError as error:
+            raise InputError(f"{source}: key motions.processing: {error}") from error
+    return tuple(steps)
+
+
+def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
+    if names is None:
+        return table
+    known = list(table["name"])
+    for i, name in enumerate(names):
+        if name not in known:
+            raise InputError(
+                f"{source}: key motions.use[{i}]: expected one of the motions {', '.join(known)}, "
+                f"found {name}."
+            )
+    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
+
+
+def _chosen(
+    source: Path, known: Sequence[Configuration], names: Sequence[str] | None
+) -> tuple[Configuration, ...]:
+    by_name = {one.name: one for one in known}
+    for i, name in enumerate(names or ()):
+        if name not in by_name:
+            raise InputError(
+                f"{source}: key bodies.use[{i}]: expected one of the configurations "
+                f"{', '.join(by_name)}, found {name}."
+            )
+    return tuple(by_name[name] for name in names) if names is not None else tuple(known)
+
+
+def _check_names(study: Study) -> None:
+    """Refuse names of motions and floors that could not stand in tables and file names."""
+    for where, names in (
+        (f"{study.catalogue_file}, column name", list(study.catalogue["name"])),
+        (f"{study.building_file}: key floors", list(study.floors)),
+    ):
+        try:
+            distinct_file_names(names)
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+
+
+def _check_records_exist(study: Study) -> None:
+    for path in study.own_records:
+        if not path.is_file():
+            raise InputError(
+                f"{study.catalogue_file}: column file: expected an existing file, found no {path}."
+            )
+
+
+def _check_optional_parts(study: Study) -> None:
     if study.more.explanation is not None and not study.has_pairs:
         raise InputError(
             f"{study.source}: key explanation: expected an object tested with and without a pedestal "
             "among the configurations."
         )
+    if study.more.sensitivity is not None:
+        _check_varied_building(study)
     if study.more.measured_tests is not None:
-        read_measured(study.more.measured_tests)
-    return study
+        _check_measured_tests(study, study.more.measured_tests)
 
 
-def _check_varied_floors(study: Study) -> None:
-    """Raise where the sensitivity names floors or levels that the building does not have."""
+def _check_varied_building(study: Study) -> None:
+    """Raise where the sensitivity has no building, or names floors or levels that it does not have."""
+    where = f"{study.source}: key building_sensitivity"
     if study.building is None:
-        return
-    storeys = study.building.storeys
+        raise InputError(f"{where}: expected the key building too, which it varies.")
     for i, levels in enumerate((study.more.sensitivity or {}).get("floors", ())):
         for label, level in levels.items():
-            where = f"{study.source}: key building_sensitivity.floors[{i}].{label}"
+            key = f"{where}.floors[{i}].{label}"
             if label not in study.floors:
                 raise InputError(
-                    f"{where}: expected a floor of the building, one of {', '.join(study.floors)}."
+                    f"{key}: expected a floor of the building, one of {', '.join(study.floors)}."
                 )
-            if level > storeys:
-                raise InputError(f"{where}: expected a level up to {storeys}, found {level}.")
+            if level > study.building.storeys:
+                raise InputError(
+                    f"{key}: expected a level up to {study.building.storeys}, found {level}."
+                )
+
+
+def _check_measured_tests(study: Study, path: Path) -> None:
+    from rockfrag.shaketable.laboratory_table import read_measured
+
+    known = list(study.specimens)
+    for name in dict.fromkeys(read_measured(path)["object"]):
+        if name not in known:
+            raise InputError(
+                f"{path}: column object: expected one of the specimens {', '.join(known)}, "
+                f"found {name}."
+            )

@@ -8,6 +8,7 @@ from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.schema import checked
+from rockfrag.tabular import read_cells
 
 TABLE_KEY = "table"
 """Key that only a study of a measured table has."""
@@ -71,6 +72,7 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
             "there, or name yours."
         )
     columns = content["columns"]
+    _check_columns(source, table, content)
     return MeasuredTable(
         name=content["study"],
         title=content["title"],
@@ -85,3 +87,28 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
         confidence=content["confidence"],
         replicates=content.get("replicates", 200),
     )
+
+
+def _check_columns(source: Path, table: Path, content: Mapping[str, Any]) -> None:
+    """Refuse columns that the table does not have."""
+    lines = read_cells(table)
+    header = lines[0][1] if lines else []
+    columns = content["columns"]
+    wanted = {
+        f"columns.{key}": columns[key]
+        for key in ("overturned", "motion", "event")
+        if key in columns
+    }
+    wanted |= {f"columns.given[{i}]": name for i, name in enumerate(columns.get("given", ()))}
+    wanted |= {
+        f"measures.{measure}[{i}]": factor
+        for measure, factors in content["measures"].items()
+        for i, factor in enumerate(factors)
+        if isinstance(factor, str)
+    }
+    for key, name in wanted.items():
+        if name not in header:
+            raise InputError(
+                f"{source}: key {key}: expected a column of {table}, one of {', '.join(header)}, "
+                f"found {name}."
+            )

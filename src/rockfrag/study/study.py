@@ -1,7 +1,6 @@
-"""A study: its configuration file read, checked, and turned into what the stages need."""
+"""A study: what its configuration says, read once, checked, and as the stages need it."""
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,15 +8,11 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.building.model import ShearBuilding
-from rockfrag.building.settings import read_building
-from rockfrag.errors import InputError
-from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block, Stack
-from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.configurations import Configuration, read_configurations, read_specimens
-from rockfrag.study.supplementary import Supplementary, supplementary_from
+from rockfrag.study.configurations import Configuration
+from rockfrag.study.supplementary import Supplementary
 
 GROUND = "ground"
 """Label of the only floor of a study without a building."""
@@ -36,7 +31,7 @@ class FragilitySettings:
 
 @dataclass(frozen=True)
 class Study:
-    """Everything that a study's configuration says, checked.
+    """Everything that a study's configuration says, checked; see :mod:`rockfrag.study.loading`.
 
     Attributes
     ----------
@@ -51,7 +46,8 @@ class Study:
     building_file, building
         Path of the building whose floors are shaken, and the building; None for ground motions alone.
     specimens_file, configurations_file, specimens
-        Paths of the tables of bodies, and the blocks by name.
+        Paths of the tables of bodies, the second None where each block stands alone, and the blocks by
+        name.
     configurations
         What is tested, in order.
     amplitudes
@@ -76,7 +72,7 @@ class Study:
     building_file: Path | None
     building: ShearBuilding | None
     specimens_file: Path
-    configurations_file: Path
+    configurations_file: Path | None
     specimens: Mapping[str, Block]
     configurations: tuple[Configuration, ...]
     amplitudes: Amplitudes
@@ -84,10 +80,6 @@ class Study:
     fragility: FragilitySettings
     compare_with: str | None
     more: Supplementary
-
-    def configuration(self, slug: str) -> Configuration:
-        """Return the configuration whose file name is ``slug``."""
-        return next(one for one in self.configurations if one.slug == slug)
 
     @property
     def has_pairs(self) -> bool:
@@ -106,7 +98,7 @@ class Study:
     @property
     def body_files(self) -> list[str]:
         """Paths of the tables of bodies."""
-        return [str(self.specimens_file), str(self.configurations_file)]
+        return [str(path) for path in (self.specimens_file, self.configurations_file) if path]
 
     @property
     def sweep_tables(self) -> list[str]:
@@ -127,95 +119,15 @@ class Study:
         """Stacks tested, by the name of their configuration."""
         return {one.name: one.body for one in self.configurations if isinstance(one.body, Stack)}
 
+    @property
+    def own_records(self) -> list[Path]:
+        """Files of the user's own records."""
+        folder = self.catalogue_file.parent
+        own = self.catalogue["file"][self.catalogue["source"] == "folder"]
+        return list(dict.fromkeys(folder / name.partition("#")[0] for name in own))
+
     def record_files(self, records: str) -> list[str]:
         """Files that must exist before the records can be read, fetched ones under ``records``."""
         wheels = self.catalogue["source"].isin(list(WHEELS))
         fetched = [f"{records}/{name}/{PROVENANCE}" for name in self.catalogue["source"][wheels]]
-        folder = self.catalogue_file.parent
-        own = self.catalogue["file"][self.catalogue["source"] == "folder"]
-        return [*dict.fromkeys(fetched), *(str(folder / name.partition("#")[0]) for name in own)]
-
-
-def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study:
-    """Make a study of a configuration that was read from ``path``.
-
-    Steps of processing and the building are left to :func:`rockfrag.study.loading.checked_study`,
-    which needs the packages that carry them out.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key or row, what was expected and what was found.
-    """
-    source = Path(path)
-    content = checked(content, "study", str(source))
-    bodies, motions = content["bodies"], content["motions"]
-    specimens_file = _file(source, "bodies.specimens", bodies["specimens"])
-    configurations_file = _file(source, "bodies.configurations", bodies["configurations"])
-    specimens = read_specimens(specimens_file)
-    known = read_configurations(configurations_file, specimens)
-    building = content.get("building")
-    building_file = None if building is None else _file(source, "building", building)
-    try:
-        amplitudes = Amplitudes(**content["amplitudes"])
-    except InputError as error:
-        raise InputError(f"{source}: {error}") from error
-    catalogue_file = _file(source, "motions.catalogue", motions["catalogue"])
-    return Study(
-        name=content["study"],
-        title=content["title"],
-        seed=content["seed"],
-        source=source,
-        catalogue_file=catalogue_file,
-        catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
-        processing=tuple(motions.get("processing", ())),
-        building_file=building_file,
-        building=None if building_file is None else read_building(building_file),
-        specimens_file=specimens_file,
-        configurations_file=configurations_file,
-        specimens=specimens,
-        configurations=_chosen(source, known, bodies.get("use")),
-        amplitudes=amplitudes,
-        protocol_step_percent=float(content["protocol"]["step_percent"]),
-        fragility=FragilitySettings(
-            measures=tuple(content["fragility"]["measures"]),
-            confidence=content["fragility"]["confidence"],
-        ),
-        compare_with=content.get("compare_with"),
-        more=supplementary_from(content, source),
-    )
-
-
-def _file(source: Path, key: str, name: str) -> Path:
-    path = Path(os.path.normpath(source.parent / name))
-    if not path.is_file():
-        raise InputError(f"{source}: key {key}: expected an existing file, found no {path}.")
-    return path
-
-
-def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
-    if names is None:
-        return table
-    known = list(table["name"])
-    for i, name in enumerate(names):
-        if name not in known:
-            raise InputError(
-                f"{source}: key motions.use[{i}]: expected one of the motions {', '.join(known)}, "
-                f"found {name}."
-            )
-    return table.set_index("name", drop=False).loc[list(names)].reset_index(drop=True)
-
-
-def _chosen(
-    source: Path, known: Sequence[Configuration], names: Sequence[str] | None
-) -> tuple[Configuration, ...]:
-    if names is None:
-        return tuple(known)
-    by_name = {one.name: one for one in known}
-    for i, name in enumerate(names):
-        if name not in by_name:
-            raise InputError(
-                f"{source}: key bodies.use[{i}]: expected one of the configurations "
-                f"{', '.join(by_name)}, found {name}."
-            )
-    return tuple(by_name[name] for name in names)
+        return [*dict.fromkeys(fetched), *(str(path) for path in self.own_records)]

@@ -1,12 +1,13 @@
-"""What a study may ask for beyond its 72 tests: shaker, measured tests, sensitivity, explanation."""
+"""What a study may ask for beyond its tests: shaker, measured tests, sensitivity, explanation."""
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError
+from rockfrag.shaketable.settings import read_shaker
+from rockfrag.shaketable.shaker import Shaker
+from rockfrag.study.paths import existing_file
 
 
 @dataclass(frozen=True)
@@ -53,8 +54,8 @@ class Supplementary:
 
     Attributes
     ----------
-    shaker
-        YAML file of a shaking table whose limits are read beside the unlimited protocol.
+    shaker_file, shaker
+        A shaking table whose limits are read beside the unlimited protocol, and its YAML file.
     measured_tests
         CSV file of a laboratory's tests, which go through the same statistics.
     sensitivity
@@ -64,7 +65,8 @@ class Supplementary:
         Factors that could produce a pedestal effect.
     """
 
-    shaker: Path | None = None
+    shaker_file: Path | None = None
+    shaker: Shaker | None = None
     measured_tests: Path | None = None
     sensitivity: Mapping[str, Sequence[Any]] | None = None
     explanation: Explanation | None = None
@@ -76,29 +78,21 @@ def supplementary_from(content: Mapping[str, Any], source: Path) -> Supplementar
     Raises
     ------
     InputError
-        If a file is absent, or a part needs a building or a pedestal that the study does not have.
+        If a file is absent or wrong.
     """
-    sensitivity = content.get("building_sensitivity")
-    if sensitivity is not None and content.get("building") is None:
-        raise InputError(
-            f"{source}: key building_sensitivity: expected the key building too, which it varies."
-        )
+    shaker_file = _file(source, "shaker", content.get("shaker"))
     explanation = content.get("explanation")
     if explanation is not None:
         lists = {k: tuple(v) for k, v in explanation.items() if isinstance(v, list)}
         explanation = Explanation(**{**explanation, **lists})
     return Supplementary(
-        shaker=_file(source, "shaker", content.get("shaker")),
+        shaker_file=shaker_file,
+        shaker=None if shaker_file is None else read_shaker(shaker_file),
         measured_tests=_file(source, "measured_tests", content.get("measured_tests")),
-        sensitivity=sensitivity,
+        sensitivity=content.get("building_sensitivity"),
         explanation=explanation,
     )
 
 
 def _file(source: Path, key: str, name: str | None) -> Path | None:
-    if name is None:
-        return None
-    path = Path(os.path.normpath(source.parent / name))
-    if not path.is_file():
-        raise InputError(f"{source}: key {key}: expected an existing file, found no {path}.")
-    return path
+    return None if name is None else existing_file(source, key, name)

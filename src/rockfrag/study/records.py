@@ -1,0 +1,36 @@
+"""Checking the user's records before the first job: can each be read, and does it look right?"""
+
+from rockfrag.errors import InputError
+from rockfrag.plausibility import peak_warning
+from rockfrag.study.study import RECORDS_FOLDER, Study
+
+
+def check_records(study: Study) -> list[str]:
+    """Read every record that lies in a folder of the user's own.
+
+    Returns
+    -------
+    Warnings about accelerations that look as if they were in another unit.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read as a record, or is not the one of its SHA-256.
+    """
+    from pathlib import Path
+
+    from rockfrag.records.catalogue import load_motion
+
+    warnings = []
+    folder = study.catalogue_file.parent
+    for row in study.catalogue[study.catalogue["source"] == "folder"].to_dict("records"):
+        where = f"{study.catalogue_file}, motion {row['name']}"
+        try:
+            motion = load_motion({str(k): v for k, v in row.items()}, folder, Path(RECORDS_FOLDER))
+        except InputError as error:
+            raise InputError(f"{where}: {error}") from None
+        if motion.pga == 0:
+            raise InputError(f"{where}: the record is zero throughout; leave it out.")
+        if doubt := peak_warning(motion.pga):
+            warnings.append(f"{where}: {doubt}.")
+    return warnings
