@@ -203,14 +203,28 @@ def bracket_interval(
     )
 
 
-def bracket_likelihoods(brackets: Brackets, weights: Floats) -> Floats:
-    """Largest log-likelihood for each row of weights of the tests, shape (batch, n) to (batch,).
+def bracket_log_scores(brackets: Brackets, weights: Floats) -> Floats:
+    """Log probability of each bracket under the fit to each row of weights.
 
-    Infinite where all brackets share an amplitude, for then β may be zero.
+    Equal bounds, which have no probability, score by their density in the logarithm.
+
+    Parameters
+    ----------
+    weights
+        Of the tests, shape (batch, n).
+
+    Returns
+    -------
+    Shape (batch, n); -∞ where the weights give no fit.
     """
     low, high = _logs(brackets)
-    value = _fit_weighted(low, high, weights)[2]
-    return np.asarray(np.where(_share_a_point(low, high, weights), np.inf, value))
+    coefficients = _fit_weighted(low, high, weights)[0]
+    c0, c1 = coefficients[:, :1], coefficients[:, 1:]
+    with np.errstate(invalid="ignore"):
+        exact = np.log(c1) - 0.5 * (c0 + c1 * np.where(low == high, low, 0.0)) ** 2
+        closed = _log_difference(c0 + c1 * low, c0 + c1 * high)
+    scores = np.where(low == high, exact - _LOG_ROOT_TWO_PI, closed)
+    return np.asarray(np.where(np.isnan(scores), -np.inf, scores))
 
 
 def _logs(brackets: Brackets) -> tuple[Floats, Floats]:

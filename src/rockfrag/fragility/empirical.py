@@ -7,7 +7,8 @@ these stand beside it.
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy import optimize, stats
+from scipy import optimize
+from statsmodels.stats.proportion import proportion_confint
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, Outcomes, positive, verdicts
@@ -17,11 +18,8 @@ def wilson_interval(
     overturned: ArrayLike, trials: ArrayLike, level: float = 0.90
 ) -> tuple[Floats, Floats]:
     """Confidence limits of a binomial share (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212)."""
-    y, n = np.asarray(overturned, dtype=np.float64), np.asarray(trials, dtype=np.float64)
-    z = stats.norm.ppf(0.5 + 0.5 * level)
-    centre = (y + 0.5 * z**2) / (n + z**2)
-    half = z / (n + z**2) * np.sqrt(y * (n - y) / n + 0.25 * z**2)
-    return np.clip(centre - half, 0.0, 1.0), np.clip(centre + half, 0.0, 1.0)
+    lower, upper = proportion_confint(overturned, trials, alpha=1.0 - level, method="wilson")
+    return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
 
 
 def bin_codes(outcomes: Outcomes, bins: int = 10) -> NDArray[np.int64]:

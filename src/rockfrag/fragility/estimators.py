@@ -1,12 +1,20 @@
 """Fragility from the data that the field knows: clouds, stripes, sweeps, step protocols."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 import pandas as pd
+from scipy import stats
 
 from rockfrag.fragility.batch_glm import Link
-from rockfrag.fragility.censored import bracket_interval, brackets_from_table, fit_brackets
+from rockfrag.fragility.censored import (
+    Brackets,
+    bracket_interval,
+    brackets_from_table,
+    fit_brackets,
+)
+from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_verdicts
 from rockfrag.fragility.empirical import survival_windows
 from rockfrag.fragility.intervals import Interval, IntervalMethod, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
@@ -15,15 +23,25 @@ from rockfrag.fragility.observations import Outcomes, outcomes_from_table
 
 @dataclass(frozen=True)
 class Fragility:
-    """A fitted curve with its confidence limits."""
+    """A fitted curve with its confidence limits and what speaks for and against it."""
 
     fit: FragilityFit
     interval: Interval
+    checks: Checks
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """All that a reader must know, of the fit and of the limits."""
-        return (*self.fit.warnings, *self.interval.warnings)
+        """All that a reader must know, of the fit, of the limits and of the checks."""
+        return (*self.fit.warnings, *self.interval.warnings, *self.checks.warnings)
+
+    @property
+    def beta_statistical(self) -> float:
+        """Standard deviation of ln θ that the limits of θ stand for [-]; NaN without limits."""
+        lower, upper = self.interval.theta
+        if not 0 < lower < upper < np.inf:
+            return float("nan")
+        half = float(stats.norm.ppf(0.5 + 0.5 * self.interval.level))
+        return float(np.log(upper / lower) / (2.0 * half))
 
 
 @dataclass(frozen=True)
@@ -59,14 +77,18 @@ def fragility_of(
     level: float = 0.90,
     replicates: int = 1000,
     seed: int = 0,
+    dependence: Literal["tests", "motions"] | None = None,
 ) -> Fragility:
-    """Fit a curve to verdicts and give it limits over motions, or events where they are known."""
-    return Fragility(
-        fit_lognormal(outcomes, link=link),
-        interval_over_motions(
-            outcomes, method=interval, level=level, replicates=replicates, seed=seed, link=link
-        ),
+    """Fit a curve to verdicts and give it limits over motions, or events where they are known.
+
+    ``dependence`` says how the goodness of fit is simulated, see
+    :func:`rockfrag.fragility.goodness.goodness_of_fit`.
+    """
+    fit = fit_lognormal(outcomes, link=link)
+    limits = interval_over_motions(
+        outcomes, method=interval, level=level, replicates=replicates, seed=seed, link=link
     )
+    return Fragility(fit, limits, checks_of_verdicts(outcomes, fit, limits, dependence, seed))
 
 
 def fit_cloud(
@@ -104,7 +126,7 @@ def fit_stripes(
         table, im, overturned=overturned, trials=trials, motion=motion, event=event
     )
     whole = fragility_of(outcomes, level=level)
-    return Fragility(fit_lognormal(_pooled(outcomes)), whole.interval) if trials is None else whole
+    return whole if trials is not None else replace(whole, fit=fit_lognormal(_pooled(outcomes)))
 
 
 def fit_incremental(
@@ -136,9 +158,7 @@ def fit_incremental(
             event=event,
             measure=amplitude,
         )
-        readings[reading] = Fragility(
-            fit_brackets(brackets), bracket_interval(brackets, level=level)
-        )
+        readings[reading] = _of_brackets(brackets, level)
     outcomes = outcomes_from_table(sweep, amplitude, motion=motion, event=event)
     fell = windows["first_upper"].notna()
     share = float((windows.loc[fell, "windows"] > 0).mean()) if fell.any() else float("nan")
@@ -162,7 +182,14 @@ def fit_step_tests(
 ) -> Fragility:
     """Fit a curve to tests of a step protocol, one row per test, interval- or right-censored."""
     brackets = brackets_from_table(tests, lower=lower, upper=upper, motion=motion, event=event)
-    return Fragility(fit_brackets(brackets), bracket_interval(brackets, level=level))
+    return _of_brackets(brackets, level)
+
+
+def _of_brackets(brackets: Brackets, level: float) -> Fragility:
+    fit, interval = fit_brackets(brackets), bracket_interval(brackets, level=level)
+    groups = brackets.motion if interval.over == "motion" else brackets.event
+    checks = checks_of_brackets(brackets.lower, brackets.upper, groups, fit, interval)
+    return Fragility(fit, interval, checks)
 
 
 def _pooled(outcomes: Outcomes) -> Outcomes:

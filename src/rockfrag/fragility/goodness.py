@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
@@ -12,6 +13,7 @@ from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.empirical import bin_codes, wilson_interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.pooling import cells
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ def goodness_of_fit(
     *,
     dependence: Literal["tests", "motions"] | None = None,
     bins: int = 10,
-    replicates: int = 500,
+    replicates: int = 200,
     seed: int = 0,
 ) -> GoodnessOfFit:
     """Compare the deviance with that of data simulated from the curve (parametric bootstrap).
@@ -79,25 +81,35 @@ def goodness_of_fit(
     if dependence is None:
         dependence = "motions" if outcomes.n_motions < outcomes.im.size else "tests"
     code = np.unique(bin_codes(outcomes, bins), return_inverse=True)[1]
-    member = (code[:, None] == np.arange(code.max() + 1)).astype(np.float64)
     probability = fit.probability(outcomes.im)
-    trials = outcomes.trials @ member
-    expected = (outcomes.trials * probability) @ member
-    observed = outcomes.overturned @ member
+
+    def by_bin(values: Floats) -> Floats:
+        return np.asarray(np.bincount(code, values))
+
+    trials = by_bin(outcomes.trials)
+    expected = by_bin(outcomes.trials * probability)
+    observed = by_bin(outcomes.overturned)
     deviance = float(_deviance(observed, expected, trials))
     rng = np.random.default_rng(seed)
+    # cells within the bins: what is simulated and refitted, however many tests there are
+    cell, values = cells(outcomes.log_im + code * 1e3)
+    home = np.asarray(np.rint(values / 1e3), dtype=np.intp)
+    pooled = _Pooled(
+        values - 1e3 * home, np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64), home
+    )
     if dependence == "tests":
+        share = np.bincount(cell, outcomes.trials * probability) / pooled.trials
         drawn = rng.binomial(
-            outcomes.trials.astype(np.int64), probability, size=(replicates, probability.size)
+            pooled.trials.astype(np.int64), np.minimum(share, 1.0), size=(replicates, share.size)
         ).astype(np.float64)
     else:
-        drawn = _swept(outcomes, fit, replicates, rng)
-    simulated = _refitted_deviance(outcomes, fit, drawn, member)
+        drawn = _swept(outcomes, fit, cell, replicates, rng)
+    simulated = _refitted_deviance(pooled, fit, drawn)
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
     lower, upper = wilson_interval(observed, trials)
     calibration = pd.DataFrame(
         {
-            "im": np.exp((outcomes.trials * outcomes.log_im) @ member / trials),
+            "im": np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials),
             "tests": trials.astype(np.int64),
             "predicted": expected / trials,
             "observed": observed / trials,
@@ -127,28 +139,52 @@ def _deviance(observed: Floats, expected: Floats, trials: Floats) -> Floats:
     return np.asarray(2.0 * terms.sum(axis=-1))
 
 
+@dataclass(frozen=True)
+class _Pooled:
+    """Cells of tests: their value of ln IM, their trials, and the bin that each lies in."""
+
+    log_im: Floats
+    trials: Floats
+    bin: NDArray[np.intp]
+
+
 def _swept(
-    outcomes: Outcomes, fit: FragilityFit, replicates: int, rng: np.random.Generator
+    outcomes: Outcomes,
+    fit: FragilityFit,
+    cell: NDArray[np.intp],
+    replicates: int,
+    rng: np.random.Generator,
 ) -> Floats:
+    """Verdicts by cell where each motion has one capacity, shape (replicates, cells)."""
     codes, names = pd.factorize(pd.Series(outcomes.motion))
     size = (replicates, len(names))
     draw = rng.normal(size=size) if fit.link == "probit" else rng.logistic(size=size)
     capacity = np.log(fit.theta) + fit.beta * draw
-    return np.asarray((outcomes.log_im > capacity[:, codes]) * outcomes.trials)
+    log_im = outcomes.log_im
+    return np.array(
+        [np.bincount(cell, (log_im > one[codes]) * outcomes.trials) for one in capacity]
+    )
 
 
-def _refitted_deviance(
-    outcomes: Outcomes, fit: FragilityFit, drawn: Floats, member: Floats
-) -> Floats:
-    design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
-    trials = np.broadcast_to(outcomes.trials, drawn.shape)
+def _refitted_deviance(pooled: _Pooled, fit: FragilityFit, drawn: Floats) -> Floats:
+    design = np.column_stack([np.ones(pooled.log_im.size), pooled.log_im])
+    trials = np.broadcast_to(pooled.trials, drawn.shape)
     # the penalty keeps separated data sets finite and hardly moves the others
-    batch = fit_batch(design, drawn, trials, link=fit.link, penalised=True, tolerance=1e-6)
+    batch = fit_batch(
+        design,
+        drawn,
+        trials,
+        link=fit.link,
+        penalised=True,
+        tolerance=1e-4,
+        start=np.array(fit.coefficients),
+    )
     usable = np.isfinite(batch.coefficients).all(axis=1)
     eta = batch.coefficients[usable] @ design.T
     probability = special.ndtr(eta) if fit.link == "probit" else special.expit(eta)
-    expected = (outcomes.trials * probability) @ member
-    return _deviance(drawn[usable] @ member, expected, outcomes.trials @ member)
+    member = (pooled.bin[:, None] == np.arange(pooled.bin.max() + 1)).astype(np.float64)
+    expected = (pooled.trials * probability) @ member
+    return _deviance(drawn[usable] @ member, expected, pooled.trials @ member)
 
 
 def _words(deviance: float, p_value: float, bins: int, dependence: str) -> str:

@@ -7,7 +7,7 @@ from that table.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -19,6 +19,7 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE
 from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.pooling import cells, counts
 
 FEWEST_GROUPS = 4
 """Fewest groups for which the jackknife's coverage was validated."""
@@ -125,16 +126,15 @@ def verdict_fitter(
 ) -> tuple[WeightedFit, int]:
     """Make the function that refits a curve to reweighted groups of tests.
 
-    Tests at the same value are pooled, so that stripes cost little. Separated replicates are fitted
+    Tests at the same or nearly the same value are pooled, so that neither stripes nor many tests cost
+    much. Separated replicates are fitted
     with the penalised likelihood, as the estimator itself would; replicates in which all tests
     agree give an intercept of -∞ (all survive) or +∞ (all overturn) and a slope of NaN.
     """
     codes, names = pd.factorize(pd.Series(labels))
-    values, column = np.unique(outcomes.log_im, return_inverse=True)
-    fell = np.zeros((len(names), values.size))
-    total = np.zeros_like(fell)
-    np.add.at(fell, (codes, column), outcomes.overturned)
-    np.add.at(total, (codes, column), outcomes.trials)
+    column, values = cells(outcomes.log_im)
+    fell = counts(codes, column, outcomes.overturned)
+    total = counts(codes, column, outcomes.trials)
     design = np.column_stack([np.ones(values.size), values])
 
     whole = fit_batch(
@@ -186,7 +186,7 @@ def interval_over_motions(
     over, notes = population(outcomes.motion, outcomes.event, over)
     labels = outcomes.motion if over == "motion" else outcomes.event
     fit, groups = verdict_fitter(outcomes, labels, link)
-    return resampled_interval(
+    found = resampled_interval(
         fit,
         groups,
         over=over,
@@ -197,6 +197,9 @@ def interval_over_motions(
         seed=seed,
         link=link,
     )
+    apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0)[0]
+    # separated tests allow any small β, whatever the penalised refits say
+    return replace(found, beta=(0.0, found.beta[1])) if apart and found.method != "none" else found
 
 
 def bootstrap_draws(groups: int, replicates: int, seed: int) -> NDArray[np.int64]:
@@ -242,8 +245,10 @@ def resampled_interval(
     if np.ptp(deleted, axis=0).max() < 1e-9:
         reason = f"All {over}s agree within the steps of the amplitude, which gives no limits."
         return _none(estimate, level, groups, over, link, (*notes, reason))
+    own = float(_beta(estimate[None, :])[0])
     if method == "jackknife":
         theta, beta = _jackknife_limits(estimate, deleted, level)
+        beta = (min(beta[0], own), max(beta[1], own))
         return Interval(
             theta, beta, level, method, groups, over, _pair(estimate), deleted, link, notes
         )
@@ -342,7 +347,8 @@ def _jackknife_limits(
     half = factor * float(_jackknife_error(_log_theta(deleted)))
     log_beta = float(np.log(_beta(estimate[None, :])[0]))
     left_out = np.log(_beta(deleted))
-    # the jackknife also takes out the first-order bias of ln β, which few groups make too small
+    # the jackknife also takes out the first-order bias of ln β, which few groups make too small; where
+    # that puts the limits beside the estimate, they are stretched to hold it
     centre = groups * log_beta - (groups - 1) * float(left_out.mean())
     half_beta = factor * float(_jackknife_error(left_out))
     if not np.isfinite(half):

@@ -1,6 +1,6 @@
 """Which intensity measure foretells overturning best, and how sure is that choice?"""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,14 +10,16 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.batch_glm import fit_batch
-from rockfrag.fragility.intervals import Interval, bootstrap_draws, interval_over_motions
+from rockfrag.fragility.held_out import paired_p, share_best, verdict_scores
+from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Outcomes, numbers, outcomes_from_table
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
 
-EQUAL_AIC = 2.0
-"""Differences of AIC up to this do not tell two measures apart (Burnham and Anderson, 2002)."""
+TOLD_APART_P = 0.05
+"""Two measures are told apart below this p value of their held-out scores."""
+FEWEST_GROUPS_TO_CHOOSE = 10
+"""Below so many motions or events the words say that the choice is weak."""
 SUFFICIENT_P = 0.05
 """A residual's dependence on a column is named below this p value."""
 
@@ -34,9 +36,11 @@ class MeasureChoice:
         The same as the field writes it, for example ``PGV``.
     table
         One row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta``
-        (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``,
-        ``delta_aic``, ``auc``, ``chosen_share`` (share of bootstrap samples of motions in which it
-        has the least AIC), and ``p_<column>`` for the sufficiency against each given column.
+        (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``,
+        ``score`` (mean log probability of what was held out, per test [-]; the larger the better),
+        ``p_worse`` (p value of scoring as the best does, t over motions or events), ``chosen_share``
+        (share of bootstrap samples of motions or events in which it scores best), and ``p_<column>``
+        for the sufficiency against each given column.
     pair
         Probit surface in the best measure and the one that adds most to it; None for a single
         measure.
@@ -109,8 +113,9 @@ def recommend_measure(
 ) -> MeasureChoice:
     """Compare intensity measures on the same tests and recommend one, in words.
 
-    The measure with the least AIC is recommended. Measures within 2 of it are named as equals, with
-    the more efficient one (smaller β) first.
+    Motions (events where given) are held out in turn and foretold from the others; the measure with
+    the best score is recommended. Measures that the scores do not tell from it are named as equals,
+    with the more efficient one (smaller β) first.
 
     Parameters
     ----------
@@ -125,7 +130,7 @@ def recommend_measure(
     level
         Of the limits of β.
     replicates, seed
-        Bootstrap over motions (events where given) for ``chosen_share``.
+        Of the bootstrap over motions (events where given) for ``chosen_share``.
     """
     if not measures:
         raise InputError("measures: name at least one column with an intensity measure.")
@@ -142,28 +147,69 @@ def recommend_measure(
             _row(column, outcomes, fit, interval)
             | {f"p_{name}": sufficiency(outcomes, fit, values) for name, values in extra.items()}
         )
-    compared = pd.DataFrame(rows)
-    share = _chosen_share(list(data.values()), replicates, seed)
-    compared["chosen_share"] = compared["measure"].map(dict(zip(measures, share, strict=True)))
-    compared = ranked(compared)
+    first = data[measures[0]]
+    group = pd.factorize(pd.Series(first.event))[0]
+    scores = np.array(
+        [
+            verdict_scores(one.log_im[:, None], one.overturned, one.trials, group)
+            for one in data.values()
+        ]
+    )
+    compared = ranked(pd.DataFrame(rows), scores, first.n, replicates, seed)
     if compared["theta"].isna().all():
-        return MeasureChoice("", "", compared, None, recommendation(compared, None, given))
+        return MeasureChoice("", "", compared, None, recommendation(compared, len(scores.T), given))
     best = str(compared["measure"].iloc[0])
-    pair = _best_pair(table, best, [c for c in measures if c != best], overturned, source)
-    words = recommendation(compared, pair, given)
-    return MeasureChoice(best, str(compared["im"].iloc[0]), compared, pair, words)
+    pair, p_pair, gain = _best_pair(data, best, scores[list(data).index(best)], group)
+    surface = None
+    if pair:
+        surface = fit_surface(table, (best, pair), overturned=overturned, source=source)
+    words = recommendation(compared, len(scores.T), given)
+    if surface is not None:
+        words = f"{words} {_pair_words(data[pair].name, p_pair, gain)}"
+    return MeasureChoice(best, str(compared["im"].iloc[0]), compared, surface, words)
 
 
-def ranked(compared: pd.DataFrame, efficiency: str = "beta") -> pd.DataFrame:
-    """Sort measures: least AIC first, within 2 of it by efficiency, those without a curve last."""
-    # without a likelihood (brackets that all overlap) a measure cannot be compared either
-    rising = compared["theta"].notna() & compared["aic"].notna()
-    delta = compared["aic"] - compared.loc[rising, "aic"].min()
-    near = rising & (delta <= EQUAL_AIC)
+def ranked(
+    compared: pd.DataFrame,
+    scores: Floats,
+    tests: int,
+    replicates: int,
+    seed: int,
+    efficiency: str = "beta",
+) -> pd.DataFrame:
+    """Sort measures: best held-out score first, equals of it by efficiency, those without a curve last.
+
+    Parameters
+    ----------
+    compared
+        One row per measure.
+    scores
+        Log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups).
+    tests
+        Number of tests scored.
+    replicates, seed
+        Of the bootstrap over groups.
+    efficiency
+        Column that orders equals.
+    """
+    rising = compared["theta"].notna().to_numpy()
+    known = rising & np.isfinite(scores).all(axis=1)
+    total = np.where(known, scores.sum(axis=1), -np.inf)
+    best = int(total.argmax())
+    p_worse = np.array([paired_p(scores[best], one) if known[best] else np.nan for one in scores])
+    share = np.zeros(len(scores))
+    if known.any():
+        share[known] = share_best(scores[known], replicates, seed)
+    near = known & ~(p_worse < TOLD_APART_P)
     order = compared.assign(
-        delta_aic=delta, late=~rising, rank=np.where(near, compared[efficiency], np.inf)
-    ).sort_values(["late", "rank", "aic", "measure"], kind="stable")
-    return order.drop(columns=["late", "rank"]).reset_index(drop=True)
+        score=np.where(known, total / tests, np.nan),
+        p_worse=p_worse,
+        chosen_share=share,
+        late=~rising,
+        rank=np.where(near, compared[efficiency], np.inf),
+        total=-total,
+    ).sort_values(["late", "rank", "total", "measure"], kind="stable")
+    return order.drop(columns=["late", "rank", "total"]).reset_index(drop=True)
 
 
 def _row(
@@ -182,92 +228,72 @@ def _row(
     }
 
 
-def _chosen_share(data: Sequence[Outcomes], replicates: int, seed: int) -> Floats:
-    """Share of bootstrap samples of motions in which each measure has the largest likelihood."""
-    weights = drawn_rows(data[0].event, replicates, seed)
-    likelihood = np.empty((len(data), replicates))
-    for k, outcomes in enumerate(data):
-        design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
-        # the penalty keeps separated samples finite and hardly moves the others
-        fit = fit_batch(
-            design,
-            weights * outcomes.overturned,
-            weights * outcomes.trials,
-            penalised=True,
-            tolerance=1e-5,
-        )
-        likelihood[k] = np.where(fit.coefficients[:, 1] > 0, fit.log_likelihood, -np.inf)
-    return share_likeliest(likelihood[:, np.isfinite(likelihood).any(axis=0)])
-
-
-def drawn_rows(event: NDArray[np.object_], replicates: int, seed: int) -> Floats:
-    """How often each row is in each bootstrap sample of whole events, shape (replicates, n)."""
-    codes, names = pd.factorize(pd.Series(event))
-    return bootstrap_draws(len(names), replicates, seed)[:, codes].astype(np.float64)
-
-
-def share_likeliest(likelihood: Floats) -> Floats:
-    """Share of samples in which each measure is the likeliest, (measures, samples) to (measures,)."""
-    measures, samples = likelihood.shape
-    winner = likelihood.argmax(axis=0)
-    return np.asarray(np.bincount(winner, minlength=measures) / max(samples, 1))
-
-
 def _best_pair(
-    table: pd.DataFrame, best: str, others: Sequence[str], overturned: str, source: str
-) -> FragilitySurface | None:
-    pairs = []
-    for other in others:
-        try:
-            pairs.append(fit_surface(table, (best, other), overturned=overturned, source=source))
-        except InputError:
-            # proportional measures (PGA and a/(g tan α) of one block) tell nothing together
+    data: Mapping[str, Outcomes], best: str, alone: Floats, group: NDArray[np.intp]
+) -> tuple[str, float, float]:
+    """Measure that adds most to the best one, the p value of what it adds, and the gain of score."""
+    found = ("", float("nan"), -np.inf)
+    for name, other in data.items():
+        logs = np.column_stack([data[best].log_im, other.log_im])
+        proportional = np.linalg.matrix_rank(np.column_stack([np.ones(len(logs)), logs])) < 3
+        # proportional measures (PGA and a/(g tan α) of one block) tell nothing together
+        if name == best or proportional:
             continue
-    return min(pairs, key=lambda pair: pair.aic) if pairs else None
+        both = verdict_scores(logs, other.overturned, other.trials, group)
+        gain = float((both - alone).sum() / other.n)
+        if gain > found[2]:
+            found = (name, paired_p(both, alone), gain)
+    return found
 
 
-def recommendation(table: pd.DataFrame, pair: FragilitySurface | None, given: Sequence[str]) -> str:
-    """Put a ranked table of measures into words."""
+def _pair_words(name: str, p: float, gain: float) -> str:
+    if gain > 0 and p < TOLD_APART_P:
+        return (
+            f"Adding {name} foretells held-out tests better (p = {p:.3f}): use the surface in both."
+        )
+    if not np.isfinite(p):
+        return f"Whether {name} adds to it cannot be tested with one group of motions."
+    return f"Adding {name} does not help to foretell held-out tests (p = {p:.2f}): one measure is enough."
+
+
+def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
+    """Put a ranked table of measures into words that say what to use and how sure that is."""
     if table["theta"].isna().all():
         return "The probability of overturning rises in none of the measures."
-    if table["aic"].isna().all():
+    if table["score"].isna().all():
         return (
-            "The brackets of all motions overlap, so the measures cannot be compared; more "
-            "motions or smaller steps are needed."
+            "The measures cannot be compared: it takes two motions or events, and brackets of the "
+            "overturning amplitude that do not all overlap."
         )
     best = table.iloc[0]
-    parts = []
     others = table.iloc[1:]
-    equal = others[(others["delta_aic"] <= EQUAL_AIC) & others["theta"].notna()]
-    clear = others[others["delta_aic"] > EQUAL_AIC]
-    parts.append(
-        f"{best['im']} is recommended: AIC {best['aic']:.1f}, β = {best['beta']:.2f}, "
-        f"AUC {best['auc']:.3f}."
-    )
+    scored = others[others["score"].notna()]
+    equal = scored[~(scored["p_worse"] < TOLD_APART_P)]
+    worse = scored[scored["p_worse"] < TOLD_APART_P].sort_values("score", ascending=False)
+    parts = [
+        f"Use {best['im']}: β = {best['beta']:.2f}, AUC {best['auc']:.3f}, mean log score of held-out "
+        f"tests {best['score']:.3f}."
+    ]
     if len(equal):
         listed = ", ".join(
-            f"{row.im} (AIC {row.aic:.1f}, β = {row.beta:.2f})" for row in equal.itertuples()
+            f"{row['im']} ({row['score']:.3f}, β = {row['beta']:.2f})"
+            for row in equal.to_dict("records")
         )
-        parts.append(f"The tests do not tell it from {listed}; it is named for its smaller β.")
-    if len(clear):
-        row = clear.sort_values("aic").iloc[0]
         parts.append(
-            f"The next is {row['im']} with AIC {row['aic']:.1f}, β = {row['beta']:.2f}, "
-            f"AUC {row['auc']:.3f}."
+            f"The tests do not tell it from {listed}; any of them will do, and it is named for its "
+            "smaller β."
+        )
+    if len(worse):
+        row = worse.iloc[0]
+        parts.append(
+            f"{row['im']} is worse: {row['score']:.3f} (p = {row['p_worse']:.2g}, t over {groups} groups "
+            "of tests that hang together)."
         )
     if len(others):
+        parts.append(f"It scores best in {best['chosen_share']:.0%} of bootstrap samples of them.")
+    if groups < FEWEST_GROUPS_TO_CHOOSE:
         parts.append(
-            f"It has the least AIC in {best['chosen_share']:.0%} of bootstrap samples of the "
-            "motions."
-        )
-    if pair is not None:
-        name = table.loc[table["measure"] == pair.measures[1], "im"].iloc[0]
-        lone = table.loc[table["measure"] == pair.measures[0], "aic"].iloc[0]
-        helps = pair.aic < lone - EQUAL_AIC
-        parts.append(
-            f"Adding {name} {'lowers' if helps else 'does not lower'} the AIC "
-            f"({pair.aic:.1f} for both)"
-            + ("; use the surface in both measures." if helps else ", so one measure is enough.")
+            f"{groups} groups are few: the choice may be another with further earthquakes."
         )
     for column in given:
         p = float(best[f"p_{column}"])

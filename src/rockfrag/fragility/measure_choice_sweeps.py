@@ -1,7 +1,8 @@
 """Choice of the intensity measure from amplitude sweeps, one body at a time.
 
 A motion scaled up and down gives many verdicts but one capacity, so the measures are compared by
-how well they foretell the bracket of the first overturning: one observation per motion.
+how well they foretell the bracket of the first overturning of events that were held out: one
+observation per motion.
 """
 
 from collections.abc import Sequence
@@ -14,20 +15,18 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.censored import (
     Brackets,
     bracket_interval,
-    bracket_likelihoods,
     brackets_from_table,
     fit_brackets,
 )
 from rockfrag.fragility.empirical import survival_windows
+from rockfrag.fragility.held_out import capacity_scores
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.measure_choice import (
     MeasureChoice,
     area_under_curve,
     dependence_p_value,
-    drawn_rows,
     ranked,
     recommendation,
-    share_likeliest,
 )
 from rockfrag.fragility.observations import Floats, outcomes_from_table, positive
 from rockfrag.fragility.sweeps import scale_power, with_measures
@@ -124,10 +123,12 @@ def recommend_sweep_measure(
             row[f"p_{name}"] = dependence_p_value(residual, values[seen], scaled.event[seen])
         rows.append(row)
         brackets.append(scaled)
-    table = pd.DataFrame(rows).assign(chosen_share=_chosen_share(brackets, replicates, seed))
-    table = ranked(table, "beta_amplitude")
-    words = recommendation(table, None, given)
-    if (table["theta"].isna() | table["aic"].isna()).all():
+    group = pd.factorize(pd.Series(amplitude.event))[0]
+    scores = np.array([capacity_scores(one, group) for one in brackets])
+    tests = len(amplitude.lower)
+    table = ranked(pd.DataFrame(rows), scores, tests, replicates, seed, "beta_amplitude")
+    words = recommendation(table, scores.shape[1], given)
+    if table["score"].isna().all():
         return MeasureChoice("", "", table, None, words)
     best = table.iloc[0]
     return MeasureChoice(str(best["measure"]), str(best["im"]), table, None, words)
@@ -150,12 +151,3 @@ def _residuals(brackets: Brackets, fit: FragilityFit) -> tuple[Floats, NDArray[n
     seen = np.isfinite(brackets.upper) & (brackets.lower > 0)
     middle = 0.5 * np.log(brackets.lower[seen] * brackets.upper[seen])
     return np.asarray(middle - np.log(fit.theta)), seen
-
-
-def _chosen_share(brackets: Sequence[Brackets], replicates: int, seed: int) -> Floats:
-    """Share of bootstrap samples of events (motions) in which each measure is the likeliest."""
-    weights = drawn_rows(brackets[0].event, replicates, seed)
-    likelihood = np.array([bracket_likelihoods(one, weights) for one in brackets])
-    # samples in which a measure puts all motions into one bracket, or none overturned, decide
-    # nothing
-    return share_likeliest(likelihood[:, np.isfinite(likelihood).all(axis=0)])

@@ -118,7 +118,7 @@ def fragility_row(
     fragility: Fragility, labels: Mapping[str, Any], estimator: str, record_set: str
 ) -> dict[str, Any]:
     """Return one row of the fragility table, see :func:`fragility_table`."""
-    fit, interval = fragility.fit, fragility.interval
+    fit, interval, checks = fragility.fit, fragility.interval, fragility.checks
     return {
         **labels,
         "im": fit.im,
@@ -143,6 +143,15 @@ def fragility_row(
         "n": fit.n,
         "n_overturned": fit.n_overturned,
         "n_motions": fit.n_motions,
+        "n_events": interval.groups if interval.over == "event" else fit.n_motions,
+        "p_fit": checks.p_fit,
+        "fit_test": checks.test,
+        "largest_residual": checks.largest_residual,
+        "influential": checks.influential,
+        "influence": checks.influence,
+        "theta_isotonic": checks.theta_isotonic,
+        "beta_isotonic": checks.beta_isotonic,
+        "beta_statistical": fragility.beta_statistical,
         "record_set_sha256": record_set,
         "warnings": " ".join(fragility.warnings),
     }

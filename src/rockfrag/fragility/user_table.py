@@ -11,7 +11,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.fragility.empirical import share_in_bins
 from rockfrag.fragility.estimators import Fragility, fragility_of
-from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
+from rockfrag.fragility.goodness import GoodnessOfFit
 from rockfrag.fragility.measure_choice import MeasureChoice, recommend_measure
 from rockfrag.fragility.observations import Floats, Outcomes, outcomes_from_table, positive
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
@@ -98,11 +98,11 @@ def fit_user_table(
     digest = table_hash(tests)
     for column in columns:
         data = outcomes_from_table(tests, column, event=event_column, source=source)
-        result = fragility_of(data, level=level)
+        # rows of one motion are tests at different scales, each with its own verdict
+        result = fragility_of(data, level=level, dependence="tests", seed=seed)
         outcomes[column], fits[column] = data, result
-        if np.isfinite(result.fit.theta):
-            # rows of one motion are tests at different scales, each with its own verdict
-            goodness[column] = goodness_of_fit(data, result.fit, dependence="tests", seed=seed)
+        if result.checks.goodness is not None:
+            goodness[column] = result.checks.goodness
         rows.append(fragility_row(result, {"source": source, "measure": column}, "cloud", digest))
         bins.append(share_in_bins(data, level=level).assign(measure=column))
     choice = recommend_measure(

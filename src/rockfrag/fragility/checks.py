@@ -1,0 +1,159 @@
+"""What stands beside every fitted curve: does it describe the data, who moves it, what without a curve."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import optimize
+from statsmodels.stats.diagnostic import lilliefors
+
+from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
+from rockfrag.fragility.intervals import Interval
+from rockfrag.fragility.lognormal import FragilityFit
+from rockfrag.fragility.observations import Floats, Outcomes
+
+REJECTED = 0.05
+"""A curve is said not to describe its data below this p value [-]."""
+
+FEWEST_MOTIONS = 10
+"""Below so many motions every table and export says how few they are."""
+
+
+@dataclass(frozen=True)
+class Checks:
+    """Goodness of fit, influence and the medians that need no curve.
+
+    Attributes
+    ----------
+    p_fit
+        p value of the hypothesis that the curve describes the data [-]; NaN where it cannot be tested.
+    test
+        How that was tested.
+    largest_residual
+        Observed less fitted share of overturned tests in the bin where they differ most [-].
+    influential
+        Motion (event) without which θ changes most; empty where there is none.
+    influence
+        θ without it over θ [-].
+    theta_isotonic, beta_isotonic
+        Median, and half the logarithmic distance from the 16 % to the 84 % point, of the never-falling
+        share closest to the verdicts; NaN where the data do not reach them.
+    warnings
+        Sentences.
+    goodness
+        The test of a curve fitted to verdicts in full; None without such a curve.
+    """
+
+    p_fit: float
+    test: str
+    largest_residual: float
+    influential: str
+    influence: float
+    theta_isotonic: float
+    beta_isotonic: float
+    warnings: tuple[str, ...]
+    goodness: GoodnessOfFit | None = None
+
+
+def checks_of_verdicts(
+    outcomes: Outcomes,
+    fit: FragilityFit,
+    interval: Interval,
+    dependence: Literal["tests", "motions"] | None = None,
+    seed: int = 0,
+) -> Checks:
+    """Judge a curve fitted to verdicts.
+
+    ``dependence`` and ``seed`` are those of :func:`rockfrag.fragility.goodness.goodness_of_fit`.
+    """
+    p_fit, residual, test = float("nan"), float("nan"), "none"
+    found = None
+    if np.isfinite(fit.theta):
+        found = goodness_of_fit(outcomes, fit, dependence=dependence, seed=seed)
+        p_fit, test = found.p_value, f"deviance, parametric bootstrap of {found.dependence}"
+        apart = (found.calibration["observed"] - found.calibration["predicted"]).to_numpy()
+        residual = float(apart[np.abs(apart).argmax()])
+    values, level = np.unique(outcomes.log_im, return_inverse=True)
+    trials = np.bincount(level, outcomes.trials)
+    share = np.bincount(level, outcomes.overturned) / trials
+    rising = optimize.isotonic_regression(share, weights=trials).x
+    groups = outcomes.motion if interval.over == "motion" else outcomes.event
+    checks = _checks(fit, interval, groups, (p_fit, test, residual), _points(values, rising))
+    return replace(checks, goodness=found)
+
+
+def checks_of_brackets(
+    lower: Floats, upper: Floats, groups: NDArray[np.object_], fit: FragilityFit, interval: Interval
+) -> Checks:
+    """Judge a lognormal capacity fitted to brackets, by Lilliefors' test of the middles of ln amplitude.
+
+    Parameters
+    ----------
+    lower, upper
+        Bounds of each capacity, shape (n,).
+    groups
+        Label of each capacity's motion or event, as ``interval`` resampled them, shape (n,).
+    """
+    closed = np.isfinite(upper) & (lower > 0)
+    middle = 0.5 * np.log(lower[closed] * upper[closed])
+    p_fit, residual, test = float("nan"), float("nan"), "none: too few, or open brackets"
+    if closed.all() and middle.size > 3 and np.ptp(middle) > 0 and np.isfinite(fit.theta):
+        p_fit = float(lilliefors(middle, dist="norm")[1])
+        test = "Lilliefors, middles of the brackets"
+        share = (np.arange(middle.size) + 0.5) / middle.size
+        apart = share - fit.probability(np.exp(np.sort(middle)))
+        residual = float(apart[np.abs(apart).argmax()])
+    # a motion that never overturned counts above all others
+    middles = np.where(np.isfinite(upper), 0.5 * np.log(np.maximum(lower, 1e-300) * upper), np.inf)
+    ordered = np.sort(np.where(lower > 0, middles, -np.inf))
+    points = _points(ordered, (np.arange(ordered.size) + 0.5) / ordered.size)
+    return _checks(fit, interval, groups, (p_fit, test, residual), points)
+
+
+def _points(log_im: Floats, share: Floats) -> tuple[float, float]:
+    """Median and half the distance from 16 to 84 % of a rising share."""
+    found = []
+    for level in (0.1587, 0.5, 0.8413):
+        reached = np.flatnonzero(share >= level)
+        at = float(log_im[reached[0]]) if reached.size and share[0] <= level else np.nan
+        found.append(at if np.isfinite(at) else np.nan)
+    return float(np.exp(found[1])), 0.5 * (found[2] - found[0])
+
+
+def _checks(
+    fit: FragilityFit,
+    interval: Interval,
+    groups: NDArray[np.object_],
+    judged: tuple[float, str, float],
+    points: tuple[float, float],
+) -> Checks:
+    p_fit, test, residual = judged
+    notes: list[str] = []
+    if p_fit < REJECTED:
+        notes.append(
+            f"The lognormal curve does not describe the data (p = {p_fit:.3f}): where it matters use the "
+            f"empirical shares, whose median is {points[0]:.3g} {fit.unit} and β {points[1]:.2f}; the "
+            "limits of β may hold less often than they say."
+        )
+    if fit.n_motions < FEWEST_MOTIONS and np.isfinite(fit.theta):
+        notes.append(
+            f"The curve rests on {fit.n_motions} motions only; it describes little beyond them."
+        )
+    name, influence = _influence(interval, groups)
+    return Checks(p_fit, test, residual, name, influence, *points, tuple(notes))
+
+
+def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:
+    """Group without which θ changes most, from the jackknife's refits, and by what factor."""
+    names = pd.factorize(pd.Series(groups))[1]
+    refits = interval.replicates
+    if interval.method != "jackknife" or len(refits) != len(names):
+        return "", float("nan")
+    slope = np.where(refits[:, 1] > 0, refits[:, 1], np.nan)
+    change = -refits[:, 0] / slope + interval.estimate[0] / interval.estimate[1]
+    if not np.isfinite(change).any():
+        return "", float("nan")
+    most = int(np.nanargmax(np.abs(change)))
+    return str(names[most]), float(np.exp(change[most]))

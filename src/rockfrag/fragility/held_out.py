@@ -1,0 +1,110 @@
+"""How well a curve foretells what it was not fitted to: motions (events) held out in turn.
+
+Tests under one motion, and motions of one earthquake, hang together; criteria such as AIC count them as
+independent and become too sure.  Here whole groups are held out, each group's log score under the curve
+of the others is one observation, and two measures are compared group by group.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special, stats
+
+from rockfrag.fragility.batch_glm import fit_batch
+from rockfrag.fragility.censored import Brackets, bracket_log_scores
+from rockfrag.fragility.intervals import bootstrap_draws
+from rockfrag.fragility.observations import Floats
+from rockfrag.fragility.pooling import MOST_VALUES, cells, counts
+
+FOLDS = 20
+"""Groups are held out one by one up to so many, and beyond in so many blocks."""
+
+WORST_SCORE = -20.0
+"""Log score of a verdict that a curve calls impossible [-]."""
+
+
+def folds_of(groups: int) -> NDArray[np.intp]:
+    """Fold of each group, shape (groups,)."""
+    return np.arange(groups) % FOLDS
+
+
+def verdict_scores(
+    logs: Floats, overturned: Floats, trials: Floats, group: NDArray[np.intp]
+) -> Floats:
+    """Log score of each group's verdicts under the probit fitted to the other folds.
+
+    Parameters
+    ----------
+    logs
+        Logarithms of one or more measures, shape (n, k).
+    overturned, trials
+        Counts, shape (n,).
+    group
+        Number of each row's motion or event, shape (n,).
+
+    Returns
+    -------
+    Sum of log probabilities by group, shape (groups,); NaN for a single fold.
+    """
+    cell, values = _cells(logs)
+    fell, total = counts(group, cell, overturned), counts(group, cell, trials)
+    fold = folds_of(len(fell))
+    if fold.max() == 0:
+        return np.full(len(fell), np.nan)
+    member = (fold == np.arange(fold.max() + 1)[:, None]).astype(np.float64)
+    design = np.column_stack([np.ones(len(values)), values])
+    # the penalty keeps separated folds finite and hardly moves the others
+    fitted = fit_batch(
+        design,
+        fell.sum(axis=0) - member @ fell,
+        total.sum(axis=0) - member @ total,
+        penalised=True,
+        tolerance=1e-6,
+    )
+    eta = np.nan_to_num(fitted.coefficients, nan=0.0) @ design.T
+    log_fell = np.maximum(special.log_ndtr(eta), WORST_SCORE)[fold]
+    log_stood = np.maximum(special.log_ndtr(-eta), WORST_SCORE)[fold]
+    return np.asarray((fell * log_fell + (total - fell) * log_stood).sum(axis=1))
+
+
+def _cells(logs: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """Cells of rows that are near each other in every measure, and their means, (cells, k)."""
+    most = int(MOST_VALUES ** (1.0 / logs.shape[1])) if len(logs) > MOST_VALUES else len(logs)
+    parts = [cells(column, most)[0] for column in logs.T]
+    cell = np.unique(np.column_stack(parts), axis=0, return_inverse=True)[1].ravel()
+    n = np.bincount(cell)
+    return cell, np.column_stack([np.bincount(cell, column) / n for column in logs.T])
+
+
+def capacity_scores(brackets: Brackets, group: NDArray[np.intp]) -> Floats:
+    """Log probability of each group's brackets under the lognormal fitted to the other folds, (groups,)."""
+    groups = int(group.max()) + 1
+    fold = folds_of(groups)
+    if fold.max() == 0:
+        return np.full(groups, np.nan)
+    weights = (fold[group] != np.arange(fold.max() + 1)[:, None]).astype(np.float64)
+    scores = bracket_log_scores(brackets, weights)
+    own = np.maximum(scores[fold[group], np.arange(group.size)], WORST_SCORE)
+    return np.asarray(np.bincount(group, own, minlength=groups))
+
+
+def paired_p(best: Floats, other: Floats) -> float:
+    """Two-sided p value of equal mean scores, t over the groups [-]; 1 where all agree."""
+    difference = best - other
+    if difference.size < 2 or np.isnan(difference).any():
+        return float("nan")
+    if np.ptp(difference) < 1e-12:
+        return 1.0
+    return float(stats.ttest_1samp(difference, 0.0).pvalue)
+
+
+def share_best(scores: Floats, replicates: int, seed: int) -> Floats:
+    """Share of bootstrap samples of the groups in which each measure scores best, (measures,).
+
+    Parameters
+    ----------
+    scores
+        Log scores, shape (measures, groups).
+    """
+    drawn = bootstrap_draws(scores.shape[1], replicates, seed)
+    winner = (scores @ drawn.T).argmax(axis=0)
+    return np.asarray(np.bincount(winner, minlength=len(scores)) / replicates)

@@ -1,0 +1,43 @@
+"""Tests at nearly the same value taken together, so that memory does not grow with their number."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.fragility.observations import Floats
+
+MOST_VALUES = 1000
+"""Different values of a measure that are kept apart; more fall into as many cells of equal counts."""
+
+
+def cells(log_im: Floats, most: int = MOST_VALUES) -> tuple[NDArray[np.intp], Floats]:
+    """Put each row into a cell of equal or neighbouring values.
+
+    Parameters
+    ----------
+    log_im
+        Logarithms of the measure, shape (n,).
+    most
+        Most cells. Up to so many different values have a cell each.
+
+    Returns
+    -------
+    cell
+        Number of each row's cell, shape (n,).
+    value
+        Mean of each cell's rows, rising, shape (cells,).
+    """
+    values, cell = np.unique(log_im, return_inverse=True)
+    if values.size <= most:
+        return cell, values
+    count = np.bincount(cell)
+    middle = np.cumsum(count) - 0.5 * count
+    coarse = np.unique((middle / log_im.size * most).astype(np.intp), return_inverse=True)[1]
+    cell = coarse[cell]
+    return cell, np.bincount(cell, log_im) / np.bincount(cell)
+
+
+def counts(group: NDArray[np.intp], cell: NDArray[np.intp], weight: Floats) -> Floats:
+    """Sum weights by group and cell, shape (groups, cells)."""
+    groups, columns = int(group.max()) + 1, int(cell.max()) + 1
+    flat = np.bincount(group * columns + cell, weight, minlength=groups * columns)
+    return np.asarray(flat.reshape(groups, columns))
