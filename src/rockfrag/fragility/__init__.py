@@ -42,6 +42,7 @@ from rockfrag.fragility.sweeps import (
     table_hash,
     with_measures,
 )
+from rockfrag.fragility.tests_file import read_tests
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.fragility.variance import VarianceSplit, split_variance
 
@@ -83,6 +84,7 @@ __all__ = [
     "local_share",
     "outcomes_from_table",
     "overturning_rate",
+    "read_tests",
     "recommend_measure",
     "recommend_sweep_measure",
     "record_set_hash",

@@ -28,7 +28,11 @@ def folds_of(groups: int) -> NDArray[np.intp]:
 
 
 def verdict_scores(
-    logs: Floats, overturned: Floats, trials: Floats, group: NDArray[np.intp]
+    logs: Floats,
+    overturned: Floats,
+    trials: Floats,
+    group: NDArray[np.intp],
+    fitted: int | None = None,
 ) -> Floats:
     """Log score of each group's verdicts under the probit fitted to the other folds.
 
@@ -40,6 +44,9 @@ def verdict_scores(
         Counts, shape (n,).
     group
         Number of each row's motion or event, shape (n,).
+    fitted
+        Number of leading measures that the curve knows; by default all. The others only share in
+        putting tests into cells, so that scores with and without them compare.
 
     Returns
     -------
@@ -51,16 +58,16 @@ def verdict_scores(
     if fold.max() == 0:
         return np.full(len(fell), np.nan)
     member = (fold == np.arange(fold.max() + 1)[:, None]).astype(np.float64)
-    design = np.column_stack([np.ones(len(values)), values])
+    design = np.column_stack([np.ones(len(values)), values[:, :fitted]])
     # the penalty keeps separated folds finite and hardly moves the others
-    fitted = fit_batch(
+    fits = fit_batch(
         design,
         fell.sum(axis=0) - member @ fell,
         total.sum(axis=0) - member @ total,
         penalised=True,
         tolerance=1e-6,
     )
-    eta = np.nan_to_num(fitted.coefficients, nan=0.0) @ design.T
+    eta = np.nan_to_num(fits.coefficients, nan=0.0) @ design.T
     log_fell = np.maximum(special.log_ndtr(eta), WORST_SCORE)[fold]
     log_stood = np.maximum(special.log_ndtr(-eta), WORST_SCORE)[fold]
     return np.asarray((fell * log_fell + (total - fell) * log_stood).sum(axis=1))

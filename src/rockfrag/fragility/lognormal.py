@@ -1,7 +1,7 @@
 """The fitted fragility curve, lognormal (probit) or log-logistic (logit), in one measure."""
 
 import warnings as python_warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import statsmodels.api as sm
@@ -16,9 +16,13 @@ from statsmodels.tools.sm_exceptions import (
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, separated
 from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.pooling import cells
 
 LEAST_SLOPE = 1e-3
 """A curve with a smaller slope in ln IM (β above 1000) is flat: the measure foretells nothing."""
+
+MOST_ROWS = 100_000
+"""Rows beyond which tests are fitted in 10 000 cells of nearly equal values, which moves θ by less than 1e-6."""
 
 Covariance = tuple[tuple[float, float], tuple[float, float]]
 Curve = tuple[float, float, Covariance]
@@ -127,6 +131,10 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     curve either.
     """
     notes = _notes(outcomes)
+    if outcomes.im.size > MOST_ROWS:
+        whole, outcomes = outcomes, _pooled(outcomes)
+        found = fit_lognormal(outcomes, link=link)
+        return replace(found, n_motions=whole.n_motions, warnings=(*notes, *found.warnings))
     if outcomes.n_overturned in (0, outcomes.n):
         return _fit(outcomes, link, "none: all tests agree", (*notes, _all_agree(outcomes)))
     if np.ptp(outcomes.log_im) == 0:
@@ -159,6 +167,15 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
         )
     curve = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
     return _fit(outcomes, link, method, notes, log_likelihood, curve)
+
+
+def _pooled(outcomes: Outcomes) -> Outcomes:
+    """Tests in cells, each a motion of its own: only the likelihood is taken from them."""
+    cell, values = cells(outcomes.log_im, 10_000)
+    labels = np.arange(values.size).astype(object)
+    fell = np.bincount(cell, outcomes.overturned)
+    trials = np.bincount(cell, outcomes.trials)
+    return Outcomes(np.exp(values), fell * 1.0, trials * 1.0, labels, labels, outcomes.name, outcomes.unit)
 
 
 def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:

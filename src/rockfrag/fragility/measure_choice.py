@@ -159,7 +159,7 @@ def recommend_measure(
     if compared["theta"].isna().all():
         return MeasureChoice("", "", compared, None, recommendation(compared, len(scores.T), given))
     best = str(compared["measure"].iloc[0])
-    pair, p_pair, gain = _best_pair(data, best, scores[list(data).index(best)], group)
+    pair, p_pair, gain = _best_pair(data, best, group)
     surface = None
     if pair:
         surface = fit_surface(table, (best, pair), overturned=overturned, source=source)
@@ -229,7 +229,7 @@ def _row(
 
 
 def _best_pair(
-    data: Mapping[str, Outcomes], best: str, alone: Floats, group: NDArray[np.intp]
+    data: Mapping[str, Outcomes], best: str, group: NDArray[np.intp]
 ) -> tuple[str, float, float]:
     """Measure that adds most to the best one, the p value of what it adds, and the gain of score."""
     found = ("", float("nan"), -np.inf)
@@ -239,21 +239,27 @@ def _best_pair(
         # proportional measures (PGA and a/(g tan α) of one block) tell nothing together
         if name == best or proportional:
             continue
-        both = verdict_scores(logs, other.overturned, other.trials, group)
+        verdicts = (other.overturned, other.trials, group)
+        both, alone = verdict_scores(logs, *verdicts), verdict_scores(logs, *verdicts, fitted=1)
         gain = float((both - alone).sum() / other.n)
         if gain > found[2]:
             found = (name, paired_p(both, alone), gain)
     return found
 
 
+def p_text(p: float) -> str:
+    """P value in words: never as zero."""
+    return f"p = {p:.3f}" if p >= 0.001 else "p < 0.001"
+
+
 def _pair_words(name: str, p: float, gain: float) -> str:
     if gain > 0 and p < TOLD_APART_P:
         return (
-            f"Adding {name} foretells held-out tests better (p = {p:.3f}): use the surface in both."
+            f"Adding {name} foretells held-out tests better ({p_text(p)}): use the surface in both."
         )
     if not np.isfinite(p):
         return f"Whether {name} adds to it cannot be tested with one group of motions."
-    return f"Adding {name} does not help to foretell held-out tests (p = {p:.2f}): one measure is enough."
+    return f"Adding {name} does not help to foretell held-out tests: one measure is enough."
 
 
 def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
@@ -286,7 +292,7 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
     if len(worse):
         row = worse.iloc[0]
         parts.append(
-            f"{row['im']} is worse: {row['score']:.3f} (p = {row['p_worse']:.2g}, t over {groups} groups "
+            f"{row['im']} is worse: {row['score']:.3f} ({p_text(float(row['p_worse']))}, t over {groups} groups "
             "of tests that hang together)."
         )
     if len(others):
@@ -300,7 +306,7 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
         if np.isnan(p):
             parts.append(f"Its sufficiency against {column} cannot be tested with these motions.")
         elif p < SUFFICIENT_P:
-            parts.append(f"It is not sufficient: what it leaves depends on {column} (p = {p:.3f}).")
+            parts.append(f"It is not sufficient: what it leaves depends on {column} ({p_text(p)}).")
         else:
             parts.append(f"Nothing shows that what it leaves depends on {column} (p = {p:.2f}).")
     return " ".join(parts)

@@ -15,6 +15,9 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.observations import Floats, positive, verdicts
 
+MOST_FOR_THE_PLANE = 20_000
+"""Tests up to which separation is found exactly; a linear programme of more takes too long."""
+
 
 @dataclass(frozen=True)
 class FragilitySurface:
@@ -79,7 +82,8 @@ def fit_surface(
             "constant) in these tests; choose fewer."
         )
     method = "probit, maximum likelihood (GLM)"
-    if linearly_separable(design, verdict):
+    # among so many tests no plane parts what a fit does not find parted
+    if verdict.size <= MOST_FOR_THE_PLANE and linearly_separable(design, verdict):
         coefficients, information = _penalised(design, verdict)
         method = "probit, penalised likelihood (Firth)"
     else:

@@ -1,0 +1,250 @@
+"""Somebody's own table of tests as a text file, read in pieces so that its length does not matter.
+
+Commas, semicolons and tabs, decimal commas, UTF-8, UTF-16 and Western European text are understood; what
+is not is refused in one sentence that names file, row (the header is row 1) and column.
+"""
+
+import csv
+import os
+import warnings
+from collections.abc import Generator, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.observations import Floats, name_and_unit
+
+ROWS = 100_000
+"""Rows that are read at a time."""
+
+Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
+"""Columns with measures, or for each new column the columns and numbers whose product it is."""
+
+_YES = {"1", "true", "yes", "y", "overturned", "toppled", "fell", "ja", "oui", "si", "sí"}
+_NO = {"0", "false", "no", "n", "survived", "stood", "nein", "non"}
+_DIMENSIONLESS = ("uplift_ratio", "velocity_ratio")
+_WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+
+
+def read_tests(
+    path: str | os.PathLike[str],
+    measures: Measures,
+    *,
+    overturned: str = "overturned",
+    motion: str | None = None,
+    event: str | None = None,
+    given: Sequence[str] = (),
+    keep: Sequence[str] = (),
+) -> pd.DataFrame:
+    """Read a table of tests, one row per test.
+
+    Parameters
+    ----------
+    path
+        Text file with a header.
+    measures
+        Columns of the file, named with their unit (``pga_g``, ``pgv_cm_s``), or for each new column the
+        columns and numbers whose product it is.
+    overturned
+        Column of verdicts: 0/1, yes/no, true/false, overturned/survived.
+    motion, event
+        Columns that name motion and earthquake; without them every row is a motion of its own.
+    given
+        Further columns of numbers.
+    keep
+        Further columns of text.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``motion``, ``event`` (text), ``overturned`` (0 or 1), the measures (above zero), ``given``, ``keep``.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, a column is absent or there twice, a measure has no unit, or a value
+        cannot be used.
+    """
+    source = Path(path).name
+    recipes: dict[str, Sequence[str | float]] = (
+        dict(measures) if isinstance(measures, Mapping) else {name: [name] for name in measures}
+    )
+    if not recipes:
+        raise InputError("measures: name at least one column with an intensity measure.")
+    for name in recipes:
+        if not name_and_unit(name)[1] and not name.startswith(_DIMENSIONLESS):
+            raise InputError(
+                f"measures, {name!r}: the name does not tell a unit; end it with one, such as pga_g, "
+                f"pgv_cm_s or sa_0_3s_g (write {name}_g: [{name}] for a column of the file in g)."
+            )
+    factors = [one for recipe in recipes.values() for one in recipe if isinstance(one, str)]
+    labels = [name for name in (motion, event, *keep) if name is not None]
+    needed = list(dict.fromkeys([overturned, *labels, *factors, *given]))
+    parts, first = [], 0
+    with closing(_pieces(path, source, needed)) as pieces:
+        for piece, decimal_comma in pieces:
+            number = _Numbers(piece, source, first, decimal_comma)
+            columns: dict[str, object] = {
+                "motion": number.labels(motion),
+                "event": number.labels(event if event is not None else motion),
+                "overturned": number.verdicts(overturned),
+            }
+            for name, recipe in recipes.items():
+                columns[name] = number.product(recipe)
+            columns |= {name: number.numbers(name) for name in given}
+            columns |= {name: number.labels(name) for name in keep}
+            parts.append(pd.DataFrame(columns))
+            first += len(piece)
+    if not first:
+        raise InputError(f"{source}: there is no row below the header; give at least one test.")
+    return pd.concat(parts, ignore_index=True)
+
+
+def _pieces(
+    path: str | os.PathLike[str], source: str, needed: Sequence[str]
+) -> Generator[tuple[pd.DataFrame, bool], None, None]:
+    """Yield the needed columns as text, piece by piece, and whether a comma may be a decimal point."""
+    encoding = _encoding(path, source)
+    with open(path, encoding=encoding, newline="") as file:
+        head = file.readline()
+    separator = max(",;\t", key=head.count)
+    titles = [title.strip() for title in next(csv.reader([head], delimiter=separator), [])]
+    if not any(titles):
+        raise InputError(f"{source}: not a readable CSV table (it has no header); mend the file.")
+    places = []
+    for name in needed:
+        if name not in titles:
+            raise InputError(
+                f"{source}: there is no column {name!r}; the file has {', '.join(titles)}."
+            )
+        if titles.count(name) > 1:
+            raise InputError(
+                f"{source}: the title {name!r} stands over {titles.count(name)} columns; rename the one "
+                "that is not meant."
+            )
+        places.append(titles.index(name))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)
+            reader = pd.read_csv(
+                path,
+                header=None,
+                names=range(len(titles)),
+                skiprows=1,
+                dtype=str,
+                index_col=False,
+                sep=separator,
+                encoding=encoding,
+                skipinitialspace=True,
+                chunksize=ROWS,
+            )
+            with reader:
+                for piece in reader:
+                    yield piece[places].set_axis(list(needed), axis=1), separator != ","
+    except pd.errors.EmptyDataError:
+        return
+    except (pd.errors.ParserError, pd.errors.ParserWarning, UnicodeError) as error:
+        reason = str(error).splitlines()[0]
+        raise InputError(
+            f"{source}: not a readable CSV table ({reason}); if its numbers have decimal commas, separate "
+            "the columns by semicolons."
+        ) from error
+
+
+def _encoding(path: str | os.PathLike[str], source: str) -> str:
+    """Tell the text's encoding from its first bytes, and refuse what is no text."""
+    try:
+        with open(path, "rb") as file:
+            start = file.read(65_536)
+    except FileNotFoundError as error:
+        raise InputError(f"{path}: there is no such file; correct the path.") from error
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}).") from error
+    if start.startswith(_WORKBOOKS):
+        raise InputError(
+            f"{source}: this is a spreadsheet or archive, not text; save the sheet as CSV (UTF-8) and name "
+            "that file."
+        )
+    if start.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return "utf-16"
+    if b"\x00" in start:
+        raise InputError(f"{source}: this is not a text file; save the table as CSV (UTF-8).")
+    try:
+        # a character may be cut at the end of what was read
+        start[: start.rfind(b"\n") + 1].decode("utf-8")
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8-sig"
+
+
+class _Numbers:
+    """One piece of the table, and how to read its columns."""
+
+    def __init__(self, piece: pd.DataFrame, source: str, first: int, decimal_comma: bool) -> None:
+        self.piece, self.source, self.first = piece, source, first
+        self.decimal_comma = decimal_comma
+
+    def where(self, row: int, column: str) -> str:
+        """File, row as a spreadsheet shows it, and column."""
+        return f"{self.source}, row {self.first + row + 2}, column {column!r}"
+
+    def labels(self, column: str | None) -> list[str]:
+        """Text of a column; the row's own label where there is no column."""
+        if column is None:
+            return [f"row {self.first + row + 2}" for row in range(len(self.piece))]
+        values = self.piece[column]
+        missing = np.flatnonzero(values.isna())
+        if missing.size:
+            raise InputError(
+                f"{self.where(int(missing[0]), column)}: the label is missing; fill it in."
+            )
+        return [str(value).strip() for value in values]
+
+    def numbers(self, column: str) -> Floats:
+        """Column as finite numbers, shape (rows,)."""
+        text = self.piece[column].str.strip()
+        if self.decimal_comma:
+            text = text.str.replace(",", ".", regex=False)
+        values = pd.to_numeric(text, errors="coerce").to_numpy(dtype=np.float64)
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            found = self.piece[column].iloc[int(bad[0])]
+            what = "nothing" if pd.isna(found) else repr(found)
+            raise InputError(
+                f"{self.where(int(bad[0]), column)}: {what} is not a finite number; correct it or leave "
+                "the row out."
+            )
+        return values
+
+    def product(self, recipe: Sequence[str | float]) -> Floats:
+        """Product of columns and numbers, above zero because it enters by its logarithm, (rows,)."""
+        result = np.ones(len(self.piece))
+        for factor in recipe:
+            if not isinstance(factor, str):
+                result = result * float(factor)
+                continue
+            values = self.numbers(factor)
+            if (values <= 0).any():
+                row = int(np.flatnonzero(values <= 0)[0])
+                raise InputError(
+                    f"{self.where(row, factor)}: an intensity measure must be above zero to have a "
+                    f"logarithm, got {values[row]:g}; correct it or leave the row out."
+                )
+            result = result * values
+        return result
+
+    def verdicts(self, column: str) -> Floats:
+        """Verdicts as 0 and 1, shape (rows,)."""
+        text = self.piece[column].fillna("").str.strip().str.lower()
+        text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
+        known = text.isin(_YES | _NO).to_numpy()
+        if not known.all():
+            row = int(np.flatnonzero(~known)[0])
+            raise InputError(
+                f"{self.where(row, column)}: {self.piece[column].iloc[row]!r} is no verdict; write 1 or yes "
+                "for overturned, 0 or no for survived."
+            )
+        return np.asarray(text.isin(_YES), dtype=np.float64)

@@ -1,0 +1,111 @@
+"""Tables as people have them: read, or refused in one sentence that says how to mend them."""
+
+import resource
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.fragility import fit_user_table
+from rockfrag.fragility.tests_file import read_tests
+
+ROWS = [("r1", 0.35, "no"), ("r2", 0.5, "yes"), ("r3", 0.25, "no")]
+
+
+def write(path, separator=",", decimal=".", encoding="utf-8", title="pga_g"):
+    lines = [separator.join(("record", title, "overturned"))]
+    lines += [
+        separator.join((name, str(value).replace(".", decimal), verdict))
+        for name, value, verdict in ROWS
+    ]
+    path.write_bytes("\n".join(lines).encode(encoding))
+    return path
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        {},
+        {"separator": ";"},
+        {"separator": ";", "decimal": ","},
+        {"separator": "\t", "decimal": ","},
+        {"encoding": "utf-16"},
+        {"encoding": "utf-8-sig"},
+        {"separator": ";", "decimal": ",", "encoding": "utf-16"},
+    ],
+)
+def test_same_table_in_every_form(tmp_path, form):
+    table = read_tests(write(tmp_path / "t.csv", **form), ["pga_g"], motion="record")
+    assert table["motion"].tolist() == ["r1", "r2", "r3"]
+    assert table["pga_g"].tolist() == [0.35, 0.5, 0.25]
+    assert table["overturned"].tolist() == [0, 1, 0]
+
+
+def test_western_european_labels_are_read(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_bytes("record,pga_g,overturned\nGröbming,0.3,ja\nB,0.2,nein\n".encode("cp1252"))
+    table = read_tests(path, ["pga_g"], motion="record")
+    assert table["motion"].tolist() == ["Gröbming", "B"]
+    assert table["overturned"].tolist() == [1, 0]
+
+
+def test_workbook_is_refused_with_the_cure(tmp_path):
+    path = tmp_path / "t.xlsx"
+    path.write_bytes(b"PK\x03\x04" + bytes(100))
+    with pytest.raises(InputError, match=r"t\.xlsx: this is a spreadsheet.*save the sheet as CSV"):
+        read_tests(path, ["pga_g"])
+
+
+def test_doubled_title_is_refused_where_it_is_meant(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("pga_g,note,note,pga_g,overturned\n0.3,a,b,0.4,1\n")
+    with pytest.raises(InputError, match=r"'pga_g' stands over 2 columns; rename"):
+        read_tests(path, ["pga_g"])
+    path.write_text("pga_g,note,note,overturned\n0.3,a,b,1\n")
+    assert len(read_tests(path, ["pga_g"])) == 1
+
+
+def test_measure_without_a_unit_is_refused_with_the_cure(tmp_path):
+    path = write(tmp_path / "t.csv", title="PGA")
+    with pytest.raises(InputError, match=r"'PGA': the name does not tell a unit.*PGA_g: \[PGA\]"):
+        read_tests(path, ["PGA"])
+    assert read_tests(path, {"pga_g": ["PGA"]})["pga_g"].tolist() == [0.35, 0.5, 0.25]
+
+
+def test_decimal_commas_between_commas_are_refused_with_the_cure(tmp_path):
+    path = write(tmp_path / "t.csv", decimal=",")
+    with pytest.raises(InputError, match="separate the columns by semicolons"):
+        read_tests(path, ["pga_g"])
+
+
+def test_other_columns_are_kept_as_text(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("pga_g,overturned,site\n0.3,1,A\n0.2,0,B\n")
+    assert read_tests(path, ["pga_g"], keep=["site"])["site"].tolist() == ["A", "B"]
+
+
+@pytest.mark.slow
+def test_a_million_rows_of_2000_motions_take_bounded_memory(tmp_path):
+    """A sweep of 2000 motions; one array of motions by rows alone would take 15 GiB."""
+    rng = np.random.default_rng(1)
+    motions, each = 2000, 500
+    motion = np.repeat(np.arange(motions), each)
+    velocity = np.exp(rng.normal(3.0, 0.6, motion.size))
+    capacity = np.exp(3.2 + 0.3 * rng.normal(size=motions)[motion])
+    path = tmp_path / "many.csv"
+    pd.DataFrame(
+        {
+            "record": [f"r{k}" for k in motion],
+            "pgv_cm_s": velocity,
+            "pga_g": velocity / 60 * np.exp(0.5 * rng.normal(size=motion.size)),
+            "overturned": (velocity > capacity).astype(int),
+        }
+    ).to_csv(path, index=False)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    found = fit_user_table(path, ["pgv_cm_s", "pga_g"], motion="record")
+    grown = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 2**20
+    assert found.choice.name == "PGV"
+    assert found.fits["pgv_cm_s"].fit.theta == pytest.approx(np.exp(3.2), rel=0.02)
+    assert found.fits["pgv_cm_s"].interval.groups == motions
+    assert grown < 2.0, f"{grown:.1f} GiB"
