@@ -175,7 +175,15 @@ def _pooled(outcomes: Outcomes) -> Outcomes:
     labels = np.arange(values.size).astype(object)
     fell = np.bincount(cell, outcomes.overturned)
     trials = np.bincount(cell, outcomes.trials)
-    return Outcomes(np.exp(values), fell * 1.0, trials * 1.0, labels, labels, outcomes.name, outcomes.unit)
+    return Outcomes(
+        np.exp(values),
+        np.asarray(fell, float),
+        np.asarray(trials, float),
+        labels,
+        labels,
+        outcomes.name,
+        outcomes.unit,
+    )
 
 
 def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
