@@ -1,11 +1,13 @@
-"""The stages of a study: those that every study has, and those of the guest it is compared with.
+"""What a study does and what its report holds: what every study has, and what its guest adds.
 
-The one place that knows of the thesis. A new stage is added to the list here.
+The one place that knows of the thesis. A new stage is added to the list here; a new part of the
+report in :mod:`rockfrag.report.sections`.
 """
 
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
-from rockfrag.report.stages import MEASURED_TABLE, REPORT
+from rockfrag.report.stages import MEASURED_TABLE
 from rockfrag.stages import (
     explanation,
     fragility,
@@ -16,10 +18,13 @@ from rockfrag.stages import (
     sweep,
     tests,
 )
-from rockfrag.stages.stage import Stage
+from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.measured_table import MeasuredTable
 from rockfrag.study.study import Study
 from rockfrag.thesis import stages as thesis
+
+if TYPE_CHECKING:
+    from rockfrag.report.part import Part
 
 _GENERAL: tuple[Stage[Study], ...] = (
     motions.STAGE,
@@ -38,4 +43,39 @@ def study_stages(study: Study | MeasuredTable) -> list[Stage[Any]]:
     if isinstance(study, MeasuredTable):
         return [MEASURED_TABLE]
     guests = [thesis.STAGE] if study.compare_with == "thesis" else []
-    return [one for one in (*_GENERAL, *guests, REPORT) if one.wanted(study)]
+    stages = [one for one in (*_GENERAL, *guests) if one.wanted(study)]
+    return [*stages, _report_stage(stages)]
+
+
+def report_parts(study: Study) -> "Sequence[Part]":
+    """Parts of the report of a study in their order."""
+    from rockfrag.report.sections import PARTS
+
+    if study.compare_with != "thesis":
+        return PARTS
+    from rockfrag.thesis.sections import with_thesis
+
+    return with_thesis(PARTS)
+
+
+def _report_stage(stages: Sequence[Stage[Study]]) -> Stage[Study]:
+    """Return the last stage, which may read whatever the others write."""
+    return Stage(
+        name="report",
+        run=_report,
+        inputs=lambda study: [
+            path for one in stages for path in one.output_files(study) if path.endswith(".parquet")
+        ],
+        files=lambda study: study.body_files,
+        outputs=("figures/", "report.html"),
+        settings=("title", "bodies", "amplitudes", "protocol", "fragility", "seed", "compare_with"),
+    )
+
+
+def _report(job: Job[Study]) -> Results:
+    """Draw the figures and write the page."""
+    from rockfrag.report.study_report import write_report
+
+    write_report(job.study, report_parts(job.study), job.folder)
+    job.log.info("%s", job.folder / "report.html")
+    yield from ()

@@ -4,20 +4,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
-from rockfrag.fragility.estimators import fit_cloud, fit_incremental
+from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.observations import outcomes_from_table
 from rockfrag.fragility.states import fit_three_states
 from rockfrag.fragility.surface import fit_surface
 from rockfrag.report.figures.fragility import (
     calibration_figure,
-    fragility_figure,
     measures_figure,
     states_figure,
     surface_figure,
 )
-from rockfrag.report.figures.style import save_figure
 
 
 @pytest.fixture(scope="module")
@@ -36,37 +33,12 @@ def sweep():
     return pd.DataFrame(rows)
 
 
-def test_the_curve_is_drawn_through_its_median_with_its_limits_and_windows(sweep, tmp_path):
-    result = fit_incremental(sweep)
-    outcomes = outcomes_from_table(sweep, "amplitude_g")
-    figure = fragility_figure({"T1": result.probability}, {"T1": outcomes}, {"T1": result.windows})
-    upper, lower = figure.axes
-    curve = next(line for line in upper.lines if line.get_label().startswith("T1"))
-    x, y = curve.get_data()
-    assert np.interp(0.5, y, x) == pytest.approx(result.probability.fit.theta, rel=0.01)
-    assert lower.lines[0].get_ydata().max() > 0
-    save_figure(figure, tmp_path / "a.svg")
-    save_figure(
-        fragility_figure({"T1": result.probability}, {"T1": outcomes}, {"T1": result.windows}),
-        tmp_path / "b.svg",
-    )
-    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
-
-
-def test_curves_in_different_measures_do_not_share_an_axis(sweep):
+def test_each_measure_has_a_panel_with_its_curve(sweep):
     pga, pgv = fit_cloud(sweep, "amplitude_g"), fit_cloud(sweep, "pgv_cm_s")
-    with pytest.raises(InputError, match="different measures"):
-        fragility_figure({"a": pga, "b": pgv})
     data = {name: outcomes_from_table(sweep, name) for name in ("amplitude_g", "pgv_cm_s")}
     figure = measures_figure({"amplitude_g": pga, "pgv_cm_s": pgv}, data)
     assert [axes.get_xlabel() for axes in figure.axes] == ["PGA [g]", "PGV [cm/s]"]
     assert f"AIC {pgv.fit.aic:.1f}" in figure.axes[1].get_title(loc="left")
-
-
-def test_a_data_set_without_a_curve_is_not_drawn(sweep):
-    survived = fit_cloud(sweep.assign(overturned=False), "amplitude_g")
-    with pytest.raises(InputError, match="none of the data sets"):
-        fragility_figure({"T1": survived})
 
 
 def test_states_surface_and_calibration_are_drawn_in_their_units(sweep):

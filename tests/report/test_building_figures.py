@@ -2,7 +2,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.report.figures.building import floor_order, floor_statements, shaker_limits
+from rockfrag.report.figures.building import floor_amplitudes
+from rockfrag.thesis.figures.floors import floor_order, floor_statements
 from rockfrag.thesis.floor_order import STATEMENTS
 
 PERIODS = (0.3, 0.5, 0.7)
@@ -18,9 +19,8 @@ def tests():
                 "value": period,
                 "pedestal": "NP",
                 "floor": floor,
-                "reading": "step_protocol",
-                "amplitude_g": values[i],
-                "lower_g": values[i],
+                "mean_g": values[i],
+                "by": "floor",
             }
             for floor, values in floors.items()
             for i, period in enumerate(PERIODS)
@@ -44,7 +44,7 @@ def margins():
 
 
 def test_the_order_of_the_floors_is_shaded_where_it_holds(tests, margins):
-    figure = floor_order(tests, margins, ["step_protocol"])
+    figure = floor_order(tests, margins, "step_protocol")
     (axes,) = figure.axes
     lines = {line.get_label(): line.get_ydata().tolist() for line in axes.lines}
     assert lines["3rd floor"] == [0.5, 0.3, 0.2]
@@ -63,9 +63,11 @@ def test_the_map_of_statements_shows_every_margin(margins):
     assert set(dots.get_xdata()) == {2}
 
 
-def test_the_shakers_limits_stand_beside_the_objects():
-    table = pd.DataFrame({"motion": ["a", "b"], "limit_g": [0.4, 1.5]})
-    fallen = pd.DataFrame({"object": ["T1", "T1"], "motion": ["a", "b"], "upper_g": [0.5, 0.6]})
-    axes = shaker_limits(table, fallen).axes[0]
-    assert [bar.get_width() for bar in axes.patches] == [1.5, 0.4]
-    assert axes.lines[0].get_xdata().tolist() == [0.6, 0.5]
+def test_the_building_figure_has_a_line_per_floor_and_marks_what_is_not_to_be_believed(tests):
+    means = tests.assign(label="x", credible=[True, True, False] * 3)
+    means["label"] = [f"first period {value:g} s" for value in means["value"]]
+    axes = floor_amplitudes(means, "first_period_s").axes[0]
+    lines = {line.get_label(): line.get_ydata().tolist() for line in axes.lines}
+    assert lines["F3"] == [0.5, 0.3, 0.2]
+    crosses = [line for line in axes.lines if line.get_marker() == "x"]
+    assert [line.get_xdata().tolist() for line in crosses] == [[2]] * 3

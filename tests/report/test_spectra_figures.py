@@ -33,7 +33,7 @@ def test_one_row_per_motion_and_marks_where_blocks_fall(tmp_path) -> None:  # ty
 def test_oscillators_above_blocks_below() -> None:
     figure = comparison_figure([STRONG, WEAK], ALPHA)
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels[:3] == ["$S_d$ [cm]", "$S_v$ [cm/s]", "$S_a$ [g]"]
+    assert labels[:3] == ["Sd [cm]", "Sv [cm/s]", "Sa [g]"]
     assert [text.get_text() for text in figure.axes[4].get_legend().get_texts()] == [
         "strong one",
         "weak",

@@ -68,7 +68,7 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     assert curves.loc["PGV", "theta"] == pytest.approx(40, rel=0.1)
     assert pd.read_parquet(results / "recommendation.parquet")["im"].iloc[0] == "PGV"
     page = (results / "report.html").read_text()
-    assert "PGV foretells overturning best" in page
+    assert "PGV predicts overturning best" in page
     assert "Simulated, not measured" not in page
     assert 'src="http' not in page
     assert (results / "figures" / "surface.png").stat().st_size > 1000

@@ -1,6 +1,7 @@
 """The report of a measured table: its curves, the choice of the measure, and how well they fit."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -8,13 +9,15 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from rockfrag.files import write_text
 from rockfrag.fragility.user_table import UserFragility
-from rockfrag.report.estimate_columns import with_limits
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure, surface_figure
-from rockfrag.report.figures.style import COLUMN_WIDTH, figure_style, new_figure
-from rockfrag.report.findings import Finding
-from rockfrag.report.page import Column, Picture, Section, render, table_html
-from rockfrag.stages.digest import source_digest
+from rockfrag.report.figures.style import note_figure
+from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.part import FigureSpec, Finding, Section
+from rockfrag.report.study_report import FIGURES, draw
+from rockfrag.report.wording import counted, estimates, probability
+from rockfrag.stages.digest import package_digest
 from rockfrag.study.measured_table import MeasuredTable
 
 TABLES = ("tests", "fragility", "recommendation", "bins", "goodness")
@@ -26,11 +29,6 @@ _CAPTIONS = {
     "surface": "Tests in the first two measures, with lines of equal fitted probability.",
     "calibration": "Observed against fitted shares of overturned tests; the diagonal is perfect.",
 }
-
-
-def figure_names(study: MeasuredTable) -> list[str]:
-    """Names of the figures, in the order of the report."""
-    return [name for name in _CAPTIONS if name != "surface" or len(study.measures) > 1]
 
 
 def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
@@ -55,32 +53,33 @@ def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
     }
 
 
-def draw(study: MeasuredTable, found: UserFragility) -> dict[str, Figure]:
-    """Draw every figure; one that its data cannot carry says so in words."""
+def figure_specs(study: MeasuredTable, found: UserFragility) -> dict[str, FigureSpec]:
+    """Figures by name; one that its data cannot carry says so in words."""
     curves = {name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)}
     outcomes = {name: found.outcomes[name] for name in curves}
-    figures: dict[str, Figure] = {}
-    for name in figure_names(study):
-        if name == "measures" and curves:
-            figures[name] = measures_figure(curves, outcomes)
-        elif name == "surface" and found.surface is not None:
-            figures[name] = surface_figure(found.surface, found.tests)
-        elif name == "calibration" and found.goodness:
-            figures[name] = calibration_figure(found.goodness)
-        else:
-            figures[name] = _note("No curve: these tests do not rise with a measure.")
-    return figures
+    surface = found.surface
+    drawings: dict[str, Callable[[], Figure]] = {}
+    if curves:
+        drawings["measures"] = lambda: measures_figure(curves, outcomes)
+    if surface is not None:
+        drawings["surface"] = lambda: surface_figure(surface, found.tests)
+    if found.goodness:
+        drawings["calibration"] = lambda: calibration_figure(found.goodness)
+    nothing = partial(note_figure, "No curve: these tests do not rise with a measure.")
+    wanted = [name for name in _CAPTIONS if name != "surface" or len(study.measures) > 1]
+    return {
+        name: FigureSpec(
+            name,
+            f"{_CAPTIONS[name]} {found.choice.words}",
+            _CAPTIONS[name],
+            drawings.get(name, nothing),
+        )
+        for name in wanted
+    }
 
 
-def _note(words: str) -> Figure:
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.6)
-        figure.text(0.5, 0.5, words, ha="center", va="center")
-        return figure
-
-
-def write_measured_page(study: MeasuredTable, found: UserFragility, figures: Path) -> str:
-    """Return the report as HTML.
+def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Path) -> None:
+    """Draw the figures and write the page, ``report.html``.
 
     Parameters
     ----------
@@ -88,37 +87,39 @@ def write_measured_page(study: MeasuredTable, found: UserFragility, figures: Pat
         The configuration.
     found
         What the table says.
-    figures
-        Folder with the figures as SVG.
+    folder
+        Folder of the results.
     """
     tables = result_tables(found)
-    pictures = {
-        name: Picture(figures / f"{name}.svg", _CAPTIONS[name]) for name in figure_names(study)
-    }
+    specs = figure_specs(study, found)
+    pictures = {name: draw(spec, folder / FIGURES) for name, spec in specs.items()}
     tests = found.tests
     motions, fell = tests["motion"].nunique(), int(tests["overturned"].sum())
-    return render(
+    page = render(
         title=study.title,
-        lead=f"{len(tests)} measured tests with {motions} motions, {fell} of them overturned.",
+        lead=f"{counted(len(tests), 'measured test')} with {counted(motions, 'motion')}, "
+        f"{fell} of them overturned.",
         findings=_findings(found),
         sections=[
-            _choice(tables["recommendation"], pictures),
-            _curves(study, tables, pictures),
+            _choice(tables["recommendation"], specs),
+            _curves(study, tables, specs),
         ],
+        pictures=pictures,
         provenance={
             "Configuration": study.source.name,
             "Table": f"{study.table.name}, SHA-256 of the values used "
             f"{tables['fragility']['record_set_sha256'].iloc[0]}",
             "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('rockfrag.guests')}",
+            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
         },
         basis="measured",
     )
+    write_text(page, folder / "report.html")
 
 
 def _findings(found: UserFragility) -> list[Finding]:
     name = found.choice.name
-    headline = f"{name} foretells overturning best" if name else "No measure has a rising curve"
+    headline = f"{name} predicts overturning best" if name else "No measure has a rising curve"
     findings = [Finding(headline, found.choice.words)]
     findings += [
         Finding(f"Fit in {found.fits[measure].fit.im}", one.words)
@@ -127,7 +128,7 @@ def _findings(found: UserFragility) -> list[Finding]:
     return findings
 
 
-def _choice(choice: pd.DataFrame, pictures: Mapping[str, Picture]) -> Section:
+def _choice(choice: pd.DataFrame, figures: Mapping[str, FigureSpec]) -> Section:
     columns = [
         Column("im", "Measure"),
         Column("unit", "Unit"),
@@ -138,7 +139,8 @@ def _choice(choice: pd.DataFrame, pictures: Mapping[str, Picture]) -> Section:
         Column("chosen_share", "Best in share of bootstrap samples", 2),
     ]
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
-    columns += [Column(name, f"p, {name.removeprefix('p_')}", 3) for name in given]
+    columns += [Column(name, f"p, {name.removeprefix('p_')}", numeric=True) for name in given]
+    choice = choice.assign(**{name: [probability(p) for p in choice[name]] for name in given})
     return Section(
         "measure",
         "Choice of the intensity measure",
@@ -148,37 +150,43 @@ def _choice(choice: pd.DataFrame, pictures: Mapping[str, Picture]) -> Section:
         ],
         [
             table_html(choice, columns, "Measures compared on the same tests, best first."),
-            *[pictures[name] for name in ("measures", "surface") if name in pictures],
+            *[figures[name] for name in ("measures", "surface") if name in figures],
         ],
     )
 
 
 def _curves(
-    study: MeasuredTable, tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture]
+    study: MeasuredTable, tables: Mapping[str, pd.DataFrame], figures: Mapping[str, FigureSpec]
 ) -> Section:
     level = f"{100 * study.confidence:g} %"
     curves = (
         Column("im", "Measure"),
         Column("unit", "Unit"),
-        *with_limits("theta", "Median θ", "theta_lower", "theta_upper"),
-        *with_limits("beta", "β", "beta_lower", "beta_upper"),
+        Column("theta_text", "Median θ", numeric=True),
+        Column("beta_text", "β", numeric=True),
         Column("aic", "AIC", 1),
     )
     fits = (
         Column("measure", "Measure"),
         Column("deviance", "Deviance", 1),
-        Column("p_value", "p", 3),
+        Column("p_text", "p", numeric=True),
         Column("brier", "Brier score", 3),
         Column("finding", "Finding"),
     )
-    warnings = sorted({note for note in tables["fragility"]["warnings"] if note})
+    fitted, goodness = tables["fragility"], tables["goodness"]
+    warnings = list(dict.fromkeys(note for note in fitted["warnings"] if note))
+    goodness = goodness.assign(p_text=[probability(p) for p in goodness["p_value"]])
+    fitted = fitted.assign(
+        theta_text=estimates(fitted, ("theta", "theta_lower", "theta_upper")),
+        beta_text=estimates(fitted, ("beta", "beta_lower", "beta_upper")),
+    )
     return Section(
         "fragility",
         "Fragility curves",
         [f"Lognormal curves with intervals of {level}, from resampled motions.", *warnings],
         [
-            table_html(tables["fragility"], curves, f"Medians and dispersions, {level} intervals."),
-            table_html(tables["goodness"], fits, "Goodness of fit."),
-            pictures["calibration"],
+            table_html(fitted, curves, f"Medians and dispersions, {level} intervals."),
+            table_html(goodness, fits, "Goodness of fit."),
+            figures["calibration"],
         ],
     )

@@ -1,6 +1,5 @@
-"""The report: one HTML page that loads nothing from outside."""
+"""The page: one HTML file that loads nothing from outside, with its figures inside as text and lines."""
 
-import base64
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -12,11 +11,12 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.report.findings import Finding
+from rockfrag.report.part import FigureSpec, Finding, Section
+from rockfrag.report.wording import number
 
 _PIXELS_PER_POINT = 96 / 72 * 1.22
-_LONGEST_LINE = 24
-_COLUMN = round(252 * _PIXELS_PER_POINT)
+_COLUMN = 252 * _PIXELS_PER_POINT
+_LONGEST_LINE = 28
 
 
 @dataclass(frozen=True)
@@ -31,145 +31,153 @@ class Column:
         What its head says, with the unit.
     digits
         Decimals of numbers, or None for text.
+    numeric
+        Whether text is of numbers, such as an estimate with its limits, and stands to the right.
     """
 
     name: str
     title: str
     digits: int | None = None
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A figure on the page: a path to an SVG, and its caption."""
-
-    path: Path
-    caption: str
-
-    @property
-    def width(self) -> int:
-        """Width on a wide screen [px], a little above the printed one so that text reads well."""
-        found = re.search(rb'<svg[^>]* width="([0-9.]+)pt"', self.path.read_bytes())
-        return round(float(found[1]) * _PIXELS_PER_POINT) if found else _COLUMN
-
-    @property
-    def wide(self) -> bool:
-        """Whether it needs more than a column, so that it scrolls on a narrow screen."""
-        return self.width > 1.5 * _COLUMN
-
-    @property
-    def source(self) -> Markup:
-        """The SVG as a data address, so that figures share no identifiers and load nothing."""
-        data = base64.b64encode(self.path.read_bytes()).decode("ascii")
-        return Markup("data:image/svg+xml;base64,") + data
+    numeric: bool = False
 
 
 def cell(value: Any, digits: int | None) -> str:
     """Format one cell: numbers to their digits, truth as yes or no, and a dash for what is missing."""
-    if value is None or value is pd.NA or (isinstance(value, float) and math.isnan(value)):
+    if value is None or value is pd.NA:
+        return "–"
+    if isinstance(value, float) and not math.isfinite(value):
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if digits is not None and not isinstance(value, str):
-        return f"{value:.{digits}f}".replace("-", "−")
+        return number(value, digits)
     return str(value) if str(value) else "–"
 
 
-def _kind(values: pd.Series, column: Column) -> str:
-    """Class of a column's cells: numbers, texts that stay on one line, texts that wrap."""
-    if column.digits is not None:
-        return "number"
-    return "long" if values.astype(str).str.len().max() > _LONGEST_LINE else "short"
-
-
 def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> Markup:
-    """Render a table that scrolls inside its own frame where the screen is narrow."""
+    """Render a table; on a narrow screen its rows become lists of titles and values.
+
+    Returns
+    -------
+    Markup; empty for a table without rows, so that no page shows an empty one.
+    """
+    if table.empty:
+        return Markup("")
     head = Markup("").join(
-        Markup('<th class="{}">{}</th>').format("" if c.digits is None else "number", c.title)
+        Markup('<th scope="col" class="{}">{}</th>').format(_kind(table, c), c.title)
         for c in columns
     )
-    kinds = {c.name: _kind(table[c.name], c) for c in columns}
+    kinds = {c.name: _kind(table, c) for c in columns}
     rows = Markup("").join(
         Markup("<tr>{}</tr>").format(
             Markup("").join(
-                Markup('<td class="{}">{}</td>').format(kinds[c.name], cell(row[c.name], c.digits))
-                for c in columns
+                cell_html(cell(row[c.name], c.digits), c.title, kinds[c.name]) for c in columns
             )
         )
         for row in table.to_dict("records")
     )
-    return _framed(caption, head, rows)
+    return framed(caption, head, rows)
 
 
-def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
-    """Render computed values with the printed ones below them, a row per name.
-
-    Parameters
-    ----------
-    comparison
-        See :func:`rockfrag.thesis.printed_tables.compare`.
-    caption
-        What the table shows.
-    """
-    # a lone block has no pattern 3: the order of the columns is that of the fullest row
-    fullest = max((part for _, part in comparison.groupby("name")), key=len)
-    quantities = fullest[["quantity", "unit"]].to_numpy().tolist()
-    rows: dict[tuple[str, str], Any] = {
-        (r["name"], r["quantity"]): r for r in comparison.to_dict("records")
-    }
-    head = Markup("<th>Name</th>") + Markup("").join(
-        Markup('<th class="number">{}{}</th>').format(name, "" if unit == "-" else f" [{unit}]")
-        for name, unit in quantities
-    )
-    body = Markup("").join(
-        Markup("<tr><td>{}</td>{}</tr>").format(
-            name,
-            Markup("").join(_compared(rows.get((name, quantity))) for quantity, _ in quantities),
-        )
-        for name in dict.fromkeys(comparison["name"])
-    )
-    printed = comparison["printed"].ne("").any()
-    note = " Below each value the printed one; ✓ where they agree to its digits." if printed else ""
-    return _framed(caption + note, head, body)
+def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
+    """One cell, which carries the title of its column to narrow screens."""
+    return Markup('<td class="{}" data-title="{}">{}</td>').format(kind, title, content)
 
 
-def _compared(row: Mapping[str, Any] | None) -> Markup:
-    if row is None:
-        return Markup('<td class="number">–</td>')
-    printed = Markup("")
-    if row["printed"]:
-        sign = "✓" if row["agrees"] else "≠"
-        printed = Markup("<br><small>{} {}</small>").format(row["printed"], sign)
-    return Markup('<td class="number">{}{}</td>').format(cell(row["computed"], 4), printed)
-
-
-def _framed(caption: str, head: Markup, rows: Markup) -> Markup:
+def framed(caption: str, head: Markup, rows: Markup) -> Markup:
+    """A table with its caption, in a frame that scrolls where it is wider than the page."""
     return Markup(
-        '<figure class="table"><figcaption>{}</figcaption><div class="scroll" tabindex="0"><table>'
+        '<figure class="table"><figcaption>{}</figcaption><div class="scroll"><table>'
         "<thead><tr>{}</tr></thead><tbody>{}</tbody></table></div></figure>"
     ).format(caption, head, rows)
 
 
-@dataclass(frozen=True)
-class Section:
-    """A part of the page: paragraphs, then tables and figures in order."""
+def _kind(table: pd.DataFrame, column: Column) -> str:
+    """Class of a column's cells: numbers, texts that stay on one line, texts that wrap."""
+    if column.digits is not None or column.numeric:
+        return "number"
+    longest = table[column.name].astype(str).str.len().max()
+    return "long" if longest > _LONGEST_LINE else "short"
 
-    anchor: str
-    title: str
-    paragraphs: Sequence[str] = ()
-    parts: Sequence[Markup | Picture] = ()
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawn figure on the page.
+
+    Attributes
+    ----------
+    spec
+        The figure.
+    svg
+        What was drawn of it.
+    """
+
+    spec: FigureSpec
+    svg: str
 
     @property
-    def blocks(self) -> list[tuple[str, Any]]:
-        """Parts with neighbouring pictures in one row."""
-        blocks: list[tuple[str, Any]] = []
-        for part in self.parts:
-            if isinstance(part, Markup):
-                blocks.append(("html", part))
-            elif blocks and blocks[-1][0] == "pictures":
-                blocks[-1][1].append(part)
-            else:
-                blocks.append(("pictures", [part]))
-        return blocks
+    def width(self) -> int:
+        """Width on a wide screen [px], a little above the printed one so that text reads well."""
+        found = re.search(r'<svg[^>]* width="([0-9.]+)pt"', self.svg)
+        return round(float(found[1]) * _PIXELS_PER_POINT) if found else round(_COLUMN)
+
+    @property
+    def wide(self) -> bool:
+        """Whether it needs more than a column."""
+        return self.width > 1.5 * _COLUMN
+
+    @property
+    def inline(self) -> Markup:
+        """The drawing as part of the page: its text can be searched, its identifiers are its own."""
+        return inline_svg(self.svg, self.spec.name, self.spec.alt)
+
+
+def inline_svg(svg: str, name: str, alt: str) -> Markup:
+    """Return a drawing of matplotlib as an element of a page that holds several.
+
+    Identifiers that nothing refers to go, the others get the figure's name before them; the style
+    sheet, which would change the whole page, becomes attributes.
+    """
+    start = re.search(r"<svg[^>]*>", svg)
+    if start is None:
+        raise ValueError(f"{name}: this is no SVG")
+    inner = svg[start.end() : svg.rindex("</svg>")]
+    for noise in (r"<metadata>.*?</metadata>", r"<style.*?</style>", r"<!--.*?-->"):
+        inner = re.sub(noise, "", inner, flags=re.DOTALL)
+    wanted = set(re.findall(r'(?:url\(#|href="#)([^")]+)', inner))
+
+    def own(found: re.Match[str]) -> str:
+        return f' id="{name}-{found[1]}"' if found[1] in wanted else ""
+
+    inner = re.sub(r' id="([^"]*)"', own, inner)
+    inner = re.sub(r'(url\(#|href="#)', rf"\g<1>{name}-", inner)
+    inner = re.sub(r">\s+<", "><", inner)
+    box = re.search(r'viewBox="([^"]*)"', start[0])
+    # the drawing is matplotlib's, which has escaped every name in it
+    return Markup(
+        '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
+        'viewBox="{}" role="img" aria-label="{}" stroke-linejoin="round">{}</svg>'
+    ).format(box[1] if box else "", alt, Markup(inner.strip()))
+
+
+def read_picture(spec: FigureSpec, path: Path) -> Picture:
+    """Return the figure drawn in an SVG file."""
+    return Picture(spec, path.read_text(encoding="utf-8"))
+
+
+def _blocks(
+    section: Section, pictures: Mapping[str, Picture]
+) -> list[tuple[str, Markup | list[Picture]]]:
+    """Parts of a section, neighbouring pictures in one row."""
+    blocks: list[tuple[str, Any]] = []
+    for part in section.parts:
+        if isinstance(part, FigureSpec):
+            if not blocks or blocks[-1][0] != "pictures":
+                blocks.append(("pictures", []))
+            blocks[-1][1].append(pictures[part.name])
+        elif part:
+            blocks.append(("html", part))
+    return blocks
 
 
 def render(
@@ -177,12 +185,26 @@ def render(
     lead: str,
     findings: Sequence[Finding],
     sections: Sequence[Section],
+    pictures: Mapping[str, Picture],
     provenance: Mapping[str, str],
     basis: str = "simulated",
 ) -> str:
     """Return the page as HTML; the same arguments give the same bytes.
 
-    ``basis`` says whether its figures are ``simulated`` or ``measured``; the page warns of the first.
+    Parameters
+    ----------
+    title, lead
+        Heading of the page, and the sentence below it.
+    findings
+        What was found, most important first.
+    sections
+        Sections in order.
+    pictures
+        The figures of all sections by name.
+    provenance
+        What a reader needs to get the same results again.
+    basis
+        Whether its figures are ``simulated`` or ``measured``; the page warns of the first.
     """
     environment = Environment(
         loader=PackageLoader("rockfrag.report"),
@@ -197,7 +219,7 @@ def render(
         title=title,
         lead=lead,
         findings=findings,
-        sections=sections,
+        sections=[(section, _blocks(section, pictures)) for section in sections],
         provenance=provenance,
         basis=basis,
         style=Markup(style),

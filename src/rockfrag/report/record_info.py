@@ -27,6 +27,7 @@ from rockfrag.report.figures.style import (
     RED,
     figure_style,
     new_figure,
+    plain_log,
     save_figure,
 )
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
@@ -230,6 +231,8 @@ def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], co
     panel.loglog(x, np.maximum(y, 1e-9 * largest), color=colour, linewidth=0.8)
     lowest = max(float(y.min()) if y.size else 0.0, 1e-5 * largest)
     panel.set_ylim(0.7 * lowest, 2 * largest)
+    plain_log(panel, "x")
+    plain_log(panel, "y")
     panel.grid(visible=True, which="major")
 
 

@@ -27,6 +27,18 @@ def source_digest(module: str) -> str:
 
 
 @cache
+def package_digest() -> str:
+    """Return a digest of the whole package's source and data, which says what made a report."""
+    digest = hashlib.sha256()
+    for path in sorted(ROOT.rglob("*")):
+        if path.is_file() and path.suffix != ".pyc":
+            digest.update(path.relative_to(ROOT).as_posix().encode())
+            digest.update(b"\0")
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
 def source_files(module: str) -> tuple[Path, ...]:
     """Files that a module is made of: itself, what it imports at any depth, and data beside them.
 

@@ -7,7 +7,9 @@ from rockfrag.yaml_file import read_yaml
 
 
 def run(job: Job[Study]) -> Results:
-    """Yield the tests on the floors of every building."""
+    """Yield the tests on the floors of every building, and their means."""
+    from rockfrag.shaketable.mean_amplitudes import mean_amplitudes_of
+    from rockfrag.shaketable.readings import READING
     from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants
 
     study = job.study
@@ -18,18 +20,19 @@ def run(job: Job[Study]) -> Results:
     specimens = [
         Specimen(one.name, one.object, one.label, one.body) for one in study.configurations
     ]
-    yield (
-        "building_sensitivity/tests",
-        building_sensitivity(
-            variants,
-            job.motions("motions/ground"),
-            specimens,
-            study.amplitudes.values_g,
-            protocol_of(study),
-            job.threads,
-            lambda done: job.log.info("%d of %d buildings", done, len(variants)),
-        ),
+    tests = building_sensitivity(
+        variants,
+        job.motions("motions/ground"),
+        specimens,
+        study.amplitudes.values_g,
+        protocol_of(study),
+        job.threads,
+        lambda done: job.log.info("%d of %d buildings", done, len(variants)),
     )
+    yield "building_sensitivity/tests", tests
+    by = ["axis", "value", "label", "credible"]
+    laboratory = tests[tests["reading"] == READING]
+    yield "building_sensitivity/means", mean_amplitudes_of(laboratory, by)
     job.log.info("%d buildings", len(variants))
 
 
@@ -39,7 +42,7 @@ STAGE = Stage(
     wanted=lambda study: study.more.sensitivity is not None,
     inputs=("motions/ground.parquet",),
     files=lambda study: [str(study.building_file), *study.body_files],
-    outputs=("building_sensitivity/tests",),
+    outputs=("building_sensitivity/tests", "building_sensitivity/means"),
     settings=("building_sensitivity", "building", "bodies", "amplitudes", "protocol"),
     parallel=True,
 )

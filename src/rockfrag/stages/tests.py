@@ -9,9 +9,10 @@ from rockfrag.study.study import Study
 
 
 def run(job: Job[Study]) -> Results:
-    """Yield the tests in every reading, the shaker's limits, and the forces in each test."""
+    """Yield the tests in every reading, their means, the shaker's limits, bodies and forces."""
     from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
     from rockfrag.shaketable.readings import READING, tests_from_sweep
+    from rockfrag.stages.bodies import bodies_table
     from rockfrag.stages.protocol import protocol_of
 
     study = job.study
@@ -26,6 +27,7 @@ def run(job: Job[Study]) -> Results:
     yield "tests", tests
     laboratory = tests[tests["reading"] == READING]
     yield "mean_amplitudes", mean_amplitudes(laboratory)
+    yield "bodies", bodies_table(study.configurations)
     by_name = {motion.name: motion for motion in motions}
     yield "validity", validity_table(laboratory, study.configurations, by_name)
     censored = int((laboratory["censored"] != "none").sum())
@@ -43,6 +45,7 @@ STAGE = Stage(
     outputs=lambda study: (
         "tests",
         "mean_amplitudes",
+        "bodies",
         "validity",
         *([] if study.more.shaker is None else ["shaker"]),
     ),

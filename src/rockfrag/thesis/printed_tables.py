@@ -9,7 +9,8 @@ import pandas as pd
 
 from rockfrag.motions.intensity import pga, pgd, pgv
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Body
+from rockfrag.rocking.bodies import Block
+from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.study.configurations import Configuration
 from rockfrag.tabular import read_rows
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
@@ -58,25 +59,6 @@ def block_properties(blocks: Mapping[str, Block]) -> pd.DataFrame:
             "slenderness": [block.slenderness for block in blocks.values()],
         }
     )
-
-
-def uplift_accelerations(body: Body, g: float = STANDARD_GRAVITY) -> tuple[float, float]:
-    """Least accelerations [m/s²] at which a body starts to rock in pattern 3 and in pattern 4.
-
-    A body at rest opens about the pole whose overturning moment first exceeds the weight's (thesis
-    eq. 2.1, 2.21-2.25). A lone block rocks like a statue on a pedestal that cannot move: its own
-    value is that of pattern 4, and its pattern 3 is NaN.
-    """
-    if isinstance(body, Block):
-        return float("nan"), min(_tangent(body.arm(pole)) for pole in (+1, -1)) * g
-    return (
-        min(_tangent(body.common_arm(pole)) for pole in (+1, -1)) * g,
-        min(_tangent(body.statue_arm(pole)) for pole in (+1, -1)) * g,
-    )
-
-
-def _tangent(arm: Sequence[float]) -> float:
-    return abs(arm[0]) / arm[1]
 
 
 def uplift_table(configurations: Sequence[Configuration]) -> pd.DataFrame:

@@ -4,7 +4,14 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from rockfrag.report.figures.style import BLUE, ORANGE, PAGE_WIDTH, figure_style, new_figure
+from rockfrag.report.figures.style import (
+    BLUE,
+    ORANGE,
+    PAGE_WIDTH,
+    figure_style,
+    new_figure,
+    plain_log,
+)
 
 COLOURS = {"single block": BLUE, "two blocks": ORANGE}
 
@@ -34,7 +41,8 @@ def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:
         left.set_yticks(place, table["program"])
         fastest = table["histories_per_s_core"].max()
         left.set_xlim(right=fastest * 3e4)
-        left.set_xticks([t for t in 10.0 ** np.arange(-1, 7) if t <= 10 * fastest])
+        ticks = [t for t in 10.0 ** np.arange(-1, 7) if t <= 10 * fastest]
+        left.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         left.minorticks_off()
         columns = ("histories_per_s_core", "wrong_verdicts", "histories")
         for y, (rate, wrong, count) in enumerate(
@@ -48,6 +56,8 @@ def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:
             right.loglog(
                 part["histories"], part["seconds"], "o-", color=COLOURS[str(bodies)], label=bodies
             )
+        plain_log(right, "x")
+        plain_log(right, "y")
         right.minorticks_off()
         right.set_xlabel("histories")
         right.set_ylabel("CPU time [s]")

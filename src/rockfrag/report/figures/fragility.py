@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, PercentFormatter
+from matplotlib.ticker import PercentFormatter
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.empirical import local_share, share_in_bins
@@ -19,6 +19,7 @@ from rockfrag.report.figures.style import (
     BLACK,
     BLUE,
     COLUMN_WIDTH,
+    CONFIGURATION_COLOURS,
     OKABE_ITO,
     ORANGE,
     PAGE_WIDTH,
@@ -26,70 +27,65 @@ from rockfrag.report.figures.style import (
     SKY,
     figure_style,
     new_figure,
+    plain_log,
 )
+from rockfrag.report.wording import shortened
 
 GREY = "#777777"
 
 
-def fragility_figure(
-    curves: Mapping[str, Fragility],
-    outcomes: Mapping[str, Outcomes] | None = None,
-    windows: Mapping[str, pd.DataFrame] | None = None,
-    *,
-    bins: int = 10,
-) -> Figure:
-    """Draw fragility curves with confidence bands, verdicts in bins, and survival windows.
+def fragility_figure(curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFrame) -> Figure:
+    """Draw fragility curves of one measure with their bands, and the verdicts behind them.
 
     Parameters
     ----------
     curves
-        Fitted curves by label, all in one measure; those without a curve are left out.
-    outcomes
-        Verdicts by label: drawn as shares in bins with 90 % binomial limits, and as a local average
-        (dashed), which may fall where the curve cannot.
-    windows
-        Survival windows of sweeps by label (:func:`rockfrag.fragility.empirical.survival_windows`):
-        a second panel gives the share of motions that have overturned at a smaller amplitude and
-        yet do not always overturn.
-    bins
-        Most bins of the verdicts.
+        Rows of :func:`rockfrag.fragility.fragility_table`, a row per curve: ``configuration``,
+        ``im``, ``unit``, ``theta``, ``beta``; theta is missing where there is no curve.
+    bands, bins
+        Their points and verdicts, see :mod:`rockfrag.fragility.drawn_curves`. The local share
+        (dashed) may fall where the curve cannot.
     """
-    drawn = {label: item for label, item in curves.items() if np.isfinite(item.fit.theta)}
-    if not drawn:
-        raise InputError("fragility figure: none of the data sets has a curve.")
-    first = next(iter(drawn.values())).fit
-    if any((item.fit.im, item.fit.unit) != (first.im, first.unit) for item in drawn.values()):
-        raise InputError("fragility figure: the curves are in different measures; draw each apart.")
-    known = [(outcomes or {}).get(label) for label in drawn]
-    grid = _grid(list(drawn.values()), [data for data in known if data is not None])
+    first = curves.iloc[0]
     with figure_style():
-        height = 2.6 if windows is None else 3.5
-        figure = new_figure(COLUMN_WIDTH, height)
-        if windows is None:
-            axes = figure.subplots()
-            lowest = axes
-        else:
-            axes, lowest = figure.subplots(
-                2, 1, sharex=True, gridspec_kw={"height_ratios": (3.2, 1.0)}
+        figure = new_figure(COLUMN_WIDTH, 2.9)
+        axes = figure.subplots()
+        for k, curve in enumerate(curves.to_dict("records")):
+            colour = CONFIGURATION_COLOURS[k % len(CONFIGURATION_COLOURS)]
+            own = bins["configuration"] == curve["configuration"]
+            _shares(axes, bins[own], colour, 1.0 + 0.02 * (k - 0.5 * (len(curves) - 1)))
+            points = bands[bands["configuration"] == curve["configuration"]]
+            axes.fill_between(
+                points["x"], points["lower"], points["upper"], color=colour, alpha=0.18, linewidth=0
             )
-        for k, (label, item) in enumerate(drawn.items()):
-            colour = OKABE_ITO[k % len(OKABE_ITO)]
-            data = (outcomes or {}).get(label)
-            if data is not None:
-                shift = 1.0 + 0.02 * (k - 0.5 * (len(drawn) - 1))
-                _verdicts(axes, data, grid, colour, bins, shift)
-            _curve(axes, item, grid, colour, label)
-            if windows is not None and label in windows:
-                _windows(lowest, windows[label], grid, colour)
-        _probability_axis(axes, grid)
+            axes.plot(points["x"], points["local"], "--", color=colour, linewidth=0.8)
+            words = "no curve"
+            if np.isfinite(curve["theta"]):
+                words = f"θ = {curve['theta']:.3g} {curve['unit']}, β = {curve['beta']:.2f}"
+            label = f"{shortened(curve['configuration'])}: {words}"
+            axes.plot(points["x"], points["probability"], color=colour, label=label)
+        _probability_axis(axes, np.array([bands["x"].min(), bands["x"].max()]))
         axes.set_ylabel("Probability of overturning")
-        axes.legend(loc="upper left", handlelength=1.4, borderaxespad=0.2)
-        if windows is not None:
-            lowest.set_ylim(0, None)
-            lowest.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
-            lowest.set_ylabel("Between first\nand always")
-        lowest.set_xlabel(_axis_label(first.im, first.unit))
+        axes.set_xlabel(_axis_label(first["im"], first["unit"]))
+        figure.legend(loc="outside upper center", ncols=1, handlelength=1.4)
         return figure
+
+
+def _shares(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> None:
+    """Shares of overturned tests in bins with their binomial limits."""
+    share = bins["share"].to_numpy(dtype=float)
+    lower, upper = (bins[f"share_{end}"].to_numpy(dtype=float) for end in ("lower", "upper"))
+    reach = [np.maximum(share - lower, 0.0), np.maximum(upper - share, 0.0)]
+    axes.errorbar(
+        bins["x"].to_numpy(dtype=float) * shift,
+        share,
+        yerr=reach,
+        fmt="o",
+        color=colour,
+        markersize=3.2,
+        elinewidth=0.7,
+        markeredgewidth=0,
+    )
 
 
 def measures_figure(
@@ -110,7 +106,7 @@ def measures_figure(
         for axes, label in zip(grid_of_axes.flat, labels, strict=False):
             item, data = curves[label], outcomes[label]
             grid = _grid([item], [data])
-            _verdicts(axes, data, grid, BLACK, bins, 1.0)
+            _verdicts(axes, data, grid, BLACK, bins)
             _curve(axes, item, grid, BLUE, "")
             _probability_axis(axes, grid)
             axes.set_title(
@@ -148,8 +144,8 @@ def surface_figure(
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.clabel(lines, fmt=lambda value: f"{value:.0%}", fontsize=7)
-        _plain_log(axes, "x")
-        _plain_log(axes, "y")
+        plain_log(axes, "x")
+        plain_log(axes, "y")
         axes.set_xlabel(_axis_label(*name_and_unit(x_column)))
         axes.set_ylabel(_axis_label(*name_and_unit(y_column)))
         figure.legend(loc="outside upper center", ncols=2, handletextpad=0.2)
@@ -232,38 +228,11 @@ def _curve(axes: Axes, item: Fragility, grid: Floats, colour: str, label: str) -
     axes.plot(grid, item.fit.probability(grid), color=colour, label=theta)
 
 
-def _verdicts(
-    axes: Axes, data: Outcomes, grid: Floats, colour: str, bins: int, shift: float
-) -> None:
-    table = share_in_bins(data, bins)
-    share = table["share"].to_numpy()
-    reach = [
-        np.maximum(share - table["share_lower"].to_numpy(), 0.0),
-        np.maximum(table["share_upper"].to_numpy() - share, 0.0),
-    ]
-    axes.errorbar(
-        table["im"] * shift,
-        share,
-        yerr=reach,
-        fmt="o",
-        color=colour,
-        markersize=3.2,
-        elinewidth=0.7,
-        markeredgewidth=0,
-    )
+def _verdicts(axes: Axes, data: Outcomes, grid: Floats, colour: str, bins: int) -> None:
+    _shares(axes, share_in_bins(data, bins).rename(columns={"im": "x"}), colour, 1.0)
     inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
     if inside.size and np.ptp(data.log_im) > 0:
         axes.plot(inside, local_share(data, inside), "--", color=colour, linewidth=0.8)
-
-
-def _windows(axes: Axes, windows: pd.DataFrame, grid: Floats, colour: str) -> None:
-    """Share of motions that overturned at a smaller amplitude but not yet at all larger ones."""
-    fell = windows[windows["first_upper"].notna()]
-    if len(fell) == 0:
-        return
-    first = fell["first_upper"].to_numpy()[:, None]
-    always = fell["always_upper"].fillna(np.inf).to_numpy()[:, None]
-    axes.plot(grid, ((grid >= first) & (grid < always)).mean(axis=0), color=colour, linewidth=1.0)
 
 
 def _grid(curves: Sequence[Fragility], data: Sequence[Outcomes]) -> Floats:
@@ -282,18 +251,7 @@ def _probability_axis(axes: Axes, grid: Floats) -> None:
     axes.set_xlim(grid[0], grid[-1])
     axes.set_ylim(-0.02, 1.02)
     axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
-    _plain_log(axes, "x")
-
-
-def _plain_log(axes: Axes, which: str) -> None:
-    """Label 0.1, 0.2, 0.5, 1, 2, 5, … instead of powers of ten."""
-    axis = axes.xaxis if which == "x" else axes.yaxis
-    low, high = axes.get_xlim() if which == "x" else axes.get_ylim()
-    decades = np.log10(high / low)
-    steps = (1.0, 2.0, 5.0) if decades < 2.5 else (1.0, 3.0)
-    axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=30))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_formatter(NullFormatter())
+    plain_log(axes, "x")
 
 
 def _axis_label(name: str, unit: str) -> str:

@@ -1,4 +1,4 @@
-"""Figure 3.4 of the thesis: acceleration histories of the ground motions."""
+"""Acceleration histories of the ground motions."""
 
 from collections.abc import Sequence
 
@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures.style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
+from rockfrag.report.wording import shortened
 from rockfrag.units import STANDARD_GRAVITY
 
 MOST_PANELS = 8
@@ -30,7 +31,9 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
             panel.plot(motion.time, values, color=BLUE, linewidth=0.5)
             panel.plot(motion.time[peak], values[peak], "o", color=RED, markersize=3)
             panel.set_ylim(-highest, highest)
-            panel.set_title(f"{motion.name}: peak {abs(values[peak]):.3f} g", loc="left", pad=2)
+            panel.set_title(
+                f"{shortened(motion.name)}: peak {abs(values[peak]):.3f} g", loc="left", pad=2
+            )
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
         figure.supylabel("Acceleration [g]", fontsize=8)

@@ -105,7 +105,7 @@ def _displacements(axes: Axes, motion: Motion) -> None:
             PERIODS, 100 * spectrum.displacement, color=colour, ls=dash, label=f"ξ = {damping:.0%}"
         )
     _period_axis(axes, (0.1, 0.3, 1, 3, 10))
-    axes.set_ylabel("$S_d$ [cm]")
+    axes.set_ylabel("Sd [cm]")
 
 
 def _rotations(pair: Sequence[Axes], motion: Motion, alpha: Sequence[float]) -> None:
@@ -128,8 +128,8 @@ def _rotations(pair: Sequence[Axes], motion: Motion, alpha: Sequence[float]) -> 
     rotation.set_ylim(0, 1.28)
     rotation.axhline(1.0, color=BLACK, lw=0.6, ls=":")
     rotation.text(SIZES[-1], 1.03, "overturned", ha="right", va="bottom", fontsize=7)
-    rotation.set_ylabel(r"max $|\theta|/\theta_c$")
-    velocity.set_ylabel(r"max $|\dot\theta|/(p\,\theta_c)$")
+    rotation.set_ylabel("max |θ|/θc")
+    velocity.set_ylabel("max |dθ/dt|/(p θc)")
 
 
 def comparison_figure(motions: Sequence[Motion], alpha: float, damping: float = 0.05) -> Figure:
@@ -179,7 +179,7 @@ def comparison_figure(motions: Sequence[Motion], alpha: float, damping: float = 
                     ms=3.5,
                     color=OKABE_ITO[k],
                 )
-        labels = ("$S_d$ [cm]", "$S_v$ [cm/s]", "$S_a$ [g]")
+        labels = ("Sd [cm]", "Sv [cm/s]", "Sa [g]")
         for axes, label in zip(upper, labels, strict=True):
             _period_axis(axes, (0.1, 0.3, 1, 3, 10))
             axes.set_ylim(bottom=0)
@@ -192,7 +192,7 @@ def comparison_figure(motions: Sequence[Motion], alpha: float, damping: float = 
             axes.axhline(1.0, color=BLACK, lw=0.6, ls=":")
             axes.set_xlabel("2π/p of the block [s]")
             axes.set_title(f"blocks, {_ratio(angle)}", loc="left")
-        lower[0].set_ylabel(r"max $|\theta|/\theta_c$")
+        lower[0].set_ylabel("max |θ|/θc")
         lower[0].text(SIZES[-1], 1.03, "overturned", ha="right", va="bottom", fontsize=7)
         lower[1].legend(loc="upper right", bbox_to_anchor=(1.0, 0.78), handlelength=2.6)
     return figure

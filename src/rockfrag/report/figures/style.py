@@ -6,9 +6,12 @@ from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from cycler import cycler
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockfrag.files import whole_file
 
@@ -29,9 +32,14 @@ OKABE_ITO = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK, YELLOW)
 COLUMN_WIDTH, PAGE_WIDTH = 3.5, 7.0
 """Widths of figures for one and for two columns of a journal [in]."""
 
+DOTS_PER_INCH = 200
+
+CONFIGURATION_COLOURS = (ORANGE, BLUE, *OKABE_ITO[2:])
+"""Colours of the configurations of one object; alone and on its pedestal as in all other figures."""
+
 STYLE: dict[Any, Any] = {
     "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
+    "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"],
     "font.size": 8,
     "axes.titlesize": 8.5,
     "axes.labelsize": 8,
@@ -50,10 +58,16 @@ STYLE: dict[Any, Any] = {
     "lines.markersize": 4.5,
     "axes.prop_cycle": cycler(color=OKABE_ITO),
     "figure.constrained_layout.use": True,
-    "savefig.dpi": 200,
+    "figure.constrained_layout.w_pad": 0.06,
+    # laid out for the same dots as written: lengths of text depend on them
+    "figure.dpi": DOTS_PER_INCH,
+    "savefig.dpi": DOTS_PER_INCH,
     # identifiers inside an SVG are random unless they are salted
     "svg.hashsalt": "rockfrag",
-    "svg.fonttype": "path",
+    # text stays text: it can be searched and read aloud
+    "svg.fonttype": "none",
+    # a dollar in a name is a dollar
+    "text.parse_math": False,
     "path.simplify": True,
 }
 
@@ -72,11 +86,37 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
     return figure
 
 
+def plain_log(axes: Axes, which: str) -> None:
+    """Label a logarithmic axis, ``x`` or ``y``, with 0.1, 0.2, 0.5, 1, … instead of powers of ten."""
+    axis = axes.xaxis if which == "x" else axes.yaxis
+    low, high = axes.get_xlim() if which == "x" else axes.get_ylim()
+    decades = np.log10(high / low)
+    steps = (1.0, 2.0, 5.0) if decades < 2.5 else (1.0, 3.0) if decades < 4 else (1.0,)
+    axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=30))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def note_figure(words: str) -> Figure:
+    """Return a figure that says in words why there is nothing to draw."""
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 0.6)
+        figure.text(0.5, 0.5, words, ha="center", va="center", wrap=True)
+        return figure
+
+
 def save_figure(figure: Figure, *paths: str | os.PathLike[str]) -> None:
     """Write a figure to each path, by its ending as ``.svg`` or ``.png``, without dates."""
-    for path in paths:
-        ending = os.path.splitext(path)[1].lstrip(".")
-        # matplotlib records its version and the time unless told not to
-        empty = {"svg": {"Date": None, "Creator": None}, "png": {"Software": None}}
-        with figure_style(), whole_file(path) as part:
-            figure.savefig(part, format=ending, metadata=empty[ending])
+    # matplotlib records its version and the time unless told not to
+    options: dict[str, dict[str, Any]] = {
+        "svg": {"metadata": {"Date": None, "Creator": None}},
+        "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 4}},
+    }
+    with figure_style(), mpl.rc_context({"figure.constrained_layout.use": False}):
+        # laid out once, not twice for each file
+        figure.draw_without_rendering()
+        figure.set_layout_engine(None)
+        for path in paths:
+            ending = os.path.splitext(path)[1].lstrip(".")
+            with whole_file(path) as part:
+                figure.savefig(part, format=ending, **options[ending])

@@ -1,73 +1,80 @@
 """Which amplitudes overturn and which are survived: the windows behind every single figure."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
-from rockfrag.report.figures.style import BLUE, COLUMN_WIDTH, ORANGE, figure_style, new_figure
+from rockfrag.report.figures.style import (
+    COLUMN_WIDTH,
+    CONFIGURATION_COLOURS,
+    figure_style,
+    new_figure,
+)
+from rockfrag.report.wording import shortened
 
 MOST_ROWS = 24
 """More motions than this are not legible; the first are drawn."""
 
+_TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 3, 5, 10)
 
-def verdict_map(sweep: pd.DataFrame, object_name: str) -> Figure:
+
+def verdict_map(sweep: pd.DataFrame, configurations: Sequence[str]) -> Figure:
     """Draw for one object, per motion, the amplitudes that overturn it.
 
     Parameters
     ----------
     sweep
-        Sweeps of all configurations, see :func:`rockfrag.stages.sweep.sweep`.
-    object
-        The object; its sweeps with (P) and without (NP) the pedestal share a row of the figure.
+        Rows of sweeps: ``configuration``, ``motion``, ``amplitude_g``, ``overturned``.
+    configurations
+        Configurations of the object, such as alone and on its pedestal; they share a row of the
+        figure.
     """
-    rows = sweep[sweep["object"] == object_name]
+    rows = sweep[sweep["configuration"].isin(list(configurations))]
     motions = list(dict.fromkeys(rows["motion"]))[:MOST_ROWS]
-    sides = [side for side in ("NP", "P") if (rows["pedestal"] == side).any()]
-    colours = {"NP": ORANGE, "P": BLUE}
+    height = 0.8 / len(configurations)
+    bars: dict[str, list[NDArray[np.float64]]] = {name: [] for name in configurations}
+    line = {motion: len(motions) - 1 - i for i, motion in enumerate(motions)}
+    for (motion, name), one in rows.groupby(["motion", "configuration"], sort=False):
+        if motion in line:
+            bottom = line[motion] + 0.4 - (list(configurations).index(str(name)) + 1) * height
+            bars[str(name)] += _bars(one, bottom, height)
+    low, high = rows["amplitude_g"].min(), rows["amplitude_g"].max()
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.9 + 0.22 * len(motions))
         axes = figure.subplots()
-        height = 0.8 / len(sides)
-        for i, motion in enumerate(motions):
-            for j, side in enumerate(sides):
-                one = rows[(rows["motion"] == motion) & (rows["pedestal"] == side)]
-                bottom = len(motions) - 1 - i + 0.4 - (j + 1) * height
-                axes.broken_barh(
-                    _overturning_ranges(one),
-                    (bottom, height),
-                    facecolor=colours[side],
-                    linewidth=0,
-                )
+        handles = []
+        for name, colour in zip(configurations, CONFIGURATION_COLOURS, strict=False):
+            axes.add_collection(PolyCollection(bars[name], facecolor=colour, linewidth=0))
+            handles.append(Patch(color=colour, label=f"{shortened(name)} overturns"))
         axes.set_xscale("log")
-        lowest = rows.loc[rows["overturned"], "amplitude_g"].min()
-        axes.set_xlim(0.9 * lowest, rows["amplitude_g"].max())
-        ticks = [t for t in (0.1, 0.2, 0.3, 0.5, 1, 2, 3, 5) if 0.9 * lowest <= t]
-        ticks = [t for t in ticks if t <= rows["amplitude_g"].max()]
-        axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
+        axes.set_xlim(0.98 * low, 1.02 * high)
+        ticks = [tick for tick in _TICKS if low <= tick <= high] or [float(f"{low:.2g}")]
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         axes.minorticks_off()
-        axes.set_yticks(range(len(motions)), [name.replace("_", " ") for name in motions[::-1]])
+        axes.set_ylim(-0.6, len(motions) - 0.4)
+        axes.set_yticks(range(len(motions)), [shortened(name, 28) for name in motions[::-1]])
         axes.tick_params(axis="y", length=0)
         axes.set_xlabel("Peak of the motion [g]")
-        names = {"NP": "overturns, alone", "P": "overturns, on the pedestal"}
-        figure.legend(
-            handles=[Patch(color=colours[side], label=names[side]) for side in sides],
-            loc="outside upper center",
-            ncols=2,
-            title=object_name,
-        )
+        figure.legend(handles=handles, loc="outside upper center", ncols=2)
         return figure
 
 
-def _overturning_ranges(one: pd.DataFrame) -> list[tuple[float, float]]:
-    """Ranges (start, width) [g] of consecutive amplitudes that overturn, for ``broken_barh``."""
+def _bars(one: pd.DataFrame, bottom: float, height: float) -> list[NDArray[np.float64]]:
+    """Corners of a bar over each range of consecutive amplitudes that overturn."""
     ordered = one.sort_values("amplitude_g")
-    amplitude = ordered["amplitude_g"].to_numpy()
+    amplitude = ordered["amplitude_g"].to_numpy(dtype=float)
     # each amplitude stands for the range up to the next one
-    edges = np.append(amplitude, amplitude[-1] * amplitude[-1] / amplitude[-2])
+    ratio = amplitude[-1] / amplitude[-2] if amplitude.size > 1 else 1.05
+    edges = np.append(amplitude, amplitude[-1] * ratio)
     fallen = np.concatenate([[False], ordered["overturned"].to_numpy(), [False]])
-    starts = np.flatnonzero(~fallen[:-1] & fallen[1:])
-    ends = np.flatnonzero(fallen[:-1] & ~fallen[1:])
+    starts = edges[np.flatnonzero(~fallen[:-1] & fallen[1:])]
+    ends = edges[np.flatnonzero(fallen[:-1] & ~fallen[1:])]
     return [
-        (float(edges[s]), float(edges[e] - edges[s])) for s, e in zip(starts, ends, strict=True)
+        np.array([(a, bottom), (b, bottom), (b, bottom + height), (a, bottom + height)])
+        for a, b in zip(starts, ends, strict=True)
     ]

@@ -1,1 +1,30 @@
-"""Sections of the report: table, figure, caption and words of one part each."""
+"""Parts of the report of any study, in its order; a new part is a module here and an entry below."""
+
+from rockfrag.report.part import Part
+from rockfrag.report.sections.amplitudes import AMPLITUDES
+from rockfrag.report.sections.bodies import BODIES
+from rockfrag.report.sections.building import BUILDING
+from rockfrag.report.sections.comparisons import COMPARISONS
+from rockfrag.report.sections.explanation import EXPLANATION
+from rockfrag.report.sections.fragility import FRAGILITY
+from rockfrag.report.sections.measured import MEASURED
+from rockfrag.report.sections.measures import MEASURES
+from rockfrag.report.sections.motions import MOTIONS
+from rockfrag.report.sections.pedestal import PEDESTAL
+from rockfrag.report.sections.shaker import SHAKER
+from rockfrag.report.sections.validity import VALIDITY
+
+PARTS: tuple[Part, ...] = (
+    AMPLITUDES,
+    COMPARISONS,
+    PEDESTAL,
+    FRAGILITY,
+    MEASURES,
+    VALIDITY,
+    EXPLANATION,
+    MEASURED,
+    SHAKER,
+    BUILDING,
+    MOTIONS,
+    BODIES,
+)

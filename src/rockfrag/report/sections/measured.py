@@ -1,63 +1,85 @@
-"""Measured tests beside simulated ones: a figure and a section of the report."""
-
-from collections.abc import Mapping
+"""Measured tests beside simulated ones."""
 
 import numpy as np
 import pandas as pd
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from rockfrag.report.estimate_columns import EFFECT, with_limits
-from rockfrag.report.figures.style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
-from rockfrag.report.page import Column, Picture, Section, table_html
-from rockfrag.thesis.ledger_html import ledger_html
+from rockfrag.report.figures.amplitudes import (
+    GREY,
+    SIDE_COLOUR,
+    SIDE_MARKER,
+    SIDE_NAME,
+    drawn_tests,
+    plot_tests,
+)
+from rockfrag.report.figures.style import COLUMN_WIDTH, figure_style, new_figure
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.sections.pedestal import EFFECT_COLUMNS, shown_effects
+from rockfrag.report.wording import amplitude, counted, estimates
+from rockfrag.study.study import Study
+
+_TESTS = (
+    Column("object", "Object"),
+    Column("pedestal", "Side"),
+    Column("event", "Event"),
+    Column("floor", "Floor"),
+    Column("text", "Measured [g]", numeric=True),
+    Column("simulated_g", "Simulated [g]", 3),
+    Column("ratio", "Measured / simulated", 2),
+)
+
+_CURVES = (
+    Column("configuration", "Configuration"),
+    Column("theta_text", "Median θ [g]", numeric=True),
+    Column("beta", "β", 3),
+)
 
 
-def measured_section(
-    tables: Mapping[str, pd.DataFrame], pictures: Mapping[str, Picture]
-) -> Section:
-    """Return the section on measured tests."""
-    beside = tables["measured/beside"]
+def has_measured_tests(study: Study) -> bool:
+    """Whether a study names a table of measured tests."""
+    return study.more.measured_tests is not None
+
+
+def _section(results: Results) -> Section:
+    beside = results.table("measured/beside")
+    words = _words(beside)
+    parts: list[Markup | FigureSpec] = []
+    if beside["simulated_g"].notna().any():
+        parts.append(
+            FigureSpec(
+                "measured_beside",
+                f"Measured against simulated amplitudes. {words}",
+                "Measured against simulated amplitude of the same test; arrows are bounds.",
+                lambda: measured_beside(beside),
+            )
+        )
+    shown = beside.assign(text=[amplitude(row) for row in beside.to_dict("records")])
+    curves = results.table("measured/fragility")
+    curves = curves.assign(theta_text=estimates(curves, ("theta", "theta_lower", "theta_upper")))
+    effects = results.table("measured/effects")
+    parts += [
+        table_html(shown, _TESTS, "Measured tests beside simulated ones."),
+        table_html(curves, _CURVES, "Fragility from the measured tests."),
+    ]
+    if len(effects):
+        caption = "Measured effect of the pedestal."
+        parts.append(table_html(shown_effects(effects), EFFECT_COLUMNS, caption))
+    return Section(
+        "measured", "Measured tests", [words, *results.table("measured/notes")["note"]], parts
+    )
+
+
+def _words(beside: pd.DataFrame) -> str:
     ratio = np.log(beside["ratio"].dropna().to_numpy(dtype=float))
-    words = f"{len(beside)} measured tests, {len(ratio)} of them with a simulated counterpart."
+    words = f"{counted(len(beside), 'measured test')}, {len(ratio)} of them with a simulated counterpart."
     if ratio.size > 1:
         words += (
             f" Measured over simulated amplitude: {np.exp(ratio.mean()):.2f} in the geometric mean, "
             f"with a scatter of {ratio.std(ddof=1):.2f} in the logarithm."
         )
-    tests = (
-        Column("object", "Object"),
-        Column("pedestal", "Side"),
-        Column("event", "Event"),
-        Column("floor", "Floor"),
-        Column("lower_g", "Survived [g]", 3),
-        Column("upper_g", "Overturned [g]", 3),
-        Column("simulated_g", "Simulated [g]", 3),
-        Column("ratio", "Measured / simulated", 2),
-    )
-    curves = (
-        Column("configuration", "Configuration"),
-        *with_limits("theta", "Median θ [g]", "theta_lower", "theta_upper"),
-        Column("beta", "β", 3),
-    )
-    parts: list[Markup | Picture] = [
-        pictures["measured_beside"],
-        table_html(beside, tests, "Measured tests beside simulated ones."),
-        table_html(tables["measured/fragility"], curves, "Fragility from the measured tests."),
-    ]
-    effects = tables["measured/effects"]
-    if len(effects):
-        parts.append(
-            table_html(effects, EFFECT, "Measured effect of the pedestal, 95 % intervals.")
-        )
-    if len(tables.get("measured/claims", ())):
-        parts.append(ledger_html(tables["measured/claims"]))
-    return Section(
-        "measured",
-        "Measured tests",
-        [words, *tables["measured/notes"]["note"]],
-        parts,
-    )
+    return words
 
 
 def measured_beside(beside: pd.DataFrame) -> Figure:
@@ -68,27 +90,28 @@ def measured_beside(beside: pd.DataFrame) -> Figure:
     beside
         As :func:`rockfrag.stages.measured_tests.beside` returns it.
     """
-    known = beside.dropna(subset=["simulated_g"])
-    known = known.assign(shown=known["amplitude_g"].fillna(known["lower_g"]))
+    known = drawn_tests(beside.dropna(subset=["simulated_g"]))
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 3.2)
         axes = figure.subplots()
-        largest = 1.1 * max([1.0, *known["shown"], *known["simulated_g"]])
-        axes.plot([0, largest], [0, largest], color="#777777", lw=0.8)
-        for side, name, colour, marker in (
-            ("NP", "without pedestal", BLUE, "o"),
-            ("P", "on the pedestal", RED, "s"),
-        ):
+        largest = 1.15 * float(known[["a", "simulated_g"]].to_numpy(dtype=float).max())
+        axes.plot([0, largest], [0, largest], color=GREY, lw=0.8)
+        for side, name in SIDE_NAME.items():
             rows = known[known["pedestal"] == side]
-            axes.plot(
-                rows["simulated_g"], rows["shown"], marker, mfc="none", color=colour, label=name
-            )
-            bounds = rows[rows["censored"] == "right"]
-            axes.plot(bounds["simulated_g"], bounds["shown"], "^", color=colour, ms=3)
-        axes.set_xlim(0, largest)
-        axes.set_ylim(0, largest)
-        axes.set_aspect("equal")
+            if rows.empty:
+                continue
+            x = rows["simulated_g"].to_numpy(dtype=float)
+            plot_tests(axes, x, rows, SIDE_MARKER[side], SIDE_COLOUR[side])
+            axes.plot([], [], SIDE_MARKER[side], mfc="none", color=SIDE_COLOUR[side], label=name)
+        axes.set(xlim=(0, largest), ylim=(0, largest), aspect="equal")
         axes.set_xlabel("Simulated amplitude [g]")
         axes.set_ylabel("Measured amplitude [g]")
         axes.legend()
         return figure
+
+
+MEASURED = Part(
+    ("measured/beside", "measured/fragility", "measured/effects", "measured/notes"),
+    _section,
+    asked=has_measured_tests,
+)

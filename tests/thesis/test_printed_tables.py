@@ -9,32 +9,32 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.study.loading import load_study
 from rockfrag.thesis.printed_tables import (
+    FOLDER,
     TABLE_3_1,
     TABLE_3_3,
     TABLE_4_1,
     block_properties,
     compare,
     ground_measures,
-    uplift_accelerations,
     uplift_table,
 )
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
-PRINTED = CONFIG / "printed"
 
 
 def test_table_3_1_comes_out():
     study = load_study(CONFIG / "thesis.yaml")
-    table = compare(block_properties(study.specimens), TABLE_3_1, PRINTED / "table_3_1.csv")
+    table = compare(block_properties(study.specimens), TABLE_3_1, FOLDER / "table_3_1.csv")
     assert len(table) == 16
     assert table["agrees"].all()
 
 
 def test_table_4_1_comes_out():
     study = load_study(CONFIG / "thesis.yaml")
-    table = compare(uplift_table(study.configurations), TABLE_4_1, PRINTED / "table_4_1.csv")
+    table = compare(uplift_table(study.configurations), TABLE_4_1, FOLDER / "table_4_1.csv")
     assert len(table) == 9
     assert table["agrees"].all()
 
@@ -43,14 +43,14 @@ def test_table_3_3_comes_out(four_records: dict[str, Motion]):
     names = {"Friuli": "Friuli", "Kobe": "Kobe", "Loma Prieta": "Loma_Prieta"}
     names["Northridge"] = "Northridge"
     motions = [replace(four_records[file], name=name) for name, file in names.items()]
-    table = compare(ground_measures(motions), TABLE_3_3, PRINTED / "table_3_3.csv")
+    table = compare(ground_measures(motions), TABLE_3_3, FOLDER / "table_3_3.csv")
     assert len(table) == 12
     assert table["agrees"].all()
 
 
 def test_a_value_off_in_the_last_printed_digit_does_not_agree(tmp_path: Path):
     printed = tmp_path / "table.csv"
-    printed.write_text((PRINTED / "table_3_1.csv").read_text().replace("19.61", "19.62"))
+    printed.write_text((FOLDER / "table_3_1.csv").read_text().replace("19.61", "19.62"))
     block = load_study(CONFIG / "thesis.yaml").specimens["T1"]
     table = compare(block_properties({"T1": block}), TABLE_3_1, printed)
     assert table.set_index("quantity")["agrees"].to_dict()["R"] is False
@@ -63,7 +63,7 @@ def test_without_printed_values_nothing_agrees_or_disagrees():
 
 def test_a_printed_value_that_is_no_number_is_named(tmp_path: Path):
     printed = tmp_path / "table.csv"
-    printed.write_text((PRINTED / "table_3_1.csv").read_text().replace("19.61", "about 20"))
+    printed.write_text((FOLDER / "table_3_1.csv").read_text().replace("19.61", "about 20"))
     with pytest.raises(InputError, match="radius_cm"):
         compare(block_properties({"X": Block(1, 2, 3)}), TABLE_3_1, printed)
 
@@ -83,7 +83,7 @@ def test_a_heavy_pedestal_takes_the_threshold_of_pattern_3_to_its_own():
 
 def test_comparison_keeps_the_printed_decimals(tmp_path: Path):
     study = load_study(CONFIG / "thesis.yaml")
-    table = compare(block_properties(study.specimens), TABLE_3_1, PRINTED / "table_3_1.csv")
+    table = compare(block_properties(study.specimens), TABLE_3_1, FOLDER / "table_3_1.csv")
     path = tmp_path / "table.csv"
     table.to_csv(path, index=False)
     again = pd.read_csv(path, dtype={"printed": str})

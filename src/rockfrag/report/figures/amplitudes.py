@@ -1,0 +1,337 @@
+"""Overturning amplitudes of tests: by object, by floor, and with a pedestal against without.
+
+A test that never overturned is an open marker with an arrow up, at the largest amplitude it survived;
+one that overturned at the first step has an arrow down. Neither is in a mean: means come from
+:func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`, over motions that overturned all.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from rockfrag.report.figures.style import (
+    BLACK,
+    BLUE,
+    COLUMN_WIDTH,
+    OKABE_ITO,
+    ORANGE,
+    PAGE_WIDTH,
+    figure_style,
+    new_figure,
+)
+from rockfrag.report.wording import shortened
+
+GREY = "#777777"
+BAND = "#e9e9e9"
+SIDES = ("NP", "P")
+SIDE_COLOUR = {"NP": ORANGE, "P": BLUE}
+SIDE_MARKER = {"NP": "o", "P": "s"}
+SIDE_NAME = {"NP": "without pedestal", "P": "with pedestal"}
+SIDE_SHIFT = {"NP": -0.13, "P": 0.13}
+MARKERS = ("o", "s", "^", "D", "v", "P")
+AMPLITUDE = "Overturning amplitude [g]"
+
+_ARROW = np.array([(0, 0), (0, 1.6), (-0.4, 1.0), (0, 1.6), (0.4, 1.0)])
+_STROKES = [Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO]
+_UP = Path(_ARROW, _STROKES)
+_DOWN = Path(_ARROW * np.array([1, -1]), _STROKES)
+_RIGHT = Path(_ARROW[:, ::-1], _STROKES)
+
+Floats = NDArray[np.float64]
+
+
+def drawn_tests(tests: pd.DataFrame) -> pd.DataFrame:
+    """Tests with what is drawn of each: ``a`` [g], and whether it is only a bound (``up``, ``down``)."""
+    known = tests["amplitude_g"].notna()
+    up = ~known & tests["upper_g"].isna()
+    down = ~known & ~up
+    a = tests["amplitude_g"].where(known, tests["lower_g"].where(up, tests["upper_g"]))
+    return tests.assign(a=a, up=up, down=down)
+
+
+def plot_tests(axes: Axes, x: Floats, rows: pd.DataFrame, marker: str, colour: str) -> None:
+    """Draw tests at ``x``, with arrows where only a bound is known."""
+    y = rows["a"].to_numpy(dtype=float)
+    axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, ms=4, mew=0.9)
+    for bound, arrow in (("up", _UP), ("down", _DOWN)):
+        open_ended = rows[bound].to_numpy(dtype=bool)
+        if open_ended.any():
+            _plot_arrows(axes, x[open_ended], y[open_ended], arrow, colour)
+
+
+def _plot_arrows(axes: Axes, x: Floats, y: Floats, arrow: Path, colour: str) -> None:
+    axes.plot(x, y, ls="", marker=arrow, mfc="none", mec=colour, ms=11, mew=0.9)
+
+
+def bound_handle(tests: pd.DataFrame) -> list[Line2D]:
+    """Entry of a legend for tests that never overturned, if there are any."""
+    if not tests["amplitude_g"].isna().any():
+        return []
+    return [Line2D([], [], ls="", marker=_UP, color=GREY, mfc="none", ms=9, label="bound only")]
+
+
+def top(rows: pd.DataFrame) -> float:
+    """Upper end of an axis of amplitudes, with room for arrows [g]."""
+    return 1.15 * float(rows["a"].max())
+
+
+def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
+    """Amplitudes of each object, without and with a pedestal.
+
+    Parameters
+    ----------
+    tests
+        Tests of one reading, see :mod:`rockfrag.shaketable.tests_table`.
+    means
+        See :func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`.
+    """
+    known = means[means["by"] == "configuration"]
+    objects = list(dict.fromkeys(tests["object"]))
+    width = COLUMN_WIDTH if len(objects) <= 5 else PAGE_WIDTH
+    with figure_style():
+        figure = new_figure(width, 2.8)
+        axes = figure.subplots()
+        rows = drawn_tests(tests)
+        _sides_panel(axes, rows, "object", objects, known)
+        axes.set_ylim(0, top(rows))
+        _finish_sides(figure, [axes], tests, len(known.dropna(subset=["mean_g"])) > 0)
+    return figure
+
+
+def amplitudes_by_floor(
+    tests: pd.DataFrame, means: pd.DataFrame, *, panels: Sequence[str] = ()
+) -> Figure:
+    """Amplitudes on each floor, without and with a pedestal.
+
+    Parameters
+    ----------
+    tests, means
+        As of :func:`amplitudes_by_object`.
+    panels
+        Objects that get a panel each; by default one panel holds them all.
+    """
+    floors = list(dict.fromkeys(tests["floor"]))
+    rows = drawn_tests(tests)
+    by = "object_floor" if panels else "floor"
+    known = means[means["by"] == by]
+    with figure_style():
+        figure = new_figure(PAGE_WIDTH if panels else COLUMN_WIDTH, 2.8)
+        grid = figure.subplots(1, max(len(panels), 1), sharey=True, squeeze=False)[0]
+        if panels:
+            for axes, name in zip(grid, panels, strict=True):
+                part, own = rows[rows["object"] == name], known[known["object"] == name]
+                _sides_panel(axes, part, "floor", floors, own)
+                axes.set_title(shortened(name), loc="left")
+        else:
+            _sides_panel(grid[0], rows, "floor", floors, known)
+        grid[0].set_ylim(0, top(rows))
+        _finish_sides(figure, list(grid), tests, len(known.dropna(subset=["mean_g"])) > 0)
+    return figure
+
+
+def _sides_panel(
+    axes: Axes, rows: pd.DataFrame, by: str, levels: Sequence[str], means: pd.DataFrame
+) -> None:
+    """Tests of both sides beside each other, those of one pair joined, and the means of each side."""
+    place = {level: float(number) for number, level in enumerate(levels)}
+    both = set(rows["pedestal"]) == set(SIDES)
+    shift = SIDE_SHIFT if both else dict.fromkeys(SIDES, 0.0)
+    x = rows[by].map(place) + rows["pedestal"].map(shift)
+    if both:
+        _join_pairs(axes, rows.assign(x=x))
+    for side in SIDES:
+        own = rows["pedestal"] == side
+        if own.any():
+            where = x[own].to_numpy(dtype=float)
+            plot_tests(axes, where, rows[own], SIDE_MARKER[side], SIDE_COLOUR[side])
+        known = means[(means["pedestal"] == side) & means["mean_g"].notna()]
+        axes.plot(
+            known[by].map(place).to_numpy(dtype=float) + shift[side],
+            known["mean_g"].to_numpy(dtype=float),
+            ls="",
+            marker="_",
+            ms=15,
+            mew=2.4,
+            mec=SIDE_COLOUR[side],
+        )
+    axes.set_xticks(range(len(levels)), [shortened(level, 14) for level in levels])
+    if len(levels) > 4:
+        axes.tick_params(axis="x", rotation=40)
+    axes.set_xlim(-0.5, len(levels) - 0.5)
+
+
+def _join_pairs(axes: Axes, rows: pd.DataFrame) -> None:
+    keys = ["object", "motion"]
+    without = rows[rows["pedestal"] == "NP"].drop_duplicates(keys)
+    pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
+    ends = pairs[["x_np", "a_np", "x_p", "a_p"]].to_numpy(dtype=float).reshape(-1, 2, 2)
+    axes.add_collection(LineCollection(list(ends), colors="#cccccc", linewidths=0.5, zorder=1))
+
+
+def _finish_sides(figure: Figure, grid: Sequence[Axes], tests: pd.DataFrame, means: bool) -> None:
+    grid[0].set_ylabel(AMPLITUDE)
+    sides = [side for side in SIDES if (tests["pedestal"] == side).any()]
+    handles = [
+        Line2D(
+            [],
+            [],
+            ls="",
+            color=SIDE_COLOUR[side],
+            mfc="none",
+            marker=SIDE_MARKER[side],
+            label=SIDE_NAME[side],
+        )
+        for side in sides
+        if len(sides) > 1
+    ]
+    if means:
+        handles.append(
+            Line2D([], [], ls="", marker="_", ms=12, mew=2.4, color=GREY, label="geometric mean")
+        )
+    handles += bound_handle(tests)
+    if handles:
+        columns = 4 if len(grid) > 1 else 2
+        figure.legend(handles=handles, loc="outside upper center", ncols=columns)
+
+
+def pedestal_scatter(
+    tests: pd.DataFrame,
+    panels: str | None = None,
+    title: Callable[[str], str] = str,
+) -> Figure:
+    """Amplitude with the pedestal against that without, of the same object under the same motion.
+
+    Parameters
+    ----------
+    tests
+        As of :func:`amplitudes_by_object`.
+    panels
+        ``floor`` or ``event`` for a panel each; None for one panel.
+    title
+        Title of the panel of a level; of the one panel the level is ``all``.
+    """
+    rows = drawn_tests(tests)
+    keys = ["object", "event", "floor", "motion"]
+    without = rows[rows["pedestal"] == "NP"]
+    pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
+    levels = ["all"] if panels is None else list(dict.fromkeys(pairs[panels]))
+    objects = list(dict.fromkeys(pairs["object"]))
+    columns = {1: 1, 2: 2, 4: 2}.get(len(levels), 3)
+    lines = -(-len(levels) // columns)
+    width = {1: COLUMN_WIDTH, 2: 5.0, 3: PAGE_WIDTH}[columns]
+    upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
+    with figure_style():
+        figure = new_figure(width, 0.45 + lines * (width / columns + 0.18))
+        grid = figure.subplots(lines, columns, sharex=True, sharey=True, squeeze=False)
+        for axes, level in zip(grid.flat, levels, strict=False):
+            part = pairs if panels is None else pairs[pairs[panels] == level]
+            _scatter_panel(axes, part, objects, upper)
+            # above the panel, where it hides no test
+            axes.set_title(title(level), loc="left", pad=4)
+        for axes in grid.flat[len(levels) :]:
+            axes.set_visible(False)
+        figure.supxlabel("Amplitude without pedestal, NP [g]", fontsize=8)
+        figure.supylabel("Amplitude with pedestal, P [g]", fontsize=8)
+        if 1 < len(objects) <= len(MARKERS):
+            style = _styles(objects)
+            handles = [
+                Line2D([], [], ls="", marker=m, mfc="none", mec=c, label=shortened(name))
+                for name, (m, c) in style.items()
+            ]
+            grid.flat[0].legend(handles=handles, loc="lower right", handletextpad=0.2)
+    return figure
+
+
+def _styles(names: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Marker and colour of each name; of many all are alike."""
+    if len(names) > len(MARKERS):
+        return dict.fromkeys(names, ("o", BLUE))
+    return dict(zip(names, zip(MARKERS, OKABE_ITO, strict=False), strict=False))
+
+
+def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper: float) -> None:
+    """Points of one panel on the line of equality with its band of ±10 %."""
+    line = np.array([0.0, upper])
+    axes.fill_between(line, line / 1.1, line * 1.1, color=BAND, lw=0)
+    axes.plot(line, line, color=GREY, lw=0.8)
+    for name, (marker, colour) in _styles(objects).items():
+        own = part[part["object"] == name]
+        x, y = own["a_np"].to_numpy(dtype=float), own["a_p"].to_numpy(dtype=float)
+        axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5)
+        for bound, arrow in (("up_p", _UP), ("up_np", _RIGHT)):
+            open_ended = own[bound].to_numpy(dtype=bool)
+            _plot_arrows(axes, x[open_ended], y[open_ended], arrow, colour)
+    axes.set(xlim=(0, upper), ylim=(0, upper), aspect="equal")
+    axes.locator_params(nbins=5)
+
+
+def slenderness_figure(
+    tests: pd.DataFrame,
+    means: pd.DataFrame,
+    slenderness: Mapping[str, float],
+    *,
+    by_floor: bool = False,
+) -> Figure:
+    """Amplitude against slenderness, a panel without and one with the pedestal.
+
+    Parameters
+    ----------
+    tests, means
+        As of :func:`amplitudes_by_object`.
+    slenderness
+        Height over width by object [-].
+    by_floor
+        A column of panels for each floor, and a row for each side; then no means are drawn.
+    """
+    rows = drawn_tests(tests)
+    rows = rows.assign(x=rows["object"].map(slenderness))
+    known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
+    floors, events = (list(dict.fromkeys(tests[name])) for name in ("floor", "event"))
+    shape = (2, len(floors)) if by_floor else (1, 2)
+    with figure_style():
+        figure = new_figure(PAGE_WIDTH if by_floor else 5.2, 4.2 if by_floor else 2.7)
+        grid = figure.subplots(*shape, sharex=True, sharey=True, squeeze=False)
+        for number, axes in enumerate(grid.flat):
+            line, column = divmod(number, shape[1])
+            side = SIDES[line if by_floor else column]
+            part, title = rows[rows["pedestal"] == side], SIDE_NAME[side]
+            if by_floor:
+                part, title = part[part["floor"] == floors[column]], f"{floors[column]}, {side}"
+            _against_slenderness(axes, part, events)
+            if not by_floor:
+                own = known[known["pedestal"] == side]
+                x = own["object"].map(slenderness).to_numpy(dtype=float)
+                axes.plot(x, own["mean_g"], color=BLACK, lw=1.0, marker="_", ms=13, mew=1.8)
+            axes.set_title(title, loc="left")
+            axes.set_ylim(0, top(rows))
+            axes.set_xticks(sorted(rows["x"].unique()))
+        figure.supxlabel("Slenderness H/B [-]", fontsize=8)
+        figure.supylabel(AMPLITUDE, fontsize=8)
+        handles = _event_handles(events) + bound_handle(tests)
+        if not by_floor:
+            handles.append(Line2D([], [], color=BLACK, marker="_", ms=10, label="geometric mean"))
+        figure.legend(handles=handles, loc="outside upper center", ncols=6, handletextpad=0.3)
+    return figure
+
+
+def _event_handles(events: Sequence[str]) -> list[Line2D]:
+    return [
+        Line2D([], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(event))
+        for event, (marker, colour) in _styles(events).items()
+        if len(events) <= len(MARKERS)
+    ]
+
+
+def _against_slenderness(axes: Axes, part: pd.DataFrame, events: Sequence[str]) -> None:
+    """Tests by event with a little sideways shift."""
+    shifts = np.linspace(-0.14, 0.14, max(len(events), 2))
+    for shift, (event, (marker, colour)) in zip(shifts, _styles(events).items(), strict=False):
+        own = part[part["event"] == event]
+        plot_tests(axes, own["x"].to_numpy(dtype=float) + shift, own, marker, colour)

@@ -1,0 +1,50 @@
+"""What a shaking table can do, beside what objects need to overturn."""
+
+import pandas as pd
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from rockfrag.report.figures.amplitudes import MARKERS, drawn_tests
+from rockfrag.report.figures.style import COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure
+from rockfrag.report.figures.sweep import MOST_ROWS
+from rockfrag.report.wording import shortened
+
+
+def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
+    """Draw the amplitude at which each motion leaves the shaker's limits beside what objects need.
+
+    Parameters
+    ----------
+    limits
+        As :func:`rockfrag.shaketable.shaker.shaker_table` returns it.
+    tests
+        Tests of one reading without the shaker's limits; those of lone objects are drawn, if there
+        are any.
+    """
+    motions = list(limits["motion"])[:MOST_ROWS][::-1]
+    place = {motion: number for number, motion in enumerate(motions)}
+    lone = tests[tests["pedestal"] == "NP"]
+    rows = drawn_tests(lone if len(lone) else tests)
+    rows = rows[rows["motion"].isin(motions)]
+    names = list(dict.fromkeys(rows["configuration"]))
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 1.1 + 0.22 * len(motions))
+        axes = figure.subplots()
+        largest = limits.set_index("motion")["limit_g"]
+        axes.barh(range(len(motions)), largest[motions], color="#dddddd", height=0.8)
+        handles: list[Artist] = [Patch(color="#dddddd", label="within the shaker's limits")]
+        for number, name in enumerate(names):
+            marker, colour = MARKERS[number % len(MARKERS)], OKABE_ITO[number % len(OKABE_ITO)]
+            own = rows[rows["configuration"] == name]
+            y = own["motion"].map(place).to_numpy(dtype=float)
+            (line,) = axes.plot(own["a"], y, ls="", marker=marker, mfc="none", mec=colour, ms=4)
+            line.set_label(f"{shortened(name)} overturns")
+            handles.append(line)
+            bounds = own["up"].to_numpy(dtype=bool)
+            axes.plot(own["a"].to_numpy()[bounds], y[bounds], ls="", marker=">", color=colour, ms=3)
+        axes.set_yticks(range(len(motions)), [shortened(name, 28) for name in motions])
+        axes.tick_params(axis="y", length=0)
+        axes.set_xlabel("Peak of the motion [g]")
+        figure.legend(handles=handles, loc="outside upper center", ncols=2)
+        return figure

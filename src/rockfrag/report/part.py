@@ -1,0 +1,145 @@
+"""What a report is made of: parts, each with its words, tables and figures in one file.
+
+To add a part, write a module in ``report/sections/`` with one :class:`Part`, and name it in
+``report/sections/__init__.py`` where it should stand.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import pandas as pd
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from rockfrag.records.motion import Motion, read_motion_set
+from rockfrag.shaketable.readings import READING
+from rockfrag.study.study import Study
+
+
+@dataclass(frozen=True)
+class FigureSpec:
+    """One figure.
+
+    Attributes
+    ----------
+    name
+        Name of its files, of letters, digits, ``-``, ``_`` and ``.``.
+    alt
+        What it shows, for readers who do not see it.
+    caption
+        What stands below it.
+    draw
+        Draws it.
+    """
+
+    name: str
+    alt: str
+    caption: str
+    draw: Callable[[], Figure]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One finding: a headline without a full stop, and the sentences that carry it."""
+
+    headline: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of the page: paragraphs, then tables and figures in order."""
+
+    anchor: str
+    title: str
+    paragraphs: Sequence[str] = ()
+    parts: Sequence[Markup | FigureSpec] = ()
+
+
+class Results:
+    """The results of a study, read when asked for.
+
+    Parameters
+    ----------
+    study
+        The study.
+    folder
+        Folder of its results.
+    """
+
+    def __init__(self, study: Study, folder: Path) -> None:
+        self.study = study
+        self.folder = folder
+        self._tables: dict[str, pd.DataFrame] = {}
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Return a table by its name in the folder, such as ``pedestal/effects``."""
+        if name not in self._tables:
+            self._tables[name] = pd.read_parquet(self.folder / f"{name}.parquet")
+        return self._tables[name]
+
+    @property
+    def tests(self) -> pd.DataFrame:
+        """Tests as the laboratory's protocol reads them."""
+        tests = self.table("tests")
+        return tests[tests["reading"] == READING]
+
+    @cached_property
+    def ground(self) -> Sequence[Motion]:
+        """Ground motions."""
+        return read_motion_set(self.folder / "motions" / "ground.parquet")
+
+    @cached_property
+    def verdicts(self) -> pd.DataFrame:
+        """Verdicts of every configuration at every amplitude: the sweeps without their responses."""
+        columns = ["configuration", "object", "motion", "amplitude_g", "overturned"]
+        paths = [self.folder / "sweep" / f"{one.slug}.parquet" for one in self.study.configurations]
+        parts = [pd.read_parquet(path, columns=columns) for path in paths]
+        return pd.concat(parts, ignore_index=True)
+
+    @property
+    def objects(self) -> list[str]:
+        """Names of the objects tested, in the study's order."""
+        return list(dict.fromkeys(one.object for one in self.study.configurations))
+
+    def file_names(self, start: str) -> dict[str, str]:
+        """A file name for each object that starts with ``start``; no two are the same."""
+        names: dict[str, str] = {}
+        for number, name in enumerate(self.objects, start=1):
+            slug = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in name)
+            file = f"{start}_{slug[:40]}"
+            taken = file.lower() in {known.lower() for known in names.values()}
+            names[name] = f"{file}-{number}" if taken or len(slug) > 40 else file
+        return names
+
+
+def _always(_: Study) -> bool:
+    return True
+
+
+def _nothing(_: Results) -> list[Finding]:
+    return []
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the report.
+
+    Attributes
+    ----------
+    tables
+        Names of the tables that it reads.
+    section
+        Writes its section, or None where there is nothing to show.
+    findings
+        What of it stands at the head of the page.
+    asked
+        Whether a study has it.
+    """
+
+    tables: tuple[str, ...]
+    section: Callable[[Results], Section | None]
+    findings: Callable[[Results], list[Finding]] = field(default=_nothing)
+    asked: Callable[[Study], bool] = field(default=_always)

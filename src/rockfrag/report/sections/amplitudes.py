@@ -1,0 +1,78 @@
+"""Overturning amplitudes: of every test, and which amplitudes overturn."""
+
+from functools import partial
+
+import pandas as pd
+
+from rockfrag.report.figures.sweep import MOST_ROWS, verdict_map
+from rockfrag.report.findings import amplitudes_found, objects_compared, windows_found
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import FigureSpec, Finding, Part, Results, Section
+from rockfrag.report.wording import amplitude, of_all
+
+
+def _findings(results: Results) -> list[Finding]:
+    tests, windows = results.tests, results.table("survival_windows")
+    found = [amplitudes_found(tests)]
+    slenderness = {name: results.study.specimens[name].slenderness for name in results.objects}
+    found += objects_compared(results.table("mean_amplitudes"), slenderness)
+    return [*found, windows_found(windows, results.table("tests"))]
+
+
+def _section(results: Results) -> Section:
+    tests = results.tests
+    tests = tests[tests["repetition"] == tests["repetition"].min()]
+    names = list(dict.fromkeys(tests["configuration"]))
+    shown = _wide(tests)
+    columns = [Column("event", "Event"), Column("floor", "Floor"), Column("motion", "Motion")]
+    columns += [Column(name, f"{name} [g]", numeric=True) for name in names]
+    return Section(
+        "amplitudes",
+        "Overturning amplitudes",
+        [
+            "The amplitude is the peak of the motion that shakes the body: raised in steps from rest, "
+            "and read just before the first overturning. Where a body never overturned, “>” stands "
+            "before the largest amplitude that it survived; “<” stands where it overturned at the "
+            "first step. Such bounds are in no mean.",
+            "Bars show every amplitude that overturns; gaps are amplitudes that are survived although "
+            "a weaker motion overturned the body, and an empty row is a motion that never did.",
+        ],
+        [
+            table_html(shown, columns, "Overturning amplitude of every test, step protocol."),
+            *_maps(results),
+        ],
+    )
+
+
+def _wide(tests: pd.DataFrame) -> pd.DataFrame:
+    """A row per motion and a column per configuration, amplitudes and bounds as text."""
+    texts = tests.assign(text=[amplitude(test) for test in tests.to_dict("records")])
+    keys = ["event", "floor", "motion"]
+    rows: dict[tuple[str, ...], dict[str, str]] = {}
+    for row in texts.to_dict("records"):
+        key = tuple(row[name] for name in keys)
+        about = rows.setdefault(key, dict(zip(keys, key, strict=True)))
+        about[row["configuration"]] = row["text"]
+    return pd.DataFrame(list(rows.values())).fillna("–")
+
+
+def _maps(results: Results) -> list[FigureSpec]:
+    verdicts = results.verdicts
+    files = results.file_names("verdicts")
+    specs = []
+    for name in results.objects:
+        own = verdicts[verdicts["object"] == name]
+        configurations = list(dict.fromkeys(own["configuration"]))
+        sweeps = own.groupby(["configuration", "motion"])["overturned"].any()
+        fallen = of_all(int(sweeps.sum()), len(sweeps), "sweep")
+        caption = f"{name}: every amplitude that overturns it, per motion."
+        motions = own["motion"].nunique()
+        if motions > MOST_ROWS:
+            caption += f" The first {MOST_ROWS} of {motions} motions."
+        alt = f"Map of the amplitudes that overturn {name}; it overturns in {fallen}."
+        draw = partial(verdict_map, own, configurations)
+        specs.append(FigureSpec(files[name], alt, caption, draw))
+    return specs
+
+
+AMPLITUDES = Part(("tests", "mean_amplitudes", "survival_windows"), _section, _findings)

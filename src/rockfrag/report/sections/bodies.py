@@ -1,0 +1,40 @@
+"""What was tested: the bodies, and the acceleration at which each starts to rock."""
+
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import Part, Results, Section
+from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+
+_COLUMNS = (
+    Column("configuration", "Configuration"),
+    Column("stands_on", "Stands on"),
+    Column("width_cm", "Width [cm]", 1),
+    Column("height_cm", "Height [cm]", 1),
+    Column("mass_kg", "Mass [kg]", 3),
+    Column("slenderness", "Height / width", 2),
+    Column("critical_angle_rad", "Critical angle [rad]", 3),
+    Column("frequency_1_s", "Frequency parameter p [1/s]", 2),
+    Column("uplift_g", "Starts to rock at [g]", 3),
+)
+
+
+def _section(results: Results) -> Section:
+    bodies = results.table("bodies")
+    shown = bodies.assign(
+        stands_on=bodies["stands_on"].replace("", "the floor"),
+        width_cm=bodies["width_m"] * CENTIMETRES_PER_METRE,
+        height_cm=bodies["height_m"] * CENTIMETRES_PER_METRE,
+        uplift_g=bodies["uplift_m_s2"] / STANDARD_GRAVITY,
+    )
+    return Section(
+        "bodies",
+        "Bodies",
+        [
+            "Rigid blocks with two edges to rock on, in the plane of the motion. The critical angle is "
+            "that between the diagonal and the upright; a block starts to rock where the acceleration "
+            "below it exceeds the one given, and falls if it turns too far beyond the angle."
+        ],
+        [table_html(shown, _COLUMNS, "The objects, alone and on what they stand on.")],
+    )
+
+
+BODIES = Part(("bodies",), _section)

@@ -1,0 +1,58 @@
+"""The building as an assumption: amplitudes on its floors where one of its properties is another."""
+
+from functools import partial
+
+from rockfrag.report.figures.building import AXIS_NAMES, floor_amplitudes
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.wording import of_all, sentence
+from rockfrag.study.study import Study
+
+_COLUMNS = (
+    Column("axis", "Assumption"),
+    Column("floor", "Floor"),
+    Column("min", "Least mean [g]", 3),
+    Column("max", "Largest mean [g]", 3),
+)
+
+
+def varies_building(study: Study) -> bool:
+    """Whether a study varies its building."""
+    return study.more.sensitivity is not None
+
+
+def _section(results: Results) -> Section:
+    means = results.table("building_sensitivity/means")
+    floors = means[(means["by"] == "floor") & (means["pedestal"] == "NP")]
+    varied = floors[floors["axis"] != "reference"]
+    axes = list(dict.fromkeys(varied["axis"]))
+    span = varied.groupby(["axis", "floor"], sort=False)["mean_g"].agg(["min", "max"]).reset_index()
+    span = span.assign(axis=[AXIS_NAMES.get(axis, axis) for axis in span["axis"]])
+    variants = means.drop_duplicates("label")
+    doubtful = int((~variants["credible"].astype(bool)).sum())
+    return Section(
+        "building",
+        "The building as an assumption",
+        [
+            "One assumption about the building at a time is another. Lines are geometric means of the "
+            "objects without pedestal over the motions that overturned them on every floor.",
+            f"{sentence(of_all(doubtful, len(variants), 'building'))} "
+            f"{'is' if doubtful == 1 else 'are'} shaken beyond what the model is to be believed for.",
+        ],
+        [
+            *(
+                FigureSpec(
+                    f"building_{axis}",
+                    f"Mean overturning amplitude on each floor over {AXIS_NAMES.get(axis, axis)}.",
+                    f"Mean overturning amplitude on each floor. {AXIS_NAMES.get(axis, axis)}; crosses "
+                    "are buildings shaken beyond what their model is to be believed for.",
+                    partial(floor_amplitudes, means, axis),
+                )
+                for axis in axes
+            ),
+            table_html(span, _COLUMNS, "Range of the mean amplitude on each floor."),
+        ],
+    )
+
+
+BUILDING = Part(("building_sensitivity/means",), _section, asked=varies_building)

@@ -1,0 +1,80 @@
+"""Amplitudes side by side: objects, floors, with and without a pedestal."""
+
+from rockfrag.report.figures.amplitudes import (
+    amplitudes_by_floor,
+    amplitudes_by_object,
+    pedestal_scatter,
+)
+from rockfrag.report.findings import mean_sentence, ratio_of
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.wording import counted
+
+_COLUMNS = (
+    Column("what", "Of"),
+    Column("mean_g", "Geometric mean [g]", 3),
+    Column("motions", "Tests each", 0),
+    Column("of", "of", 0),
+)
+
+
+def _section(results: Results) -> Section | None:
+    tests, means = results.tests, results.table("mean_amplitudes")
+    figures = [_by_object(results)]
+    if tests["floor"].nunique() > 1:
+        figures.append(_by_floor(results))
+    if results.study.has_pairs:
+        figures.append(_scatter(results))
+    if len(tests) < 2:
+        return None
+    whole = means[means["by"] == "configuration"].assign(what=lambda t: t["configuration"])
+    floors = means[means["by"] == "floor"].assign(
+        what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
+    )
+    tables = [table_html(whole, _COLUMNS, "Means over the same motions.")] if len(whole) > 1 else []
+    if floors["floor"].nunique() > 1:
+        tables.append(table_html(floors, _COLUMNS, "Means over the same records and objects."))
+    return Section(
+        "comparisons",
+        "Objects, floors and sides compared",
+        [mean_sentence(means)],
+        [*figures, *tables],
+    )
+
+
+def _by_object(results: Results) -> FigureSpec:
+    tests, means = results.tests, results.table("mean_amplitudes")
+    alt = f"Overturning amplitudes of {counted(len(results.objects), 'object')}. {mean_sentence(means)}"
+    caption = (
+        "Overturning amplitude of every test by object; thin lines join the tests of one motion with "
+        "and without pedestal."
+        if results.study.has_pairs
+        else "Overturning amplitude of every test by object."
+    )
+    return FigureSpec(
+        "amplitudes_by_object", alt, caption, lambda: amplitudes_by_object(tests, means)
+    )
+
+
+def _by_floor(results: Results) -> FigureSpec:
+    tests, means = results.tests, results.table("mean_amplitudes")
+    alt = f"Overturning amplitudes on {counted(tests['floor'].nunique(), 'floor')}."
+    caption = "Overturning amplitude of every test by floor."
+    return FigureSpec(
+        "amplitudes_by_floor", alt, caption, lambda: amplitudes_by_floor(tests, means)
+    )
+
+
+def _scatter(results: Results) -> FigureSpec:
+    ratio = ratio_of(results.table("pedestal/effects"))
+    alt = f"Amplitude with the pedestal against that without. {ratio('whole', 'all')}."
+    caption = "Amplitude with the pedestal against that without; the grey band is ±10 %, arrows are bounds."
+    return FigureSpec(
+        "with_and_without_pedestal",
+        alt,
+        caption,
+        lambda: pedestal_scatter(results.tests, title=lambda level: ratio("whole", level)),
+    )
+
+
+COMPARISONS = Part(("tests", "mean_amplitudes"), _section)

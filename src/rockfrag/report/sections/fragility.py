@@ -1,0 +1,101 @@
+"""Fragility curves: figures by object, and a table per measure and reading."""
+
+from functools import partial
+
+import pandas as pd
+from markupsafe import Markup
+
+from rockfrag.report.figures.fragility import fragility_figure
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.wording import decimals_of, estimates, number
+
+
+def _section(results: Results) -> Section:
+    level = f"{100 * results.study.fragility.confidence:g} %"
+    curves = _ordered(results)
+    known = curves["theta"].notna()
+    notes = list(dict.fromkeys(note for note in curves["warnings"] if note))
+    without = list(dict.fromkeys(curves.loc[~known, "configuration"]))
+    return Section(
+        "fragility",
+        "Fragility",
+        [
+            "Lognormal curves: the probability to overturn is Φ(ln(IM/θ)/β). Mean probability "
+            "counts every amplitude, survival windows included; first and always overturning take "
+            f"one amplitude a motion. Intervals are of {level}, and resample earthquakes or motions, "
+            "not amplitudes; “open” is a limit that the data do not set.",
+            *([f"Some readings give no curve: {', '.join(without)}."] if without else []),
+            *notes,
+        ],
+        [*_figures(results, curves), *_tables(curves[known], level)],
+    )
+
+
+def _ordered(results: Results) -> pd.DataFrame:
+    order = {one.name: i for i, one in enumerate(results.study.configurations)}
+    return results.table("fragility").sort_values(
+        "configuration", key=lambda names: names.map(order), kind="stable"
+    )
+
+
+def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
+    bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
+    measure = str(results.table("fragility")["im"].iloc[0])
+    files = results.file_names("fragility")
+    specs = []
+    for name in results.objects:
+        own = [one.name for one in results.study.configurations if one.object == name]
+        chosen = curves[
+            curves["configuration"].isin(own)
+            & (curves["im"] == measure)
+            & (curves["estimator"] == "mean_probability")
+        ]
+        caption = (
+            f"{name}: probability of overturning over {measure}, with intervals; points are shares of "
+            "all runs in bins, the dashed line is the local share."
+        )
+        medians = "; ".join(
+            f"{row['configuration']} {number(row['theta'], decimals_of(row['theta']))} {row['unit']}"
+            for row in chosen.dropna(subset=["theta"]).to_dict("records")
+        )
+        alt = f"Fragility of {name} over {measure}: " + (
+            f"medians {medians}." if medians else "no curve."
+        )
+        specs.append(
+            FigureSpec(
+                files[name],
+                alt,
+                caption,
+                partial(
+                    fragility_figure,
+                    chosen,
+                    *(
+                        t[t["configuration"].isin(own) & (t["im"] == measure)]
+                        for t in (bands, bins)
+                    ),
+                ),
+            )
+        )
+    return specs
+
+
+def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
+    """One narrow table per intensity measure and reading."""
+    tables = []
+    for (measure, unit, reading), rows in curves.groupby(["im", "unit", "estimator"], sort=False):
+        shown = rows.assign(
+            theta_text=estimates(rows, ("theta", "theta_lower", "theta_upper")),
+            beta_text=estimates(rows, ("beta", "beta_lower", "beta_upper")),
+        )
+        columns = (
+            Column("configuration", "Configuration"),
+            Column("theta_text", f"Median θ [{unit}]", numeric=True),
+            Column("beta_text", "Dispersion β", numeric=True),
+        )
+        caption = f"{measure}, {str(reading).replace('_', ' ')}: with {level} intervals."
+        tables.append(table_html(shown, columns, caption))
+    return tables
+
+
+FRAGILITY = Part(("fragility", "fragility_bands", "fragility_bins"), _section)

@@ -1,0 +1,131 @@
+"""The effect of the pedestal: ratios of amplitudes with and without it."""
+
+from collections.abc import Hashable, Mapping
+from typing import Any
+
+import pandas as pd
+
+from rockfrag.report.figures.effects import forest_figure
+from rockfrag.report.findings import pedestal_effect, ratio_of, ratio_text
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import FigureSpec, Finding, Part, Results, Section
+from rockfrag.report.wording import estimate, has_interval, listed, number, probability
+from rockfrag.shaketable.readings import READING
+from rockfrag.study.study import Study
+
+MOST_ROWS = 45
+"""More rows than this are not legible in one figure; the finest scopes are then left to the table."""
+
+EFFECT_COLUMNS = (
+    Column("scope", "Scope"),
+    Column("level", "Of"),
+    Column("pairs", "Pairs", 0),
+    Column("at_bound", "of which at a bound", 0),
+    Column("ratio_text", "P/NP [95 % interval]", numeric=True),
+    Column("detectable_text", "Detectable", numeric=True),
+    Column("equivalent", "Within ±10 %"),
+    Column("p_text", "p (Holm)", numeric=True),
+)
+"""What is shown of :func:`rockfrag.pedestal.effects_table` after :func:`shown_effects`."""
+
+_METHODS = (
+    Column("reading", "Reading"),
+    Column("method", "Method"),
+    Column("ratio_text", "P/NP [95 % interval]", numeric=True),
+    Column("p_text", "p", numeric=True),
+    Column("smallest_text", "Smallest possible p", numeric=True),
+    Column("remark", "Remark"),
+)
+
+
+def has_pairs(study: Study) -> bool:
+    """Whether something stands both with and without a pedestal in a study."""
+    return study.has_pairs
+
+
+def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
+    """Effects with texts to be shown: intervals and p values only where they say something."""
+    rows = effects.to_dict("records")
+    return effects.assign(
+        scope=effects["scope"].replace({"whole": "all pairs", "cell": "floor and object"}),
+        level=effects["level"].str.replace("/", ", "),
+        ratio_text=[ratio_text(row) for row in rows],
+        equivalent=["yes" if _width(row) and row["equivalent"] else "–" for row in rows],
+        detectable_text=[_detectable(row) for row in rows],
+        p_text=[probability(row["p_holm"]) if _width(row) else "–" for row in rows],
+    )
+
+
+def _width(row: Mapping[Hashable, Any]) -> bool:
+    return has_interval(row["lower"], row["upper"], 3)
+
+
+def _detectable(row: Mapping[Hashable, Any]) -> str:
+    return number(row["detectable_ratio"], 2) if _width(row) else "–"
+
+
+def _section(results: Results) -> Section:
+    effects, whole = results.table("pedestal/effects"), results.table("pedestal/whole")
+    here = effects[effects["reading"] == READING]
+    parts: list[Any] = []
+    if len(here):
+        methods = whole.assign(
+            reading=whole["reading"].str.replace("_", " "),
+            ratio_text=[
+                estimate(row["estimate"], row["lower"], row["upper"], 3)
+                for row in whole.to_dict("records")
+            ],
+            p_text=[probability(p) for p in whole["p"]],
+            smallest_text=[probability(p) for p in whole["smallest_p"]],
+        )
+        parts = [
+            _forest(here),
+            table_html(shown_effects(here), EFFECT_COLUMNS, "Effect by scope, step protocol."),
+            table_html(methods, _METHODS, "All pairs by other methods and readings."),
+        ]
+    notes = results.table("pedestal/notes")
+    notes = notes[notes["reading"] == READING] if len(notes) else notes
+    return Section(
+        "pedestal",
+        "Effect of the pedestal",
+        [
+            "Ratio of the overturning amplitude with the pedestal (P) to that without (NP), paired "
+            "by object and motion. Motions of one earthquake are not independent, so intervals rest "
+            "on earthquakes where there are several. “Detectable” is the ratio that would be found "
+            "with 80 % power. Where all amplitudes agree to the steps tested there is no interval, "
+            "and no test.",
+            *dict.fromkeys(_plain(note) for note in notes["note"]),
+        ],
+        parts,
+    )
+
+
+def _plain(note: str) -> str:
+    """A note as a sentence."""
+    text = note[:1].upper() + note[1:]
+    return text if text.endswith(".") else f"{text}."
+
+
+def _forest(effects: pd.DataFrame) -> FigureSpec:
+    shown, left_out = effects, []
+    for scope in ("cell", "event"):
+        if len(shown) > MOST_ROWS:
+            shown = shown[shown["scope"] != scope]
+            left_out.append({"cell": "floors by object", "event": "earthquakes"}[scope])
+    caption = (
+        "Amplitude with over amplitude without pedestal, with 95 % intervals where there are any; grey "
+        "is the range that counts as no effect. Step protocol."
+    )
+    if left_out:
+        caption += f" Too many to draw, and in the table only: {listed(left_out)}."
+    alt = f"Ratios P/NP by scope. All pairs: {ratio_of(effects)('whole', 'all')}."
+    return FigureSpec("pedestal_effect", alt, caption, lambda: forest_figure(shown))
+
+
+def _findings(results: Results) -> list[Finding]:
+    return pedestal_effect(results.table("pedestal/effects"))
+
+
+PEDESTAL = Part(
+    ("pedestal/effects", "pedestal/whole", "pedestal/notes"), _section, _findings, has_pairs
+)

@@ -1,0 +1,64 @@
+"""What the model assumes: that nothing slides and nothing jumps."""
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.report.findings import model_allowed
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import Finding, Part, Results, Section
+
+_COLUMNS = (
+    Column("object", "Object"),
+    Column("side", "Pedestal"),
+    Column("tests", "Tests", 0),
+    Column("median", "Friction needed, median", 2),
+    Column("largest", "largest", 2),
+    Column("beyond", "No friction enough", 0),
+    Column("lifted", "Lifts off", 0),
+)
+
+
+def _section(results: Results) -> Section | None:
+    validity = results.table("validity")
+    if validity.empty:
+        return None
+    rows = [
+        _row(str(name), str(side), part)
+        for (name, side), part in validity.groupby(["object", "pedestal"], sort=False)
+    ]
+    return Section(
+        "validity",
+        "What the model assumes",
+        [
+            "Blocks neither slide nor jump in this model. The contact forces of every test, at its "
+            "amplitude, say what that asks of the surfaces."
+        ],
+        [
+            table_html(
+                pd.DataFrame(rows),
+                _COLUMNS,
+                "Coefficient of friction needed, and tests with lift-off.",
+            )
+        ],
+    )
+
+
+def _row(name: str, side: str, part: pd.DataFrame) -> dict[str, object]:
+    demand = part["friction_demand"].to_numpy(dtype=float)
+    known = demand[np.isfinite(demand)]
+    return {
+        "object": name,
+        "side": "with" if side == "P" else "without",
+        "tests": len(part),
+        "median": float(np.median(known)) if known.size else np.nan,
+        "largest": float(known.max(initial=0.0)) if known.size else np.nan,
+        "beyond": len(part) - known.size,
+        "lifted": int((part["least_normal_force_n"] <= 0).sum()),
+    }
+
+
+def _findings(results: Results) -> list[Finding]:
+    return model_allowed(results.table("validity"))
+
+
+VALIDITY = Part(("validity",), _section, _findings)

@@ -1,0 +1,120 @@
+"""Numbers, names and lists in words; nothing here ever prints NaN, infinity or an empty interval."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+
+MOST_LISTED = 8
+"""More names than this are not listed in a sentence, but counted."""
+
+LONGEST_NAME = 24
+"""Longer names are cut in figures, where they would push everything else aside."""
+
+
+def number(value: float, decimals: int) -> str:
+    """A number with its decimals and a real minus sign; a dash where there is none."""
+    if not math.isfinite(value):
+        return "–"
+    return f"{value:.{decimals}f}".replace("-", "−")
+
+
+def decimals_of(value: float, significant: int = 3) -> int:
+    """Decimals that show so many digits of a value: 2 of 1.23, 0 of 123."""
+    if not math.isfinite(value) or value == 0:
+        return significant
+    return max(0, significant - 1 - math.floor(math.log10(abs(value))))
+
+
+def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
+    """An estimate with its limits, ``1.01 [0.98, 1.04]``; without them where they say nothing.
+
+    Limits say nothing where there are none, or where they are the same to the decimals shown: a
+    ladder of steps cannot show that something is exactly so.
+    """
+    if not math.isfinite(value):
+        return "–"
+    middle = number(value, decimals)
+    if not has_interval(lower, upper, decimals):
+        return middle
+    low = number(lower, decimals) if math.isfinite(lower) and lower > 0 else "open"
+    high = number(upper, decimals) if math.isfinite(upper) else "open"
+    return f"{middle} [{low}, {high}]"
+
+
+def estimates(
+    table: pd.DataFrame, columns: tuple[str, str, str], decimals: int | None = None
+) -> list[str]:
+    """Estimates of a table in words, by its columns of the value and its limits.
+
+    The decimals are the same for all; by default they show three digits of the smallest value.
+    """
+    values = table[list(columns)].to_numpy(dtype=float)
+    if decimals is None:
+        decimals = min(max((decimals_of(value) for value in values[:, 0]), default=3), 3)
+    return [estimate(value, lower, upper, decimals) for value, lower, upper in values]
+
+
+def has_interval(lower: float, upper: float, decimals: int) -> bool:
+    """Whether limits of a positive quantity have a width that the decimals show."""
+    if math.isnan(lower) or math.isnan(upper):
+        return False
+    if lower <= 0 and math.isinf(upper):
+        return False
+    return number(lower, decimals) != number(upper, decimals)
+
+
+def probability(p: float) -> str:
+    """A p value; those too small to tell apart are bounded, never zero."""
+    if not math.isfinite(p):
+        return "–"
+    return "< 0.001" if p < 0.001 else f"{p:.3f}"
+
+
+def counted(n: int, one: str, many: str | None = None) -> str:
+    """``1 record``, ``2 records``, ``no record``."""
+    if n == 0:
+        return f"no {one}"
+    return f"{n} {one}" if n == 1 else f"{n} {many or one + 's'}"
+
+
+def of_all(n: int, total: int, one: str, many: str | None = None) -> str:
+    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the one test``."""
+    noun = one if total == 1 else many or one + "s"
+    if n == 0:
+        return f"none of {total} {noun}" if total > 1 else f"not the one {noun}"
+    if n == total:
+        return f"all {total} {noun}" if total > 1 else f"the one {noun}"
+    return f"{n} of {total} {noun}"
+
+
+def listed(names: Sequence[str]) -> str:
+    """``a``, ``a and b``, ``a, b and c``; of many the first ones and how many more."""
+    if len(names) > MOST_LISTED:
+        return f"{', '.join(names[:MOST_LISTED])} and {len(names) - MOST_LISTED} more"
+    if len(names) < 2:
+        return "".join(names)
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def shortened(name: str, longest: int = LONGEST_NAME) -> str:
+    """A name of at most ``longest`` characters; the middle of a longer one is left out."""
+    if len(name) <= longest:
+        return name
+    head = (longest - 1) // 2
+    return f"{name[: longest - 1 - head]}…{name[-head:]}"
+
+
+def amplitude(test: Mapping[Any, Any], decimals: int = 3) -> str:
+    """The amplitude [g] of a test, or the bound that is known of it: ``0.523``, ``> 2.000``, ``< 0.100``."""
+    if math.isfinite(test["amplitude_g"]):
+        return number(test["amplitude_g"], decimals)
+    if math.isfinite(test["upper_g"]):
+        return f"< {number(test['upper_g'], decimals)}"
+    return f"> {number(test['lower_g'], decimals)}" if test["lower_g"] > 0 else "–"
+
+
+def sentence(words: str) -> str:
+    """The words with a capital letter first."""
+    return words[:1].upper() + words[1:]

@@ -1,0 +1,1 @@
+"""Counterparts of the thesis's figures, from the tables of a study."""

@@ -1,0 +1,229 @@
+"""Figures of amplitudes show every test, and what is only a bound as a bound."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.path import Path as Outline
+
+from rockfrag.report.figures.amplitudes import (
+    amplitudes_by_floor,
+    amplitudes_by_object,
+    pedestal_scatter,
+    slenderness_figure,
+)
+from rockfrag.report.figures.effects import forest_figure
+from rockfrag.report.figures.fragility import fragility_figure
+from rockfrag.report.figures.shaker import shaker_limits
+from rockfrag.report.figures.style import figure_style, new_figure, save_figure
+from rockfrag.report.figures.sweep import verdict_map
+from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
+
+OBJECTS = ("vase", "column & capital")
+SLENDERNESS = dict(zip(OBJECTS, (3.0, 4.0), strict=True))
+
+
+def laboratory(unfinished: int = 0) -> pd.DataFrame:
+    """Tests of two objects on two floors by three records, the first ones never overturned."""
+    rng = np.random.default_rng(4)
+    rows = []
+    for event in ("Alpha", "Beta", "Gamma"):
+        for floor in ("cellar", "attic"):
+            for name in OBJECTS:
+                for side in ("P", "NP"):
+                    a = 0.5 * np.exp(0.2 * rng.normal())
+                    censored = len(rows) < unfinished
+                    rows.append(
+                        {
+                            "configuration": f"{name} {side}",
+                            "object": name,
+                            "pedestal": side,
+                            "event": event,
+                            "floor": floor,
+                            "motion": f"{event}_{floor}",
+                            "lower_g": 2.0 if censored else a,
+                            "upper_g": np.nan if censored else 1.05 * a,
+                            "amplitude_g": np.nan if censored else a,
+                            "repetition": 1,
+                        }
+                    )
+    return pd.DataFrame(rows)
+
+
+def drawn(axes: Axes, arrows: bool = False) -> int:
+    """Number of markers of tests, or of arrows, in a panel."""
+    return sum(
+        len(line.get_xdata())
+        for line in axes.lines
+        if line.get_linestyle() == "None"
+        and line.get_marker() != "_"
+        and isinstance(line.get_marker(), Outline) == arrows
+    )
+
+
+@pytest.mark.parametrize("unfinished", [0, 1, 5])
+def test_every_test_is_drawn_and_those_that_never_overturned_have_arrows(unfinished: int):
+    tests = laboratory(unfinished)
+    means = mean_amplitudes(tests)
+    for figure in (
+        amplitudes_by_object(tests, means),
+        amplitudes_by_floor(tests, means),
+        amplitudes_by_floor(tests, means, panels=OBJECTS),
+        slenderness_figure(tests, means, SLENDERNESS),
+        slenderness_figure(tests, means, SLENDERNESS, by_floor=True),
+    ):
+        assert sum(drawn(axes) for axes in figure.axes) == 24
+        assert sum(drawn(axes, arrows=True) for axes in figure.axes) == unfinished
+
+
+def test_an_unfinished_test_does_not_move_a_mean_against_the_other_side():
+    """Both means leave the same motion out, so their ratio stays that of the pairs."""
+    finished, unfinished = laboratory(), laboratory(1)
+    left_out = (finished["motion"] == "Alpha_cellar").to_numpy()
+    expected, found = (
+        table[table["by"] == "configuration"].set_index("configuration")["mean_g"].to_dict()
+        for table in map(mean_amplitudes, (finished[~left_out], unfinished))
+    )
+    assert found == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("panels", "count"), [(None, 1), ("floor", 2), ("event", 3)])
+def test_pairs_are_points_and_unfinished_ones_have_arrows(panels: str | None, count: int):
+    figure = pedestal_scatter(laboratory(2), panels)
+    shown = [axes for axes in figure.axes if axes.get_visible()]
+    assert len(shown) == count
+    assert sum(drawn(axes) for axes in shown) == 12
+    # the first two tests are both sides of one pair
+    assert sum(drawn(axes, arrows=True) for axes in shown) == 2
+
+
+def test_an_overturning_at_the_first_step_points_down():
+    tests = laboratory()
+    tests.loc[0, ["lower_g", "upper_g", "amplitude_g"]] = [0.0, 0.1, np.nan]
+    figure = amplitudes_by_object(tests, mean_amplitudes(tests))
+    (arrow,) = [
+        line.get_marker() for line in figure.axes[0].lines if isinstance(line.get_marker(), Outline)
+    ]
+    assert np.asarray(arrow.vertices)[:, 1].min() < 0
+
+
+def effects() -> pd.DataFrame:
+    rows = [
+        ("whole", "all", 3, 1.02, 0.97, 1.07),
+        ("floor", "cellar", 3, 1.00, np.nan, np.nan),
+        ("floor", "attic", 1, 1.04, np.nan, np.nan),
+    ]
+    columns = ["scope", "level", "units", "ratio", "lower", "upper"]
+    return pd.DataFrame(rows, columns=columns).assign(unit="event", p_holm=0.4)
+
+
+def test_the_forest_draws_an_interval_only_where_there_is_one():
+    figure = forest_figure(effects())
+    labels = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
+    assert labels == ["all pairs (3 events)", "cellar (3 events)", "attic (1 event)"]
+    lines = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 2]
+    assert len(lines) == 2  # that of one, and one interval
+
+
+def sweep(amplitudes: list[float], fallen: list[bool]) -> pd.DataFrame:
+    return pd.DataFrame(
+        {
+            "configuration": "vase",
+            "motion": "Alpha",
+            "amplitude_g": amplitudes,
+            "overturned": fallen,
+        }
+    )
+
+
+@pytest.mark.parametrize(
+    ("amplitudes", "fallen", "bars"),
+    [
+        ([0.1, 0.2, 0.4, 0.8], [False, True, False, True], 2),
+        ([0.1, 0.2], [False, False], 0),
+        ([0.1, 0.2], [True, True], 1),
+        ([0.3], [True], 1),
+    ],
+)
+def test_the_map_has_a_bar_for_each_range_that_overturns(
+    amplitudes: list[float], fallen: list[bool], bars: int
+):
+    axes = verdict_map(sweep(amplitudes, fallen), ["vase"]).axes[0]
+    assert len(axes.collections[0].get_paths()) == bars
+
+
+def test_the_shakers_limits_stand_beside_the_objects():
+    limits = pd.DataFrame({"motion": ["a", "b"], "limit_g": [0.4, 1.5]})
+    tests = laboratory().iloc[:2].assign(motion=["a", "b"], pedestal="NP", amplitude_g=[0.5, 0.6])
+    axes = shaker_limits(limits, tests).axes[0]
+    assert [bar.get_width() for bar in axes.patches] == [1.5, 0.4]
+    assert sorted(x for line in axes.lines for x in line.get_xdata()) == [0.5, 0.6]
+
+
+def test_a_configuration_without_a_curve_keeps_its_verdicts():
+    x = np.geomspace(0.1, 1, 5)
+    curves = pd.DataFrame(
+        {
+            "configuration": ["vase", "jug"],
+            "im": "PGA",
+            "unit": "g",
+            "theta": [0.4, np.nan],
+            "beta": [0.3, np.nan],
+        }
+    )
+    bands = pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "configuration": name,
+                    "x": x,
+                    **dict.fromkeys(("probability", "lower", "upper", "local"), value),
+                }
+            )
+            for name, value in (("vase", 0.5), ("jug", np.nan))
+        ]
+    )
+    bins = pd.DataFrame({"configuration": ["vase", "jug"], "x": 0.3, "share": [0.4, 0.0]}).assign(
+        share_lower=0.0, share_upper=0.5
+    )
+    figure = fragility_figure(curves, bands, bins)
+    labels = [line.get_label() for line in figure.axes[0].lines]
+    assert "jug: no curve" in labels
+    assert any(label.startswith("vase: θ = 0.4 g") for label in labels)
+
+
+HARD_NAMES = ("Büste “Ä”", "a$b$c", "x_{1}^2 \\alpha $", "<b>&amp;", "n" * 200, "日本")
+
+
+@pytest.mark.parametrize("name", HARD_NAMES)
+@pytest.mark.filterwarnings("ignore:Glyph")
+def test_any_name_can_be_drawn_and_is_the_text_that_was_given(name: str, tmp_path: Path):
+    tests = laboratory().replace({"vase": name})
+    figure = amplitudes_by_object(tests, mean_amplitudes(tests))
+    save_figure(figure, tmp_path / "a.svg", tmp_path / "a.png")
+    label = figure.axes[0].get_xticklabels()[0].get_text()
+    assert label == name if len(name) <= 14 else label.startswith(name[:6])
+    verdict_map(sweep([0.1, 0.2], [False, True]).assign(motion=name), ["vase"])
+
+
+def test_figures_are_the_same_bytes_for_the_same_data_and_their_text_is_text(tmp_path: Path):
+    tests = laboratory(1)
+    for name in ("one", "two"):
+        figure = amplitudes_by_object(tests, mean_amplitudes(tests))
+        save_figure(figure, tmp_path / f"{name}.svg", tmp_path / f"{name}.png")
+    for ending in ("svg", "png"):
+        one, two = ((tmp_path / f"{name}.{ending}").read_bytes() for name in ("one", "two"))
+        assert one == two
+    assert ">vase<" in (tmp_path / "one.svg").read_text()
+
+
+def test_labels_lie_within_the_figure(tmp_path: Path):
+    with figure_style():
+        figure = new_figure(3.5, 2)
+        axes = figure.subplots()
+        axes.set_yticks([0, 1], ["a rather long label of a row", "b"])
+    save_figure(figure, tmp_path / "a.png")
+    box = axes.get_yticklabels()[0].get_window_extent()
+    assert box.x0 >= 0
