@@ -1,6 +1,6 @@
 # make run      the thesis's study, from records to report (STUDY=config/other.yaml for another)
 # make smoke    a small study in under a minute
-# make test     the tests; make validate the long ones; make lint the checks of form
+# make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make bench    speed against other programs
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
 # Paths are relative throughout, so the checkout may stand anywhere, spaces included.
@@ -9,7 +9,7 @@ PYTHON ?= python3
 STUDY ?= config/thesis.yaml
 RUN := .venv/bin/python -m
 
-.PHONY: run smoke test validate lint bench format
+.PHONY: run smoke test validate coverage lint bench format
 .DEFAULT_GOAL := run
 
 run: .venv/installed
@@ -20,15 +20,19 @@ smoke:
 	@$(MAKE) --no-print-directory run STUDY=config/smoke.yaml
 
 test: .venv/installed
-	@$(RUN) pytest -m "not slow"
+	@$(RUN) pytest -n auto -m "not slow"
 
 validate: .venv/installed
 	@$(RUN) pytest -m slow
+
+coverage: .venv/installed
+	@$(RUN) pytest -n auto -m "not slow" --cov --cov-report=term --cov-report=xml
 
 lint: .venv/installed
 	@$(RUN) ruff check .
 	@$(RUN) ruff format --check .
 	@$(RUN) mypy
+	@$(RUN) codespell_lib
 	@.venv/bin/python .venv/bin/snakefmt --check Snakefile workflow
 	@$(RUN) snakemake --lint
 

@@ -3,6 +3,7 @@
 >>> from rockfrag import Block, Stack, simulate, overturns, read_motion
 """
 
+from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 from rockfrag._lazy import loader
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
         overturns,
         simulate,
     )
+
+__version__ = version("rockfrag")
 
 __all__ = [
     "Block",
@@ -43,3 +46,7 @@ __getattr__ = loader(
         "simulate": "rockfrag.rocking.simulation",
     },
 )
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

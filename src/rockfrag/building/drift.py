@@ -40,7 +40,15 @@ class DriftVerdict:
 
 
 def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftVerdict:
-    """Judge a response by the masonry law of the building."""
+    """Judge a response by the masonry law of the building.
+
+    Parameters
+    ----------
+    building
+        Building whose law judges.
+    response
+        Its response.
+    """
     if building.model == "elastic":
         return _judge_elastic(building, response)
     return _judge_hysteretic(building, response)

@@ -60,12 +60,16 @@ def floor_spectra(
 
     Parameters
     ----------
-    building, motion, floors
-        As of :func:`floor_motions`.
+    building
+        Building; its model says whether it responds elastically or hysteretically.
+    motion
+        Ground acceleration.
     periods
         Natural periods [s].
     damping
         Fraction of critical damping of the equipment [-].
+    floors
+        Labels that the building gives to its floors; all of them if not given.
 
     Returns
     -------
@@ -78,7 +82,15 @@ def floor_spectra(
 
 
 def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
-    """Response by the building's model."""
+    """Response by the building's model.
+
+    Parameters
+    ----------
+    building
+        Building; its model says whether it responds elastically or hysteretically.
+    motion
+        Ground acceleration.
+    """
     if building.model == "elastic":
         return respond_elastically(building, motion)
     return respond_hysteretically(building, motion)

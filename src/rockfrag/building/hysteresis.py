@@ -45,6 +45,11 @@ def shear_strengths(building: ShearBuilding) -> Floats:
 def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
     """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit.
 
+    Parameters
+    ----------
+    building
+        Building whose masonry law and stiffnesses are looked up.
+
     Returns
     -------
     displacement, force

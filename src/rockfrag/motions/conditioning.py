@@ -17,7 +17,13 @@ from rockfrag.records.motion import Motion
 
 
 def demean(motion: Motion) -> Motion:
-    """Subtract the mean of the acceleration."""
+    """Subtract the mean of the acceleration.
+
+    Parameters
+    ----------
+    motion
+        Motion as it is.
+    """
     mean = float(motion.acceleration.mean())
     return motion.after("demean", motion.acceleration - mean, removed_m_s2=mean)
 
@@ -27,6 +33,8 @@ def baseline(motion: Motion, order: int = 1) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     order
         Order of the polynomial, 0 (the mean) to 10; 1 is the straight line of "simple baseline
         correction".
@@ -52,6 +60,8 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     order
         Order of the polynomial, 2 to 10.
 
@@ -77,6 +87,8 @@ def taper(motion: Motion, duration_s: float) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     duration_s
         Length of the bell at each end [s], at most half of the motion.
 
@@ -107,6 +119,8 @@ def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     before_s, after_s
         Length of the zeros at either end [s], rounded to whole samples, at most 10 million of them.
 

@@ -20,6 +20,8 @@ def highpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     corner_hz
         Corner frequency [Hz], below Nyquist.
     order
@@ -41,7 +43,22 @@ def highpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
 
 
 def lowpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
-    """Acausal Butterworth low-pass filter; parameters and errors as for :func:`highpass`."""
+    """Acausal Butterworth low-pass filter.
+
+    Parameters
+    ----------
+    motion
+        Motion as it is.
+    corner_hz
+        Corner frequency [Hz], below Nyquist.
+    order
+        Order of the filter, 1 to 10; it acts twice.
+
+    Raises
+    ------
+    InputError
+        If the corner is not between zero and Nyquist or the order is not such a number.
+    """
     corner_hz = _corner("lowpass", "corner_hz", corner_hz, motion)
     order = whole("step lowpass", "order", order, 1, 10)
     from obspy.signal import filter as obspy_filter
@@ -54,6 +71,17 @@ def lowpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
 
 def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> Motion:
     """Acausal Butterworth band-pass filter between two corners below Nyquist [Hz].
+
+    Parameters
+    ----------
+    motion
+        Motion as it is.
+    low_hz
+        Lower corner [Hz].
+    high_hz
+        Upper corner [Hz], below Nyquist.
+    order
+        Order of the filter, 1 to 10; it acts twice.
 
     Raises
     ------
@@ -86,6 +114,8 @@ def resample(motion: Motion, dt_s: float) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     dt_s
         New sampling interval [s]; old and new must have a ratio of whole numbers up to 1000.
 
@@ -114,6 +144,8 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     dt_s
         New sampling interval [s], a whole fraction of the old one.
 

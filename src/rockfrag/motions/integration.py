@@ -67,10 +67,26 @@ def displacement_extremes(acceleration: Floats, dt: float) -> Floats:
 
 
 def peak_velocity(acceleration: Floats, dt: float) -> float:
-    """Peak absolute velocity [m/s], between samples too."""
+    """Peak absolute velocity [m/s], between samples too.
+
+    Parameters
+    ----------
+    acceleration
+        Acceleration [m/s²], shape (n,).
+    dt
+        Sampling interval [s].
+    """
     return float(np.abs(velocity_extremes(acceleration, dt)).max())
 
 
 def peak_displacement(acceleration: Floats, dt: float) -> float:
-    """Peak absolute displacement [m], between samples too."""
+    """Peak absolute displacement [m], between samples too.
+
+    Parameters
+    ----------
+    acceleration
+        Acceleration [m/s²], shape (n,).
+    dt
+        Sampling interval [s].
+    """
     return float(np.abs(displacement_extremes(acceleration, dt)).max())

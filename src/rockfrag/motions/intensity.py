@@ -22,27 +22,57 @@ Floats = NDArray[np.float64]
 
 
 def pga(motion: Motion) -> float:
-    """Peak absolute acceleration [m/s²]."""
+    """Peak absolute acceleration [m/s²].
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    """
     return motion.pga
 
 
 def pgv(motion: Motion) -> float:
-    """Peak absolute velocity from rest [m/s], between samples too; thesis Table 3.3."""
+    """Peak absolute velocity from rest [m/s], between samples too; thesis Table 3.3.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    """
     return peak_velocity(motion.acceleration, motion.dt)
 
 
 def pgd(motion: Motion) -> float:
-    """Peak absolute displacement from rest [m], between samples too; thesis Table 3.3."""
+    """Peak absolute displacement from rest [m], between samples too; thesis Table 3.3.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    """
     return peak_displacement(motion.acceleration, motion.dt)
 
 
 def pgv_over_pga(motion: Motion) -> float:
-    """PGV/PGA [s]; NaN for a motion of zeros."""
+    """PGV/PGA [s]; NaN for a motion of zeros.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    """
     return pgv(motion) / pga(motion) if pga(motion) > 0 else math.nan
 
 
 def cumulative_arias(motion: Motion) -> Floats:
-    """Arias intensity up to each sample, π/(2g) ∫₀ᵗ a² dt [m/s], shape (n,)."""
+    """Arias intensity up to each sample, π/(2g) ∫₀ᵗ a² dt [m/s], shape (n,).
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    """
     from scipy.integrate import cumulative_trapezoid
 
     energy = cumulative_trapezoid(motion.acceleration**2, dx=motion.dt, initial=0.0)
@@ -54,12 +84,23 @@ def arias(motion: Motion) -> float:
 
     Arias (1970), A measure of earthquake intensity, in: Seismic Design for Nuclear Power Plants,
     MIT Press, 438-483.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
     """
     return float(cumulative_arias(motion)[-1])
 
 
 def cav(motion: Motion) -> float:
-    """Cumulative absolute velocity ∫ |a| dt [m/s] by the trapezoidal rule (EPRI 1988, NP-5930)."""
+    """Cumulative absolute velocity ∫ |a| dt [m/s] by the trapezoidal rule (EPRI 1988, NP-5930).
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    """
     return float(np.trapezoid(np.abs(motion.acceleration), dx=motion.dt))
 
 
@@ -70,6 +111,8 @@ def arias_times(motion: Motion, lower: float, upper: float) -> tuple[float, floa
 
     Parameters
     ----------
+    motion
+        Motion to be measured.
     lower, upper
         Fractions, 0 ≤ lower < upper ≤ 1.
     """
@@ -85,6 +128,15 @@ def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.9
 
     D5-95 by Trifunac & Brady (1975, Bull. Seism. Soc. Am. 65(3), 581-626), D5-75 by Somerville et
     al. (1997, Seism. Res. Lett. 68(1), 199-222).
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    lower
+        Fraction of the Arias intensity at which the duration begins [-].
+    upper
+        Fraction at which it ends [-].
     """
     start, end = arias_times(motion, lower, upper)
     return end - start
@@ -94,6 +146,13 @@ def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
     """First and last time at which |a| reaches ``threshold`` [m/s²] [s]; NaN where it never does.
 
     Bolt (1973, 5th World Conference on Earthquake Engineering); at samples.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    threshold
+        Threshold [m/s²].
     """
     above = np.flatnonzero(np.abs(motion.acceleration) >= threshold)
     if above.size == 0:
@@ -107,6 +166,11 @@ def mean_period(motion: Motion) -> float:
     C are Fourier amplitudes (Rathje, Abrahamson & Bray 1998, J. Geotech. Geoenviron. Eng. 124(2),
     150-159).  Zeros are added so that frequencies are at most 0.05 Hz apart, as Rathje et al.
     (2004, Earthquake Spectra 20(1), 119-144) require.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
     """
     from rockfrag.motions.spectra import fourier_amplitude
 
@@ -125,6 +189,11 @@ def predominant_period(motion: Motion) -> float:
     """Period Tp of the largest 5 % damped PSA [s]; NaN for a motion of zeros.
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
     """
     from rockfrag.motions.side_by_side import largest_pseudo_acceleration
 
@@ -136,21 +205,66 @@ def predominant_period(motion: Motion) -> float:
 
 
 def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) -> float:
-    """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for."""
+    """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    period
+        Natural period [s], positive.
+    damping
+        Fraction of critical damping [-].
+
+    Raises
+    ------
+    InputError
+        If the period is not positive or the damping negative.
+    """
     from rockfrag.motions.spectra import response_spectrum
 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
 
 def spectral_velocity(motion: Motion, period: float, damping: float = 0.05) -> float:
-    """Spectral velocity Sv(T), peak relative velocity [m/s]."""
+    """Spectral velocity Sv(T), peak relative velocity [m/s].
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    period
+        Natural period [s], positive.
+    damping
+        Fraction of critical damping [-].
+
+    Raises
+    ------
+    InputError
+        If the period is not positive or the damping negative.
+    """
     from rockfrag.motions.spectra import response_spectrum
 
     return float(response_spectrum(motion, [period], damping).velocity[0])
 
 
 def spectral_displacement(motion: Motion, period: float, damping: float = 0.05) -> float:
-    """Spectral displacement Sd(T), peak relative displacement [m]."""
+    """Spectral displacement Sd(T), peak relative displacement [m].
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    period
+        Natural period [s], positive.
+    damping
+        Fraction of critical damping [-].
+
+    Raises
+    ------
+    InputError
+        If the period is not positive or the damping negative.
+    """
     from rockfrag.motions.spectra import response_spectrum
 
     return float(response_spectrum(motion, [period], damping).displacement[0])
@@ -166,6 +280,18 @@ def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
     Housner (1952, Symposium on Earthquake and Blast Effects on Structures, UCLA); by the
     trapezoidal rule on steps of 0.01 s.  Housner gave curves for undamped and 20 % damped
     oscillators; 5 % is today's custom.
+
+    Parameters
+    ----------
+    motion
+        Motion to be measured.
+    damping
+        Fraction of critical damping [-].
+
+    Raises
+    ------
+    InputError
+        If the damping is negative.
     """
     from rockfrag.motions.side_by_side import peak_displacements
 
@@ -178,8 +304,15 @@ def uplift_ratio(motion: Motion, alpha: float) -> float:
 
     Parameters
     ----------
+    motion
+        Motion to be measured.
     alpha
         Critical angle of the block, atan(b/h) [rad].
+
+    Raises
+    ------
+    InputError
+        If the angle is not positive.
     """
     alpha = positive("uplift_ratio", "alpha", alpha, "radians")
     return pga(motion) / (STANDARD_GRAVITY * math.tan(alpha))
@@ -193,10 +326,17 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
 
     Parameters
     ----------
+    motion
+        Motion to be measured.
     alpha
         Critical angle of the block [rad].
     p
         Frequency parameter of the block [1/s]; thesis eq. 2.16.
+
+    Raises
+    ------
+    InputError
+        If the angle is not positive or p is negative.
     """
     alpha = positive("velocity_ratio", "alpha", alpha, "radians")
     p = not_negative("velocity_ratio", "p", p, "1/s")
@@ -214,6 +354,11 @@ def frequency_ratio(pulse_period: float, p: float) -> float:
         Period of the strongest pulse [s]; NaN gives NaN.
     p
         Frequency parameter of the block [1/s].
+
+    Raises
+    ------
+    InputError
+        If p is not positive.
     """
     p = positive("frequency_ratio", "p", p, "1/s")
     return 2 * math.pi / (pulse_period * p)

@@ -78,6 +78,15 @@ def measure_motions(
 ) -> pd.DataFrame:
     """Table of :func:`measure_motion`, a row per motion in the order given.
 
+    Parameters
+    ----------
+    motions
+        What to measure, one after the other; an iterator is used up.
+    periods
+        Periods of the spectral measures [s].
+    damping
+        Damping of the spectral measures and of the Housner intensity [-].
+
     Raises
     ------
     InputError
@@ -96,6 +105,8 @@ def rocking_measures(motion: Motion, alpha: float, p: float) -> dict[str, float]
 
     Parameters
     ----------
+    motion
+        What to measure.
     alpha
         Critical angle of the block [rad].
     p

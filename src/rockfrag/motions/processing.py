@@ -65,7 +65,13 @@ def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
 
 
 def check_steps(steps: Sequence[Mapping[str, Any]]) -> None:
-    """Raise InputError if :func:`process` would not know a step or one of its parameters."""
+    """Raise InputError if :func:`process` would not know a step or one of its parameters.
+
+    Parameters
+    ----------
+    steps
+        Steps as of :func:`process`.
+    """
     _checked_steps(steps)
 
 

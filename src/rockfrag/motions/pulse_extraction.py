@@ -107,7 +107,15 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
 
 
 def pulse_motion(pulse: StrongestPulse, dt: float) -> Motion:
-    """Return an extracted pulse as an input motion of its own; it starts where the pulse does."""
+    """Return an extracted pulse as an input motion of its own; it starts where the pulse does.
+
+    Parameters
+    ----------
+    pulse
+        Pulse as :func:`strongest_pulse` returns it.
+    dt
+        Longest sampling interval [s].
+    """
     return mavroeidis_papageorgiou(pulse.velocity, pulse.period, pulse.cycles, pulse.phase_deg, dt)
 
 

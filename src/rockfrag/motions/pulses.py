@@ -58,8 +58,21 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
 def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     """One-sine acceleration pulse a sin(2πt/T), 0 ≤ t ≤ T: a forward ground displacement (type A).
 
-    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for
-    :func:`sine`.
+    Makris & Roussos (2000), Géotechnique 50(3), 243-262.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration a [m/s²], of either sign.
+    period
+        Period T [s].
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
     """
     return _pulse(
         "one_sine",
@@ -75,9 +88,22 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
 def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     """One-cosine acceleration pulse a cos(2πt/T), 0 ≤ t ≤ T: forward and back (type B).
 
-    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  Parameters and errors as for
-    :func:`sine`. The samples nearest its ends lie half an interval inside it, at cos(π dt/T) of the
-    peak.
+    Makris & Roussos (2000), Géotechnique 50(3), 243-262.  The samples nearest its ends lie half an
+    interval inside it, at cos(π dt/T) of the peak.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration a [m/s²], of either sign.
+    period
+        Period T [s].
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
     """
     return _pulse(
         "one_cosine",
@@ -104,6 +130,11 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
         Duration d [s].
     dt
         Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
     """
     return _pulse(
         "half_sine",
@@ -119,7 +150,21 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
 def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
     """Rectangular acceleration pulse of constant a for a duration d; it leaves the velocity a d.
 
-    Housner (1963), Bull. Seism. Soc. Am. 53(2), 403-417.  Parameters as for :func:`half_sine`.
+    Housner (1963), Bull. Seism. Soc. Am. 53(2), 403-417.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration a [m/s²], of either sign.
+    duration
+        Duration d [s].
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
     """
     return _pulse(
         "rectangular",
@@ -138,8 +183,21 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
 
     The second derivative of a Gaussian; T is the period of the largest Fourier amplitude.  Ricker
     (1943), Bull. Seism. Soc. Am. 33(3), 197-228; Vassiliou & Makris (2011), Bull. Seism. Soc. Am.
-    101(2), 596-618; cut off where less than 1e-9 of the peak is left.  Parameters as for
-    :func:`sine`.
+    101(2), 596-618; cut off where less than 1e-9 of the peak is left.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration a [m/s²], of either sign.
+    period
+        Period T [s].
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
     """
     centre = (
         7.1 * positive("ricker_symmetric", "period", period, "seconds") / (math.sqrt(2) * np.pi)
@@ -165,7 +223,21 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
 
     The third derivative of a Gaussian; c = 1.3801 makes its peak a, and T is the period of the
     largest Fourier amplitude.  Vassiliou & Makris (2011), Bull. Seism. Soc. Am. 101(2), 596-618;
-    cut off where less than 1e-9 of the peak is left.  Parameters as for :func:`sine`.
+    cut off where less than 1e-9 of the peak is left.
+
+    Parameters
+    ----------
+    amplitude
+        Peak acceleration a [m/s²], of either sign.
+    period
+        Period T [s].
+    dt
+        Longest sampling interval [s].
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
     """
     unit = (
         math.sqrt(3) * positive("ricker_antisymmetric", "period", period, "seconds") / (2 * np.pi)

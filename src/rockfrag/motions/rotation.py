@@ -68,12 +68,42 @@ def rotd(
 
 
 def rotd50(first: Motion, second: Motion, measure: Callable[[Motion], float]) -> float:
-    """Median over all directions of a measure; see :func:`rotd`."""
+    """Median over all directions of a measure; see :func:`rotd`.
+
+    Parameters
+    ----------
+    first
+        First of two perpendicular components, sampled at the same times.
+    second
+        Second component.
+    measure
+        Any measure of one component.
+
+    Raises
+    ------
+    InputError
+        If the components do not fit together.
+    """
     return rotd(first, second, measure, 50.0)
 
 
 def rotd100(first: Motion, second: Motion, measure: Callable[[Motion], float]) -> float:
-    """Largest value over all directions of a measure; see :func:`rotd`."""
+    """Largest value over all directions of a measure; see :func:`rotd`.
+
+    Parameters
+    ----------
+    first
+        First of two perpendicular components, sampled at the same times.
+    second
+        Second component.
+    measure
+        Any measure of one component.
+
+    Raises
+    ------
+    InputError
+        If the components do not fit together.
+    """
     return rotd(first, second, measure, 100.0)
 
 

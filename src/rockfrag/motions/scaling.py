@@ -8,20 +8,59 @@ from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
 
 
 def scale(motion: Motion, factor: float) -> Motion:
-    """Multiply the acceleration by ``factor``, a positive number."""
+    """Multiply the acceleration by ``factor``, a positive number.
+
+    Parameters
+    ----------
+    motion
+        Motion as it is.
+    factor
+        Factor on the acceleration [-], positive.
+
+    Raises
+    ------
+    InputError
+        If the factor is not a positive number.
+    """
     factor = positive("step scale", "factor", factor)
     return motion.after("scale", motion.acceleration * factor, factor=factor)
 
 
 def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
-    """Scale to a peak acceleration [g]."""
+    """Scale to a peak acceleration [g].
+
+    Parameters
+    ----------
+    motion
+        Motion as it is, not zero throughout.
+    pga_g
+        Wanted peak acceleration [g], positive.
+
+    Raises
+    ------
+    InputError
+        If the motion is zero throughout or the wanted value is not a positive number.
+    """
     target = positive("step scale_to_pga", "pga_g", pga_g, "g")
     factor = _factor("scale_to_pga", motion, target * STANDARD_GRAVITY, pga(motion))
     return motion.after("scale_to_pga", motion.acceleration * factor, pga_g=target, factor=factor)
 
 
 def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
-    """Scale to a peak velocity [cm/s], between samples too."""
+    """Scale to a peak velocity [cm/s], between samples too.
+
+    Parameters
+    ----------
+    motion
+        Motion as it is, not zero throughout.
+    pgv_cm_s
+        Wanted peak velocity [cm/s], positive.
+
+    Raises
+    ------
+    InputError
+        If the motion is zero throughout or the wanted value is not a positive number.
+    """
     target = positive("step scale_to_pgv", "pgv_cm_s", pgv_cm_s, "cm/s")
     factor = _factor("scale_to_pgv", motion, target / CENTIMETRES_PER_METRE, pgv(motion))
     return motion.after(
@@ -30,7 +69,24 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
 
 
 def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0.05) -> Motion:
-    """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-]."""
+    """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-].
+
+    Parameters
+    ----------
+    motion
+        Motion as it is, not zero throughout.
+    sa_g
+        Wanted pseudo-spectral acceleration [g], positive.
+    period_s
+        Natural period [s], positive.
+    damping
+        Fraction of critical damping [-].
+
+    Raises
+    ------
+    InputError
+        If the motion is zero throughout or the wanted value is not a positive number.
+    """
     target = positive("step scale_to_sa", "sa_g", sa_g, "g")
     period_s = positive("step scale_to_sa", "period_s", period_s, "seconds")
     damping = not_negative("step scale_to_sa", "damping", damping)
@@ -47,7 +103,20 @@ def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0
 
 
 def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
-    """Scale to an Arias intensity [m/s]."""
+    """Scale to an Arias intensity [m/s].
+
+    Parameters
+    ----------
+    motion
+        Motion as it is, not zero throughout.
+    arias_m_s
+        Wanted Arias intensity [m/s], positive.
+
+    Raises
+    ------
+    InputError
+        If the motion is zero throughout or the wanted value is not a positive number.
+    """
     target = positive("step scale_to_arias", "arias_m_s", arias_m_s, "m/s")
     factor = _factor("scale_to_arias", motion, target, arias(motion)) ** 0.5
     return motion.after(
@@ -64,8 +133,15 @@ def compress_time(motion: Motion, factor: float) -> Motion:
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     factor
         Time of the prototype over time of the model [-], positive.
+
+    Raises
+    ------
+    InputError
+        If the factor is not a positive number.
     """
     factor = positive("step compress_time", "factor", factor)
     return motion.after("compress_time", motion.acceleration, dt=motion.dt / factor, factor=factor)

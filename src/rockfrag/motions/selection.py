@@ -19,6 +19,8 @@ def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Mot
 
     Parameters
     ----------
+    motion
+        Motion as it is.
     lower, upper
         Fractions [-], 0 ≤ lower < upper ≤ 1.
 
@@ -45,6 +47,13 @@ def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Mot
 def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
     """Keep everything between the first and the last sample that reaches a threshold [g].
 
+    Parameters
+    ----------
+    motion
+        Motion as it is.
+    threshold_g
+        Threshold [g], positive.
+
     Raises
     ------
     InputError
@@ -62,6 +71,15 @@ def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
 
 def trim(motion: Motion, start_s: float, end_s: float) -> Motion:
     """Keep the samples from ``start_s`` to ``end_s`` [s], counted from the first sample.
+
+    Parameters
+    ----------
+    motion
+        Motion as it is.
+    start_s
+        First time that is kept [s].
+    end_s
+        Last time that is kept [s].
 
     Raises
     ------

@@ -41,6 +41,11 @@ READING = "measured"
 def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
     """Read and check a measured table.
 
+    Parameters
+    ----------
+    path
+        Path of the CSV file.
+
     Returns
     -------
     Table of tests, see :mod:`rockfrag.shaketable.tests_table`, in the order of the file.

@@ -55,7 +55,14 @@ def first_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
 def always_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
     """Bounds of the amplitude above which every amplitude of the sweep overturns.
 
-    Censored if the largest amplitude was survived; parameters as of :func:`first_overturning`.
+    Censored if the largest amplitude was survived.
+
+    Parameters
+    ----------
+    amplitudes
+        Amplitudes [g], rising, shape (n,).
+    overturned
+        Whether each overturned, shape (n,).
     """
     _check_sweep(amplitudes, overturned, "sweep")
     survived = np.flatnonzero(~overturned)

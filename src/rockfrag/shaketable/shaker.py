@@ -166,6 +166,17 @@ def required_corner(
 ) -> float:
     """Lowest high-pass corner with which a motion keeps the limits [Hz]; 0 if it does without.
 
+    Parameters
+    ----------
+    shaker
+        The shaker.
+    motion
+        Wanted motion.
+    amplitude_g
+        Peak of the wanted motion [g].
+    payload
+        Mass on the table [kg].
+
     Raises
     ------
     InputError
@@ -223,12 +234,30 @@ def limits_g(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) ->
     """Largest amplitude of each motion as it is [g], by its name; see :meth:`Shaker.limit`.
 
     For tests of several specimens ``payload`` is the heaviest of them [kg].
+
+    Parameters
+    ----------
+    shaker
+        The shaker.
+    motions
+        Motions as they are.
+    payload
+        Mass on the table [kg].
     """
     return {motion.name: shaker.limit(motion, payload)[0] for motion in motions}
 
 
 def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) -> pd.DataFrame:
     """What each motion asks per g of its peak, and up to which amplitude it fits.
+
+    Parameters
+    ----------
+    shaker
+        The shaker.
+    motions
+        Motions as they are.
+    payload
+        Mass on the table [kg].
 
     Returns
     -------
