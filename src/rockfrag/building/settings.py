@@ -20,6 +20,11 @@ from rockfrag.yaml_file import read_yaml
 def read_building(path: str | os.PathLike[str]) -> ShearBuilding:
     """Read a building from a YAML file such as ``config/building.yaml``.
 
+    Parameters
+    ----------
+    path
+        Path of the YAML file.
+
     Raises
     ------
     InputError

@@ -78,6 +78,23 @@ def brackets_from_table(
     A missing upper bound means right-censored. ``measure`` is a column name that tells the measure
     and its unit.
 
+    Parameters
+    ----------
+    table
+        One row a test.
+    lower
+        Column of the largest amplitude survived.
+    upper
+        Column of the amplitude that overturned.
+    motion
+        Column with the name of the motion; None where tests have none.
+    event
+        Column with the name of the event; None where it is not known.
+    measure
+        Name of the measure that the bounds are given in.
+    source
+        What messages call the table.
+
     Raises
     ------
     InputError
@@ -110,6 +127,11 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     Where one amplitude lies inside every bracket the likelihood grows without end as β tends to
     zero; then θ is the middle of the common bracket and β its logarithmic width / √12, and the fit
     says so. Where no test overturned there is no curve, only a bound.
+
+    Parameters
+    ----------
+    brackets
+        Bounds of the amplitudes, see :class:`Brackets`.
     """
     low, high = _logs(brackets)
     n, fell = low.size, brackets.n_overturned
@@ -188,7 +210,23 @@ def bracket_interval(
     replicates: int = 1000,
     seed: int = 0,
 ) -> Interval:
-    """Confidence limits of a curve fitted to brackets, by resampling whole motions or events."""
+    """Confidence limits of a curve fitted to brackets, by resampling whole motions or events.
+
+    Parameters
+    ----------
+    brackets
+        Bounds of the amplitudes, see :class:`Brackets`.
+    over
+        What is resampled: ``motion`` or ``event``; None takes events where they are known.
+    method
+        Kind of limits: ``jackknife``, ``percentile`` or ``bca`` (bootstrap).
+    level
+        Of the confidence limits [-], 0 to 1.
+    replicates
+        Number of bootstrap replicates.
+    seed
+        Seed of the bootstrap.
+    """
     over, notes = population(brackets.motion, brackets.event, over)
     fit, groups = bracket_fitter(brackets, over)
     return resampled_interval(

@@ -85,6 +85,21 @@ def fit_step_hazard(
     shake as wide as the median of all steps. The hazard is taken at the geometric middle of each
     step.
 
+    Parameters
+    ----------
+    shakes
+        One row a shake.
+    test
+        Column with the name of the test.
+    amplitude
+        Column of the amplitude.
+    overturned
+        Column with the verdicts.
+    motion
+        Column with the name of the motion; None where tests have none.
+    source
+        What messages call the table.
+
     Raises
     ------
     InputError

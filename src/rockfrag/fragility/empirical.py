@@ -17,7 +17,17 @@ from rockfrag.fragility.observations import Floats, Outcomes, positive, verdicts
 def wilson_interval(
     overturned: ArrayLike, trials: ArrayLike, level: float = 0.90
 ) -> tuple[Floats, Floats]:
-    """Confidence limits of a binomial share (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212)."""
+    """Confidence limits of a binomial share (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212).
+
+    Parameters
+    ----------
+    overturned
+        Numbers of overturned tests.
+    trials
+        Numbers of tests, of the same shape.
+    level
+        Of the confidence limits [-], 0 to 1.
+    """
     lower, upper = proportion_confint(overturned, trials, alpha=1.0 - level, method="wilson")
     return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
 
@@ -39,6 +49,15 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
     """Share of overturned tests in bins of about equal numbers of tests.
 
     Stripes with at most ``bins`` levels keep their levels.
+
+    Parameters
+    ----------
+    outcomes
+        Verdicts with their measure, see :class:`Outcomes`.
+    bins
+        Number of bins.
+    level
+        Of the confidence limits [-], 0 to 1.
 
     Returns
     -------
@@ -73,6 +92,11 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
 
 def isotonic_share(outcomes: Outcomes) -> pd.DataFrame:
     """Never-falling share of overturned tests closest to the verdicts (pool adjacent violators).
+
+    Parameters
+    ----------
+    outcomes
+        Verdicts with their measure, see :class:`Outcomes`.
 
     Returns
     -------

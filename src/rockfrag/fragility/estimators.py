@@ -23,7 +23,17 @@ from rockfrag.fragility.observations import Outcomes, outcomes_from_table
 
 @dataclass(frozen=True)
 class Fragility:
-    """A fitted curve with its confidence limits and what speaks for and against it."""
+    """A fitted curve with its confidence limits and what speaks for and against it.
+
+    Attributes
+    ----------
+    fit
+        The fitted curve.
+    interval
+        Its confidence limits.
+    checks
+        Goodness of fit and influence of single motions.
+    """
 
     fit: FragilityFit
     interval: Interval
@@ -83,6 +93,23 @@ def fragility_of(
 
     ``dependence`` says how the goodness of fit is simulated, see
     :func:`rockfrag.fragility.goodness.goodness_of_fit`.
+
+    Parameters
+    ----------
+    outcomes
+        Verdicts with their measure, see :class:`Outcomes`.
+    link
+        ``probit`` (lognormal curve) or ``logit``.
+    interval
+        Kind of limits: ``jackknife``, ``percentile`` or ``bca`` (bootstrap).
+    level
+        Of the confidence limits [-], 0 to 1.
+    replicates
+        Number of bootstrap replicates.
+    seed
+        Seed of the bootstrap.
+    dependence
+        How the goodness of fit is simulated: ``tests`` or ``motions``; see :func:`goodness_of_fit`.
     """
     fit = fit_lognormal(outcomes, link=link)
     limits = interval_over_motions(
@@ -100,7 +127,23 @@ def fit_cloud(
     event: str | None = None,
     level: float = 0.90,
 ) -> Fragility:
-    """Fit a curve to single tests at scattered values of the measure (cloud analysis)."""
+    """Fit a curve to single tests at scattered values of the measure (cloud analysis).
+
+    Parameters
+    ----------
+    table
+        One row a test.
+    im
+        Column of the intensity measure.
+    overturned
+        Column with the verdicts.
+    motion
+        Column with the name of the motion; None where tests have none.
+    event
+        Column with the name of the event; None where it is not known.
+    level
+        Of the confidence limits [-], 0 to 1.
+    """
     outcomes = outcomes_from_table(table, im, overturned=overturned, motion=motion, event=event)
     return fragility_of(outcomes, level=level)
 
@@ -121,6 +164,23 @@ def fit_stripes(
     Earthquake Spectra 31: 579-599, eq. 11). Rows are counts when ``trials`` names a column, else
     single tests, which are pooled by level for the likelihood; the limits resample motions (each
     stripe a motion of its own only when ``motion`` is None).
+
+    Parameters
+    ----------
+    table
+        One row a test.
+    im
+        Column of the intensity measure.
+    overturned
+        Column with the verdicts.
+    trials
+        Column with the number of tests in a row; None where a row is one test.
+    motion
+        Column with the name of the motion; None where tests have none.
+    event
+        Column with the name of the event; None where it is not known.
+    level
+        Of the confidence limits [-], 0 to 1.
     """
     outcomes = outcomes_from_table(
         table, im, overturned=overturned, trials=trials, motion=motion, event=event
@@ -145,6 +205,8 @@ def fit_incremental(
         One row per motion and amplitude, with ``overturned``; one body.
     amplitude, motion, event
         Names of the columns.
+    level
+        Of the confidence limits [-], 0 to 1.
     """
     keys = [motion] if event is None else [motion, event]
     windows = survival_windows(sweep, amplitude=amplitude, by=keys)
@@ -180,7 +242,23 @@ def fit_step_tests(
     event: str | None = "event",
     level: float = 0.90,
 ) -> Fragility:
-    """Fit a curve to tests of a step protocol, one row per test, interval- or right-censored."""
+    """Fit a curve to tests of a step protocol, one row per test, interval- or right-censored.
+
+    Parameters
+    ----------
+    tests
+        One row a test.
+    lower
+        Column of the largest amplitude survived.
+    upper
+        Column of the amplitude that overturned.
+    motion
+        Column with the name of the motion; None where tests have none.
+    event
+        Column with the name of the event; None where it is not known.
+    level
+        Of the confidence limits [-], 0 to 1.
+    """
     brackets = brackets_from_table(tests, lower=lower, upper=upper, motion=motion, event=event)
     return _of_brackets(brackets, level)
 

@@ -70,6 +70,10 @@ def goodness_of_fit(
         ``motions`` where motions have more than one row.
     bins
         Most bins of the measure.
+    replicates
+        Number of simulated data sets.
+    seed
+        Seed of the simulation.
 
     Raises
     ------

@@ -180,8 +180,12 @@ def interval_over_motions(
         takes events where they are known and some have several motions.
     method
         ``jackknife`` held its level from 4 groups up; ``percentile`` and ``bca`` warn below 100.
+    level
+        Of the confidence limits [-], 0 to 1.
     replicates, seed
         Of the bootstrap; the jackknife needs neither.
+    link
+        ``probit`` (lognormal curve) or ``logit``.
     """
     over, notes = population(outcomes.motion, outcomes.event, over)
     labels = outcomes.motion if over == "motion" else outcomes.event

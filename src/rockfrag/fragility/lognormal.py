@@ -129,6 +129,13 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     its ``method`` and ``warnings`` say so. Where all tests agree, θ and β are NaN and a warning
     says what the data do tell. Where the probability does not rise with the measure there is no
     curve either.
+
+    Parameters
+    ----------
+    outcomes
+        Verdicts with their measure, see :class:`Outcomes`.
+    link
+        ``probit`` (lognormal curve) or ``logit``.
     """
     notes = _notes(outcomes)
     if outcomes.im.size > MOST_ROWS:

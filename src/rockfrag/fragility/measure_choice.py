@@ -59,6 +59,11 @@ def area_under_curve(outcomes: Outcomes) -> float:
     """Probability that an overturned test had the larger measure than a survived one; ties half.
 
     NaN where all tests agree.
+
+    Parameters
+    ----------
+    outcomes
+        Verdicts with their measure, see :class:`Outcomes`.
     """
     fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
     _, level = np.unique(outcomes.im, return_inverse=True)
@@ -131,6 +136,8 @@ def recommend_measure(
         Of the limits of β.
     replicates, seed
         Of the bootstrap over motions (events where given) for ``chosen_share``.
+    source
+        What messages call the table.
     """
     if not measures:
         raise InputError("measures: name at least one column with an intensity measure.")

@@ -63,6 +63,17 @@ def fit_surface(
     Under separation (found exactly, by linear programming) the likelihood is penalised and
     ``method`` says so.
 
+    Parameters
+    ----------
+    table
+        One row a test.
+    measures
+        Columns of the intensity measures.
+    overturned
+        Column with the verdicts.
+    source
+        What messages call the table.
+
     Raises
     ------
     InputError

@@ -98,7 +98,13 @@ def with_measures(
 
 
 def record_set_hash(motions: Iterable[Motion]) -> str:
-    """SHA-256 of the names, intervals and samples of a set of motions, whatever their order."""
+    """SHA-256 of the names, intervals and samples of a set of motions, whatever their order.
+
+    Parameters
+    ----------
+    motions
+        Motions, in any order.
+    """
     digest = hashlib.sha256()
     for motion in sorted(motions, key=lambda motion: motion.name):
         samples = np.ascontiguousarray(motion.acceleration, dtype="<f8")
@@ -109,7 +115,13 @@ def record_set_hash(motions: Iterable[Motion]) -> str:
 
 
 def table_hash(table: pd.DataFrame) -> str:
-    """SHA-256 of a table's text, for data that are no records; the order of the rows counts."""
+    """SHA-256 of a table's text, for data that are no records; the order of the rows counts.
+
+    Parameters
+    ----------
+    table
+        Any table.
+    """
     text = table.to_csv(index=False, lineterminator="\n")
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
@@ -117,7 +129,19 @@ def table_hash(table: pd.DataFrame) -> str:
 def fragility_row(
     fragility: Fragility, labels: Mapping[str, Any], estimator: str, record_set: str
 ) -> dict[str, Any]:
-    """Return one row of the fragility table, see :func:`fragility_table`."""
+    """Return one row of the fragility table, see :func:`fragility_table`.
+
+    Parameters
+    ----------
+    fragility
+        The fitted curve.
+    labels
+        What the row is of, such as its configuration.
+    estimator
+        Name of the estimator.
+    record_set
+        Digest of the motions.
+    """
     fit, interval, checks = fragility.fit, fragility.interval, fragility.checks
     return {
         **labels,
@@ -226,7 +250,23 @@ def fragility_tables(
     record_set: str = "",
     level: float = 0.90,
 ) -> FragilityTables:
-    """Fit as :func:`fragility_table` does, and keep the points of the curves for drawing too."""
+    """Fit as :func:`fragility_table` does, and keep the points of the curves for drawing too.
+
+    Parameters
+    ----------
+    sweep
+        One row an amplitude, of every motion and configuration.
+    columns
+        Columns of the intensity measures.
+    by
+        Columns whose values have a curve of their own each.
+    event
+        Column with the name of the event; None where it is not known.
+    record_set
+        Digest of the motions.
+    level
+        Of the confidence limits [-], 0 to 1.
+    """
     for column in by:
         if column not in sweep:
             raise InputError(f"sweep: there is no column {column!r}; correct the name.")

@@ -91,6 +91,8 @@ def overturns(
         Factors on the accelerations, shape (scales,) for all motions or (motions, scales).
     restitution
         One entry per body, each as in :func:`simulate`; None conserves momentum in all.
+    g
+        Gravity [m/s²].
     step
         Largest p h of a step, of which a stack takes 0.35 while both its blocks rotate: smaller is more accurate
         and slower.

@@ -74,10 +74,12 @@ def stream_histories(
 
     Parameters
     ----------
-    bodies, accelerations, dt, scales, restitution, g, step, threads
+    bodies, accelerations, dt, scales
         As in :func:`overturns`.
     path
         The file to write.
+    restitution, g, step, threads
+        As in :func:`overturns`.
     progress
         Called with the number of cases done and of all cases after every row group.
 

@@ -23,6 +23,11 @@ _FIELDS = {
 def read_shaker(path: str | os.PathLike[str]) -> Shaker:
     """Read a shaker from a YAML file such as ``config/experiment/shaker.yaml``.
 
+    Parameters
+    ----------
+    path
+        Path of the YAML file.
+
     Raises
     ------
     InputError
