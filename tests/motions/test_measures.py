@@ -15,7 +15,7 @@ COLUMNS = [
     *("name", "event", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),
     *("cav_m_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
     *("sa_0_3s_g", "sv_0_3s_cm_s", "sd_0_3s_cm", "sa_1_0s_g", "sv_1_0s_cm_s", "sd_1_0s_cm"),
-    *("housner_cm", "pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
+    *("avgsa_g", "housner_cm", "pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
 ]
 
 
@@ -48,6 +48,9 @@ def test_units_are_those_of_the_names(named):
     assert row["housner_cm"] / 100 == pytest.approx(m.housner_intensity(motion))
     assert row["sa_0_3s_g"] * G == pytest.approx(m.spectral_acceleration(motion, 0.3))
     assert row["sd_0_3s_cm"] / 100 == pytest.approx(m.spectral_displacement(motion, 0.3))
+    periods = [round(0.2 * k, 1) for k in range(1, 11)]
+    logs = [math.log(m.spectral_acceleration(motion, period)) for period in periods]
+    assert row["avgsa_g"] * G == pytest.approx(math.exp(sum(logs) / 10), rel=1e-6)
     omega = 2 * math.pi / 0.3
     assert row["sa_0_3s_g"] * G == pytest.approx(row["sd_0_3s_cm"] / 100 * omega**2)
 

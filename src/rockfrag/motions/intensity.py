@@ -299,6 +299,23 @@ def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
     return float(np.trapezoid(displacement * (2 * math.pi / HOUSNER_PERIODS), HOUSNER_PERIODS))
 
 
+AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)
+"""Periods over which the average spectral acceleration is taken [s]."""
+
+
+def average_spectral_acceleration(motion: Motion, damping: float = 0.05) -> float:
+    """Geometric mean of the pseudo-spectral acceleration at `AVERAGE_PERIODS`, AvgSA [m/s²].
+
+    Eads, Miranda and Lignos (2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no
+    period of its own, so the periods are those from which its overturning threshold feels the motion.
+    """
+    from rockfrag.motions.side_by_side import peak_displacements
+
+    displacement = peak_displacements(motion, AVERAGE_PERIODS, damping)
+    spectrum = displacement * (2 * math.pi / AVERAGE_PERIODS) ** 2
+    return float(np.prod(spectrum ** (1 / spectrum.size)))
+
+
 def uplift_ratio(motion: Motion, alpha: float) -> float:
     """Peak acceleration over that which starts rocking, a/(g tan α) [-]; thesis eq. 2.1.
 

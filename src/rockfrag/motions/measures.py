@@ -38,7 +38,7 @@ def measure_motion(
     ``name``, ``event`` and ``floor`` (from the metadata, empty where not known), then ``pga_g``,
     ``pgv_cm_s``, ``pgd_cm``, ``pgv_over_pga_s``, ``arias_m_s``, ``cav_m_s``, ``d5_75_s``,
     ``d5_95_s``, ``mean_period_s``, ``predominant_period_s``; for each period such as 0.3 s
-    ``sa_0_3s_g`` (pseudo), ``sv_0_3s_cm_s`` and ``sd_0_3s_cm``; ``housner_cm``, ``pulse_period_s``,
+    ``sa_0_3s_g`` (pseudo), ``sv_0_3s_cm_s`` and ``sd_0_3s_cm``; ``avgsa_g``, ``housner_cm``, ``pulse_period_s``,
     ``pulse_velocity_cm_s`` and ``pulse_explained``.  A measure that does not exist for the motion,
     such as the duration of a motion of zeros, is NaN.
 
@@ -64,6 +64,7 @@ def measure_motion(
         "mean_period_s": intensity.mean_period(motion),
         "predominant_period_s": intensity.predominant_period(motion),
         **_spectral(motion, periods, damping),
+        "avgsa_g": intensity.average_spectral_acceleration(motion, damping) / STANDARD_GRAVITY,
         "housner_cm": intensity.housner_intensity(motion, damping) * cm,
         "pulse_period_s": pulse.period,
         "pulse_velocity_cm_s": pulse.velocity * cm,
