@@ -9,6 +9,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.curve_facts import BETA_MODEL
 from rockfrag.fragility.nrml import lognormal_moments, write_nrml
 from rockfrag.fragility.simcenter import write_simcenter
 from rockfrag.fragility.sweeps import (
@@ -79,14 +80,14 @@ def test_nrml_refuses_what_openquake_cannot_compute(tmp_path):
         write_nrml(CURVES.assign(floor="F3"), path)
     with pytest.raises(InputError, match="'T1' has no lognormal curve"):
         write_nrml(CURVES.assign(theta=np.nan), path)
-    with pytest.raises(InputError, match="'P_T1' has two curves"):
+    with pytest.raises(InputError, match="'T1' has two curves"):
         write_nrml(pd.concat([CURVES, CURVES]), path)
     assert not path.exists()
 
 
 def test_simcenter_rows_carry_theta_and_beta_and_their_story(tmp_path):
     csv, story = tmp_path / "damage.csv", tmp_path / "damage.json"
-    write_simcenter(CURVES.assign(floor=["GF", "F3"]), csv, story)
+    write_simcenter(CURVES.assign(im=["PGA", "PFV"]), csv, story)
     table = pd.read_csv(csv)
     assert list(table.columns) == [
         "ID",
@@ -150,3 +151,54 @@ def test_the_hash_of_a_record_set_sees_every_sample_and_no_order():
     changed = Motion(np.array([0.0, 1.0, 3.0 + 1e-12]), 0.01, name="m3")
     assert record_set_hash([a, b]) == record_set_hash([b, a])
     assert record_set_hash([a, changed]) != record_set_hash([a, b])
+
+
+def curves_of(sweep):
+    """Curves in the amplitude as the ground's PGA, with a rocking state before overturning."""
+    table = fragility_table(sweep, record_set="abc")
+    fallen = table[table.estimator == "mean_probability"].assign(state="overturned")
+    rocks = fallen.assign(state="rocks", theta=0.2, beta=1e-6)
+    return pd.concat([rocks, fallen], ignore_index=True)
+
+
+def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_path):
+    sweep = synthetic_sweep()
+    curves = curves_of(sweep[sweep.motion.isin(["m0", "m2", "m4", "m5"])])
+    write_nrml(curves, tmp_path / "model.xml")
+    write_simcenter(curves, tmp_path / "d.csv", tmp_path / "d.json")
+    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
+    model = ElementTree.parse(tmp_path / "model.xml").getroot()
+    said = model.find(".//n:description", space).text
+    told = json.loads((tmp_path / "d.json").read_text())["ROCKFRAG.T1"]["Comments"]
+    for text in (said, told):
+        assert "4 motions of 3 events" in text
+        assert "90% limits: theta" in text and "of the model 0.195" in text
+        assert "Goodness of fit p = " in text
+        assert "rests on 4 motions only" in text
+    assert "<!-- T1: rocks:" in (tmp_path / "model.xml").read_text()
+
+
+def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
+    curves = curves_of(synthetic_sweep())
+    write_nrml(curves.iloc[::-1], tmp_path / "model.xml")
+    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
+    root = ElementTree.parse(tmp_path / "model.xml").getroot()
+    assert root.find(".//n:limitStates", space).text == "rocks overturned"
+    function = root.find(".//n:fragilityFunction", space)
+    assert [p.get("ls") for p in function.findall("n:params", space)] == ["rocks", "overturned"]
+    write_simcenter(curves.iloc[::-1], tmp_path / "d.csv", tmp_path / "d.json")
+    row = pd.read_csv(tmp_path / "d.csv").iloc[0]
+    # an exact threshold is written as steep as the formats take it
+    assert (row["LS1-Theta_0"], row["LS1-Theta_1"]) == (0.2, 0.01)
+    assert row["LS2-Theta_0"] > 0.2
+    with pytest.raises(InputError, match="'T2' has no curve for the limit state rocks"):
+        write_nrml(curves[~((curves.configuration == "T2") & (curves.state == "rocks"))], "x")
+
+
+def test_uncertainties_of_motions_estimate_and_model_add_as_squares():
+    table = fragility_table(synthetic_sweep())
+    row = table[table.estimator == "first_overturning"].iloc[0]
+    half = np.log(row.theta_upper / row.theta_lower) / 2
+    assert row.beta_statistical == pytest.approx(half / stats.norm.ppf(0.95))
+    squares = row.beta**2 + row.beta_statistical**2 + BETA_MODEL**2
+    assert row.beta_total == pytest.approx(np.sqrt(squares))

@@ -220,7 +220,7 @@ def fit_incremental(
             event=event,
             measure=amplitude,
         )
-        readings[reading] = _of_brackets(brackets, level)
+        readings[reading] = fragility_of_brackets(brackets, level)
     outcomes = outcomes_from_table(sweep, amplitude, motion=motion, event=event)
     fell = windows["first_upper"].notna()
     share = float((windows.loc[fell, "windows"] > 0).mean()) if fell.any() else float("nan")
@@ -260,10 +260,11 @@ def fit_step_tests(
         Of the confidence limits [-], 0 to 1.
     """
     brackets = brackets_from_table(tests, lower=lower, upper=upper, motion=motion, event=event)
-    return _of_brackets(brackets, level)
+    return fragility_of_brackets(brackets, level)
 
 
-def _of_brackets(brackets: Brackets, level: float) -> Fragility:
+def fragility_of_brackets(brackets: Brackets, level: float) -> Fragility:
+    """Fit a curve to bracketed amplitudes and give it limits over motions, or events where known."""
     fit, interval = fit_brackets(brackets), bracket_interval(brackets, level=level)
     groups = brackets.motion if interval.over == "motion" else brackets.event
     checks = checks_of_brackets(brackets.lower, brackets.upper, groups, fit, interval)

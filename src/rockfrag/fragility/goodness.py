@@ -15,6 +15,9 @@ from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.fragility.pooling import cells
 
+CELLS = 200
+"""Cells of the measure in which simulated verdicts are refitted; finer ones move no p value."""
+
 
 @dataclass(frozen=True)
 class GoodnessOfFit:
@@ -96,7 +99,7 @@ def goodness_of_fit(
     deviance = float(_deviance(observed, expected, trials))
     rng = np.random.default_rng(seed)
     # cells within the bins: what is simulated and refitted, however many tests there are
-    cell, values = cells(outcomes.log_im + code * 1e3)
+    cell, values = cells(outcomes.log_im + code * 1e3, CELLS)
     home = np.asarray(np.rint(values / 1e3), dtype=np.intp)
     pooled = _Pooled(
         values - 1e3 * home, np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64), home

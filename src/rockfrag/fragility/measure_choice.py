@@ -292,9 +292,10 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
             f"{row['im']} ({row['score']:.3f}, β = {row['beta']:.2f})"
             for row in equal.to_dict("records")
         )
+        enough = groups >= FEWEST_GROUPS_TO_CHOOSE
+        advice = "any of them will do" if enough else "they are too few to rule these out"
         parts.append(
-            f"The tests do not tell it from {listed}; any of them will do, and it is named for its "
-            "smaller β."
+            f"The tests do not tell it from {listed}: {advice}; it is named for its smaller β."
         )
     if len(worse):
         row = worse.iloc[0]

@@ -1,6 +1,5 @@
 """Fragility curves for OpenQuake: NRML 0.5 with lognormal functions."""
 
-import itertools
 import math
 import os
 import re
@@ -12,9 +11,14 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
+from rockfrag.fragility.curve_facts import curve_facts
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
-GROUND_FLOORS = ("", "GF")
+STATES = ("rocks", "slides", "overturned")
+"""Limit states in the order in which a body passes them."""
+
+STEP = 0.01
+"""β with which an exact threshold, a step, is written [-]; the formats take no step."""
 _SPECTRAL = re.compile(r"^SA\((?P<period>[\d.]+)s\)$")
 
 
@@ -24,17 +28,17 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     Raises
     ------
     InputError
-        If OpenQuake has no such ground measure; only PGA, PGV and SA are written.
+        If OpenQuake has no such ground measure; only PGA, PGV, SA and AvgSA are written.
     """
     spectral = _SPECTRAL.match(name)
-    if name == "PGA" or spectral:
+    if name in ("PGA", "AvgSA") or spectral:
         factors = {"g": 1.0, "m/s²": 1.0 / 9.80665}
     elif name == "PGV":
         factors = {"cm/s": 1.0, "m/s": 100.0}
     else:
         raise InputError(
             f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves "
-            "in PGA, PGV or SA."
+            "in PGA, PGV, SA or AvgSA."
         )
     if unit not in factors:
         raise InputError(
@@ -59,11 +63,16 @@ def write_nrml(
 ) -> None:
     """Write rows of a fragility table as an NRML 0.5 fragility model.
 
+    NRML has no place for confidence limits and numbers of motions, so the description says them for each
+    function, and a comment stands before it.
+
     Parameters
     ----------
     table
-        One row per configuration (one estimator and one measure each), as
-        :func:`rockfrag.fragility.sweeps.fragility_table` gives them.
+        One row per configuration and limit state (one estimator and one measure each), as
+        :func:`rockfrag.fragility.sweeps.fragility_table` gives them; a column ``state`` names the limit
+        state (`STATES`), without it all are ``overturned``. A column ``floor`` must be empty: only
+        motions of the ground are known to OpenQuake.
     path
         File to write.
     identifier
@@ -76,61 +85,92 @@ def write_nrml(
     ------
     InputError
         If a row has no lognormal curve, a measure that OpenQuake does not know, or a floor above
-        ground; or if a name comes twice.
+        ground; if a name comes twice, or lacks a limit state that another has.
     """
-    functions = sorted(
-        (_function(row, by) for row in table.to_dict("records")), key=lambda pair: pair[0]
-    )
-    names = [name for name, _ in functions]
-    for first, second in itertools.pairwise(names):
-        if first == second:
-            raise InputError(
-                f"NRML: {first!r} has two curves; choose one estimator and one measure for each."
-            )
-    if not names:
+    if table.empty:
         raise InputError("NRML: there is no curve to write; give at least one row.")
+    rows: dict[str, dict[str, Mapping[Hashable, Any]]] = {}
+    for row in table.to_dict("records"):
+        states = rows.setdefault(_taxonomy(row, by), {})
+        state = str(row.get("state", "overturned"))
+        if state in states:
+            raise InputError(
+                f"NRML: {_taxonomy(row, by)!r} has two curves; choose one estimator and one measure for "
+                "each."
+            )
+        states[state] = row
+    known = [state for state in STATES if any(state in states for states in rows.values())]
     root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
     model = ElementTree.SubElement(
         root,
         "fragilityModel",
         {"id": identifier, "assetCategory": "contents", "lossCategory": "contents"},
     )
-    ElementTree.SubElement(model, "description").text = _description(table)
-    ElementTree.SubElement(model, "limitStates").text = "overturned"
-    model.extend([element for _, element in functions])
+    description = ElementTree.SubElement(model, "description")
+    ElementTree.SubElement(model, "limitStates").text = " ".join(known)
+    facts = []
+    for name in sorted(rows):
+        lacking = [state for state in known if state not in rows[name]]
+        if lacking:
+            raise InputError(
+                f"NRML: {name!r} has no curve for the limit state {lacking[0]}, which others have; leave "
+                "it or that state out."
+            )
+        said = " ".join(f"{state}: {curve_facts(rows[name][state])}" for state in known)
+        facts.append(f"{name}: {said}")
+        # two hyphens would end the comment
+        model.append(ElementTree.Comment(f" {facts[-1].replace('--', '- -')} "))
+        model.append(_function(name, {state: rows[name][state] for state in known}, by))
+    description.text = " ".join(
+        ["Free-standing bodies in earthquakes, lognormal in the intensity measure.", *facts]
+    )
     ElementTree.indent(root, space="  ")
     text = ElementTree.tostring(root, encoding="unicode")
     write_text('<?xml version="1.0" encoding="UTF-8"?>\n' + text + "\n", path)
 
 
-def _function(row: Mapping[Hashable, Any], by: str) -> tuple[str, ElementTree.Element]:
-    name = str(row[by])
+def _taxonomy(row: Mapping[Hashable, Any], by: str) -> str:
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name, 75 at most
-    taxonomy = re.sub(r"[^A-Za-z0-9_:-]", "_", name)[:75]
-    theta, beta = float(str(row["theta"])), float(str(row["beta"]))
-    if row.get("link", "probit") != "probit" or not (theta > 0 and beta > 0 and beta < math.inf):
-        raise InputError(f"NRML: {name!r} has no lognormal curve; leave the row out.")
-    floor = str(row.get("floor", ""))
-    if floor not in GROUND_FLOORS:
+    return re.sub(r"[^A-Za-z0-9_:-]", "_", str(row[by]))[:75]
+
+
+def _function(
+    taxonomy: str, states: Mapping[str, Mapping[Hashable, Any]], by: str
+) -> ElementTree.Element:
+    curves: dict[str, tuple[float, float]] = {}
+    measures: set[str] = set()
+    for state, row in states.items():
+        name = str(row[by])
+        theta, beta = float(str(row["theta"])), float(str(row["beta"]))
+        if row.get("link", "probit") != "probit" or not (
+            theta > 0 and beta > 0 and beta < math.inf
+        ):
+            raise InputError(f"NRML: {name!r} has no lognormal curve; leave the row out.")
+        floor = str(row.get("floor", ""))
+        if floor:
+            raise InputError(
+                f"NRML: {name!r} is keyed to the motion of floor {floor}, which OpenQuake does not "
+                "compute; export curves in a measure of the ground motion."
+            )
+        imt, factor = intensity_measure_type(str(row["im"]), str(row["unit"]))
+        measures.add(imt)
+        curves[state] = theta * factor, max(beta, STEP)
+    if len(measures) > 1:
         raise InputError(
-            f"NRML: {name!r} is keyed to the motion of floor {floor}, which OpenQuake does not "
-            "compute; export curves in a measure of the ground motion."
+            f"NRML: the limit states of {taxonomy!r} are in {' and '.join(sorted(measures))}; one "
+            "function has one measure."
         )
-    imt, factor = intensity_measure_type(str(row["im"]), str(row["unit"]))
-    mean, deviation = lognormal_moments(theta * factor, beta)
     function = ElementTree.Element(
         "fragilityFunction", {"id": taxonomy, "format": "continuous", "shape": "logncdf"}
     )
     # the range in which OpenQuake may evaluate it: from a chance of 3e-5 to one of 1 - 3e-5
-    reach = math.exp(4.0 * beta)
-    limits = {"minIML": repr(theta * factor / reach), "maxIML": repr(theta * factor * reach)}
-    ElementTree.SubElement(function, "imls", {"imt": imt, **limits})
-    parameters = {"ls": "overturned", "mean": repr(mean), "stddev": repr(deviation)}
-    ElementTree.SubElement(function, "params", parameters)
-    return taxonomy, function
-
-
-def _description(table: pd.DataFrame) -> str:
-    hashes = sorted(set(table.get("record_set_sha256", pd.Series(dtype=str)).astype(str)) - {""})
-    source = f"; record set {', '.join(hashes)}" if hashes else ""
-    return f"Overturning of free-standing blocks, lognormal in the intensity measure{source}"
+    limits = {
+        "minIML": repr(min(theta * math.exp(-4.0 * beta) for theta, beta in curves.values())),
+        "maxIML": repr(max(theta * math.exp(4.0 * beta) for theta, beta in curves.values())),
+    }
+    ElementTree.SubElement(function, "imls", {"imt": measures.pop(), **limits})
+    for state, (theta, beta) in curves.items():
+        mean, deviation = lognormal_moments(theta, beta)
+        parameters = {"ls": state, "mean": repr(mean), "stddev": repr(deviation)}
+        ElementTree.SubElement(function, "params", parameters)
+    return function

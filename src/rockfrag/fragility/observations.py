@@ -33,6 +33,9 @@ _NAMES = {
     "d5_75": "D5-75",
     "d5_95": "D5-95",
     "housner": "Housner intensity",
+    "avgsa": "AvgSA",
+    "pfa": "PFA",
+    "pfv": "PFV",
     "uplift_ratio": "a/(g tan α)",
     "velocity_ratio": "p PGV/(g tan α)",
 }

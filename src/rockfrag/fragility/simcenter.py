@@ -10,10 +10,20 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
+from rockfrag.fragility.curve_facts import curve_facts
+from rockfrag.fragility.nrml import STATES, STEP
 
-_DEMANDS = {"PGA": ("Peak Ground Acceleration", {"g": "g", "m/s²": "mps2"})}
-_DEMANDS["PGV"] = ("Peak Ground Velocity", {"cm/s": "cmps", "m/s": "mps"})
-_FLOOR_DEMANDS = {"PGA": "Peak Floor Acceleration", "PGV": "Peak Floor Velocity"}
+_DEMANDS = {
+    "PGA": ("Peak Ground Acceleration", {"g": "g", "m/s²": "mps2"}),
+    "PGV": ("Peak Ground Velocity", {"cm/s": "cmps", "m/s": "mps"}),
+    "PFA": ("Peak Floor Acceleration", {"g": "g", "m/s²": "mps2"}),
+    "PFV": ("Peak Floor Velocity", {"cm/s": "cmps", "m/s": "mps"}),
+}
+_REPAIR = {
+    "rocks": ("Rocks and may be displaced", "Inspect and put back"),
+    "slides": ("Slides and may be displaced", "Inspect and put back"),
+    "overturned": ("Overturned", "Restore or replace the object"),
+}
 
 
 def write_simcenter(
@@ -23,14 +33,15 @@ def write_simcenter(
     *,
     by: str = "configuration",
 ) -> None:
-    """Write rows of a fragility table as a damage model with one limit state, overturned.
+    """Write rows of a fragility table as a damage model.
 
     Parameters
     ----------
     table
-        One row per configuration (one estimator and one measure each), as
-        :func:`rockfrag.fragility.sweeps.fragility_table` gives them. Rows with a ``floor`` other
-        than the ground floor are keyed to the peak acceleration or velocity of that floor.
+        One row per configuration and limit state (one estimator and one measure each), as
+        :func:`rockfrag.fragility.sweeps.fragility_table` gives them; a column ``state`` names the limit
+        state (:data:`rockfrag.fragility.nrml.STATES`), without it all are ``overturned``. PGA and PGV
+        are demands of the ground, PFA and PFV of the floor on which the object stands.
     csv_path, json_path
         Files to write.
     by
@@ -39,7 +50,7 @@ def write_simcenter(
     Raises
     ------
     InputError
-        If a row has no lognormal curve or a measure other than PGA and PGV, or IDs coincide.
+        If a row has no lognormal curve or another measure, or a configuration has a state twice.
     """
     if len(table) == 0:
         raise InputError("SimCenter: there is no curve to write; give at least one row.")
@@ -51,65 +62,79 @@ def write_simcenter(
             "Version": "1.0",
         }
     }
+    components: dict[str, dict[str, Mapping[Hashable, Any]]] = {}
     for row in table.to_dict("records"):
-        line, note = _component(row, by)
-        if line["ID"] in notes:
+        states = components.setdefault(_identifier(str(row[by])), {})
+        state = str(row.get("state", "overturned"))
+        if state in states:
             raise InputError(
-                f"SimCenter: {line['ID']} has two curves; choose one estimator and one measure "
-                "for each."
+                f"SimCenter: {_identifier(str(row[by]))} has two curves; choose one estimator and one "
+                "measure for each."
             )
+        states[state] = row
+    for name, states in components.items():
+        ordered = {state: states[state] for state in STATES if state in states}
+        line, notes[name] = _component(name, ordered, by)
         rows.append(line)
-        notes[str(line["ID"])] = note
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
     write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
 
 
-def _component(row: Mapping[Hashable, Any], by: str) -> tuple[dict[str, object], dict[str, object]]:
-    name, im, unit = str(row[by]), str(row["im"]), str(row["unit"])
-    theta, beta = float(str(row["theta"])), float(str(row["beta"]))
-    if row.get("link", "probit") != "probit" or not (theta > 0 and beta > 0 and beta < math.inf):
-        raise InputError(f"SimCenter: {name!r} has no lognormal curve; leave the row out.")
-    if im not in _DEMANDS or unit not in _DEMANDS[im][1]:
+def _identifier(name: str) -> str:
+    return "ROCKFRAG." + "".join(c if c.isascii() and c.isalnum() else "_" for c in name)
+
+
+def _component(
+    identifier: str, states: Mapping[str, Mapping[Hashable, Any]], by: str
+) -> tuple[dict[str, object], dict[str, object]]:
+    demands: set[tuple[str, str]] = set()
+    limit_states: dict[str, object] = {}
+    line: dict[str, object] = {}
+    said = []
+    for number, (state, row) in enumerate(states.items(), start=1):
+        name, im, unit = str(row[by]), str(row["im"]), str(row["unit"])
+        theta, beta = float(str(row["theta"])), float(str(row["beta"]))
+        if row.get("link", "probit") != "probit" or not (
+            theta > 0 and beta > 0 and beta < math.inf
+        ):
+            raise InputError(f"SimCenter: {name!r} has no lognormal curve; leave the row out.")
+        if im not in _DEMANDS or unit not in _DEMANDS[im][1]:
+            raise InputError(
+                f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "
+                "in g, PGV or PFV in cm/s."
+            )
+        demand, units = _DEMANDS[im]
+        demands.add((demand, units[unit]))
+        line |= {
+            f"LS{number}-Family": "lognormal",
+            f"LS{number}-Theta_0": theta,
+            f"LS{number}-Theta_1": max(beta, STEP),
+            f"LS{number}-DamageStateWeights": "",
+        }
+        words, repair = _REPAIR[state]
+        damage = {"Description": words, "RepairAction": repair}
+        limit_states[f"LS{number}"] = {f"DS{number}": damage}
+        said.append(f"{words}: {curve_facts(row)}")
+    if len(demands) > 1:
         raise InputError(
-            f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA in g "
-            "or PGV in cm/s."
+            f"SimCenter: the limit states of {identifier} have two demands; choose one."
         )
-    demand, units = _DEMANDS[im]
-    on_floor = str(row.get("floor", "")) not in ("", "GF")
-    line: dict[str, object] = {
-        "ID": "ROCKFRAG." + "".join(c if c.isascii() and c.isalnum() else "_" for c in name),
+    demand, demand_unit = demands.pop()
+    line = {
+        "ID": identifier,
         "Incomplete": 0,
-        "Demand-Type": _FLOOR_DEMANDS[im] if on_floor else demand,
-        "Demand-Unit": units[unit],
+        "Demand-Type": demand,
+        "Demand-Unit": demand_unit,
         "Demand-Offset": 0,
         # the curves are for one horizontal component; a block falls about either of its edges
         "Demand-Directional": 1,
-        "LS1-Family": "lognormal",
-        "LS1-Theta_0": theta,
-        "LS1-Theta_1": beta,
-        "LS1-DamageStateWeights": "",
+        **line,
     }
-    state = {"Description": "Overturned", "RepairAction": "Restore or replace the object"}
     note: dict[str, object] = {
         "Description": f"Free-standing {name}",
-        "Comments": _comment(row),
+        "Comments": " ".join(said),
         "SuggestedComponentBlockSize": "1 EA",
         "RoundUpToIntegerQuantity": "True",
-        "LimitStates": {"LS1": {"DS1": state}},
+        "LimitStates": limit_states,
     }
     return line, note
-
-
-def _comment(row: Mapping[Hashable, Any]) -> str:
-    parts = []
-    if "theta_lower" in row:
-        parts.append(
-            f"{float(str(row['level'])):.0%} limits: theta {row['theta_lower']:.4g} to "
-            f"{row['theta_upper']:.4g}, beta {row['beta_lower']:.4g} to {row['beta_upper']:.4g}; "
-            f"{row['n_motions']} motions."
-        )
-    if row.get("record_set_sha256"):
-        parts.append(f"Record set {row['record_set_sha256']}.")
-    if row.get("warnings"):
-        parts.append(str(row["warnings"]))
-    return " ".join(parts)

@@ -7,8 +7,44 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.estimators import Fragility, fragility_of
-from rockfrag.fragility.observations import numbers, outcomes_from_table, positive, verdicts
+from rockfrag.fragility.censored import Brackets
+from rockfrag.fragility.estimators import Fragility, fragility_of, fragility_of_brackets
+from rockfrag.fragility.observations import (
+    labels,
+    name_and_unit,
+    numbers,
+    outcomes_from_table,
+    positive,
+    verdicts,
+)
+
+
+def fit_uplift(
+    motions: pd.DataFrame,
+    im: str,
+    *,
+    motion: str = "motion",
+    event: str | None = "event",
+    level: float = 0.90,
+) -> Fragility:
+    """Curve of P(rock | IM) from motions scaled to the peak acceleration at which rocking starts.
+
+    That peak is exact, so each motion gives its measure at uplift exactly; in the peak acceleration
+    itself the curve is a step, given as a β of next to nothing.
+
+    Parameters
+    ----------
+    motions
+        One row per motion, scaled to the threshold.
+    im
+        Column of the measure at that scale.
+    motion, event, level
+        As of :func:`rockfrag.fragility.estimators.fit_step_tests`.
+    """
+    at = positive(motions, im)
+    names = labels(motions, motion, "table")
+    events = names if event is None else labels(motions, event, "table")
+    return fragility_of_brackets(Brackets(at, at, names, events, *name_and_unit(im)), level)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.drawn_curves import curve_points, verdict_bins
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import outcomes_from_table, positive
@@ -20,6 +21,7 @@ _SCALE_LINEARLY = (
     "pgv_m_s",
     "pgd",
     "cav",
+    "avgsa",
     "sa_",
     "sv_",
     "sd_",
@@ -176,6 +178,7 @@ def fragility_row(
         "theta_isotonic": checks.theta_isotonic,
         "beta_isotonic": checks.beta_isotonic,
         "beta_statistical": fragility.beta_statistical,
+        "beta_total": total_beta(fit.beta, fragility.beta_statistical),
         "record_set_sha256": record_set,
         "warnings": " ".join(fragility.warnings),
     }
@@ -234,7 +237,10 @@ def fragility_table(
         (``mean_probability`` for each measure; ``first_overturning`` and ``always_overturning``
         for the amplitude), ``theta``, ``beta`` with limits, ``level``, ``interval_method``,
         ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``, ``link``,
-        ``method``, ``n``, ``n_overturned``, ``n_motions``, ``record_set_sha256``, ``warnings``.
+        ``method``, ``n``, ``n_overturned``, ``n_motions``, ``n_events``; ``p_fit``, ``fit_test``,
+        ``largest_residual``, ``influential``, ``influence``, ``theta_isotonic``, ``beta_isotonic`` (see
+        :class:`rockfrag.fragility.checks.Checks`); ``beta_statistical`` and ``beta_total`` (with the
+        model's uncertainty, :mod:`rockfrag.fragility.curve_facts`); ``record_set_sha256``, ``warnings``.
     """
     return fragility_tables(
         sweep, columns, by=by, event=event, record_set=record_set, level=level

@@ -2,7 +2,8 @@
 
 import pandas as pd
 
-from rockfrag.stages.measure_choice import export_curves, ground_curves, measure_choice
+from rockfrag.stages.floor_curves import export_curves, floor_curves
+from rockfrag.stages.measure_choice import measure_choice
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 
@@ -19,40 +20,46 @@ def run(job: Job[Study]) -> Results:
     columns = list(settings.measures)
     measured = with_measures(sweep, measures, columns)
     found = fragility_tables(measured, columns, record_set=record_set, level=settings.confidence)
-    yield "fragility", found.curves
-    yield "fragility_bands", found.bands
-    yield "fragility_bins", found.bins
+    several = len(set(measured["floor"])) > 1
+    yield "fragility", _at_the_base(found.curves, several)
+    yield "fragility_bands", _at_the_base(found.bands, several)
+    yield "fragility_bins", _at_the_base(found.bins, several)
     by = ["configuration", "event", "floor", "motion"]
     yield "survival_windows", survival_windows(measured, by=by)
     choice = measure_choice(sweep, measures, settings.confidence, job.study.seed)
     yield "measure_choice", choice
-    ground = ground_floor(job.study)
-    if ground is not None:
-        on_ground = ground_curves(sweep, measures, record_set, settings.confidence, ground)
-        yield "fragility_ground", on_ground
-        exports = job.folder / "exports"
-        exports.mkdir(parents=True, exist_ok=True)
-        job.log.info("exported %s", ", ".join(export_curves(on_ground, exports)) or "no curve")
+    bodies = {one.name: one.body for one in job.study.configurations}
+    floors = job.study.floors
+    by_floor = floor_curves(sweep, measures, floors, bodies, record_set, settings.confidence)
+    yield "fragility_floors", by_floor
+    exports = job.folder / "exports"
+    exports.mkdir(parents=True, exist_ok=True)
+    job.log.info("exported %s", ", ".join(export_curves(by_floor, exports)) or "no curve")
     best = choice.loc[choice["recommended"], "im"]
     job.log.info("%d curves; best measures: %s", len(found.curves), ", ".join(dict.fromkeys(best)))
 
 
-def ground_floor(study: Study) -> str | None:
-    """Label of the floor that moves as the ground does, or None: other programs know no other."""
-    return next((label for label, level in study.floors.items() if level == 0), None)
+def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
+    """Name peaks for what they are where motions of several floors share a curve: of the base."""
+    if not several_floors:
+        return table
+    return table.assign(
+        im=table["im"].replace({"PGA": "peak base acceleration", "PGV": "peak base velocity"})
+    )
 
 
 STAGE = Stage(
     name="fragility",
     run=run,
     inputs=lambda study: ("measures", "motions/floors.parquet", *study.sweep_tables),
-    outputs=lambda study: (
+    outputs=(
         "fragility",
         "fragility_bands",
         "fragility_bins",
         "survival_windows",
         "measure_choice",
-        *([] if ground_floor(study) is None else ["fragility_ground", "exports/"]),
+        "fragility_floors",
+        "exports/",
     ),
-    settings=("fragility", "seed"),
+    settings=("fragility", "seed", "bodies", "building"),
 )

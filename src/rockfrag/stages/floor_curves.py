@@ -1,0 +1,127 @@
+"""Fragility on each floor in measures of that floor's own motion, and its files for other programs."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.rocking.bodies import Block, Body
+
+GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
+FLOOR_MEASURES = ("pga_g", "pgv_cm_s")
+FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
+"""What peaks are called where the motion is that of a floor above the ground."""
+
+
+def uplift_amplitude(body: Body) -> float:
+    """Peak acceleration above which something rocks, the smallest b/h of any pole [g]; thesis eq. 2.1."""
+    if isinstance(body, Block):
+        arms = [(pole, body.arm(pole)) for pole in (+1, -1)]
+    else:
+        arms = [(pole, body.statue_arm(pole)) for pole in (+1, -1)]
+        arms += [(pole, body.common_arm(pole)) for pole in (+1, -1)]
+    return min(-pole * arm.x / arm.y for pole, arm in arms)
+
+
+def floor_curves(
+    sweep: pd.DataFrame,
+    measures: pd.DataFrame,
+    floors: Mapping[str, int],
+    bodies: Mapping[str, Body],
+    record_set: str,
+    level: float,
+) -> pd.DataFrame:
+    """Fragility of every configuration on every floor; motions of different floors are never mixed.
+
+    Parameters
+    ----------
+    sweep
+        Sweeps of all configurations.
+    measures
+        Intensity measures of the motions as recorded.
+    floors
+        Level of each floor by its label; level 0 moves as the ground does.
+    bodies
+        Body of each configuration.
+    record_set
+        Digest of the motions, which goes into the table.
+    level
+        Confidence level of the limits.
+
+    Returns
+    -------
+    One row per configuration, floor, measure and limit state: ``configuration``, ``floor``,
+    ``floor_level``, ``measure`` (column of ``measures``), ``state`` (``rocks``, ``overturned``) and the
+    columns of :func:`rockfrag.fragility.sweeps.fragility_table`. Overturning is the mean probability over
+    all verdicts; rocking starts at an exact peak acceleration, whose value in another measure varies from
+    motion to motion.
+    """
+    from rockfrag.fragility import fragility_of, fragility_row, outcomes_from_table, with_measures
+    from rockfrag.fragility.states import fit_uplift
+
+    rows = []
+    for (name, floor), part in sweep.groupby(["configuration", "floor"], sort=False):
+        height = floors[str(floor)]
+        columns = GROUND_MEASURES if height == 0 else FLOOR_MEASURES
+        measured = with_measures(part, measures, [*columns])
+        motions = part.drop_duplicates("motion")
+        threshold = uplift_amplitude(bodies[str(name)])
+        at_uplift = with_measures(motions.assign(amplitude_g=threshold), measures, [*columns])
+        for column in columns:
+            labels = {"configuration": name, "floor": floor, "floor_level": height}
+            outcomes = outcomes_from_table(measured, column, event="event", source="sweep")
+            rocks = fit_uplift(at_uplift, column, level=level)
+            for state, found in (
+                ("rocks", rocks),
+                ("overturned", fragility_of(outcomes, level=level)),
+            ):
+                about = {**labels, "measure": column, "state": state}
+                estimator = "exact_threshold" if state == "rocks" else "mean_probability"
+                row = fragility_row(found, about, estimator, record_set)
+                if height > 0:
+                    row["im"] = FLOOR_NAMES[str(row["im"])]
+                rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def export_curves(curves: pd.DataFrame, folder: Path) -> list[str]:
+    """Write the curves for OpenQuake and SimCenter; return the names of the files.
+
+    One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
+    the ground only. Configurations without a curve are left out, and a measure without any has no file.
+    """
+    from rockfrag.fragility import write_nrml, write_simcenter
+
+    written = []
+    for (floor, height, column), rows in curves.groupby(
+        ["floor", "floor_level", "measure"], sort=False
+    ):
+        usable = _usable(rows)
+        if usable.empty:
+            continue
+        stem = f"fragility_{_stem(str(usable['im'].iloc[0]))}"
+        if height != 0:
+            stem += "_" + "".join(c if c.isalnum() else "_" for c in str(floor))
+        if height == 0:
+            # the formats know the ground by an empty floor, whatever its user calls it
+            write_nrml(usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem)
+            written.append(f"{stem}.xml")
+        if column in FLOOR_MEASURES:
+            write_simcenter(usable, folder / f"{stem}.csv", folder / f"{stem}.json")
+            written += [f"{stem}.csv", f"{stem}.json"]
+    return written
+
+
+def _stem(name: str) -> str:
+    """File name of a measure: ``SA(0.3s)`` becomes ``sa_0_3s``."""
+    return "".join(c if c.isalnum() else "_" for c in name.lower()).strip("_")
+
+
+def _usable(rows: pd.DataFrame) -> pd.DataFrame:
+    """Rows of the configurations that have a curve for every state."""
+    found = rows[["theta", "beta"]].to_numpy(dtype=float)
+    whole = (np.isfinite(found) & (found > 0) & (found < math.inf)).all(axis=1)
+    bad = set(rows.loc[~whole, "configuration"])
+    return rows[~rows["configuration"].isin(bad)]

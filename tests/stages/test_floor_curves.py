@@ -1,0 +1,81 @@
+"""Curves by floor: each keyed to its own floor's motion, rocking before overturning."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.stages.floor_curves import export_curves, floor_curves, uplift_amplitude
+
+STATUE, PEDESTAL = Block(0.2, 0.8, 50.0), Block(0.4, 0.4, 60.0)
+FLOORS = {"hall": 0, "loft": 2}
+
+
+@pytest.fixture
+def curves():
+    """Eight motions on two floors; the loft shakes twice as long, so bodies fall at lower peaks."""
+    rng = np.random.default_rng(3)
+    rows, measures = [], []
+    for k in range(8):
+        for floor in FLOORS:
+            name = f"m{k}_{floor}"
+            peak = 0.3 * np.exp(0.2 * rng.normal())
+            measures.append(
+                {
+                    "name": name,
+                    "pga_g": peak,
+                    "pgv_cm_s": 60 * peak * np.exp(0.2 * rng.normal()),
+                    "sa_0_3s_g": 2 * peak,
+                    "sa_1_0s_g": peak,
+                    "avgsa_g": peak,
+                }
+            )
+            capacity = (0.6 if floor == "hall" else 0.4) * np.exp(0.2 * rng.normal())
+            rows += [
+                {
+                    "configuration": "statue",
+                    "motion": name,
+                    "event": f"e{k}",
+                    "floor": floor,
+                    "amplitude_g": a,
+                    "overturned": a > capacity,
+                }
+                for a in np.geomspace(0.1, 2.0, 60)
+            ]
+    sweep, measures = pd.DataFrame(rows), pd.DataFrame(measures)
+    return floor_curves(sweep, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)
+
+
+def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves):
+    names = curves.groupby("floor")["im"].unique()
+    assert set(names["hall"]) == {"PGA", "PGV", "SA(0.3s)", "SA(1s)", "AvgSA"}
+    assert set(names["loft"]) == {"PFA", "PFV"}
+    fallen = curves[curves.state == "overturned"].set_index(["floor", "measure"])
+    assert (fallen.n_motions == 8).all()
+    assert fallen.loc[("hall", "pga_g"), "theta"] == pytest.approx(0.6, rel=0.2)
+    assert fallen.loc[("loft", "pga_g"), "theta"] == pytest.approx(0.4, rel=0.2)
+
+
+def test_rocking_starts_at_b_over_h_and_varies_in_other_measures(curves):
+    rocks = curves[(curves.state == "rocks") & (curves.floor == "hall")].set_index("measure")
+    assert rocks.loc["pga_g", "theta"] == pytest.approx(0.2 / 0.8)
+    assert rocks.loc["pgv_cm_s", "theta"] == pytest.approx(60 * 0.25, rel=0.2)
+    assert 0.05 < rocks.loc["pgv_cm_s", "beta"] < 0.5
+
+
+def test_files_are_one_per_floor_and_measure(curves, tmp_path):
+    written = export_curves(curves, tmp_path)
+    assert {"fragility_pga.xml", "fragility_avgsa.xml", "fragility_pfa_loft.csv"} <= set(written)
+    assert not [name for name in written if name.endswith(".xml") and "loft" in name]
+    assert all((tmp_path / name).exists() for name in written)
+    assert "Peak Floor Acceleration" in (tmp_path / "fragility_pfa_loft.csv").read_text()
+
+
+def test_stack_rocks_where_its_weaker_part_does():
+    assert uplift_amplitude(STATUE) == pytest.approx(0.25)
+    assert uplift_amplitude(Stack(PEDESTAL, STATUE)) == pytest.approx(0.25)
+    # a slender pedestal goes before its statue, at the b/h of the two together
+    slender = Stack(Block(0.2, 1.2, 60.0), STATUE)
+    both = slender.glued()
+    assert uplift_amplitude(slender) == pytest.approx(both.b / both.h)
+    assert both.b / both.h < 0.25
