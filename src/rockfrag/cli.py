@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 
 from rockfrag.errors import InputError
+from rockfrag.record_commands import add_record_commands
 
 MOST_EVENTS = 30
 """Lines of the pattern history that are printed unless all are asked for."""
@@ -26,13 +27,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    info = commands.add_parser("info", help="say what is in strong-motion records")
-    info.add_argument("files", nargs="+", metavar="FILE", help="record or folder of records")
-    info.add_argument("--unit", help="unit of files that do not state theirs: g, m/s2, cm/s2, …")
-    info.add_argument("--dt", type=float, help="sampling interval [s] of files without one")
-    info.add_argument("--channel", help="channel to draw, where a file has several")
-    info.add_argument("--picture", metavar="IMAGE", help="draw the one FILE, as .png or .svg")
-    info.set_defaults(run=_info)
+    add_record_commands(commands)
 
     one = commands.add_parser("simulate", help="shake one body by one record")
     one.add_argument("record", help="file with the record")
@@ -61,26 +56,6 @@ def _parser() -> argparse.ArgumentParser:
 
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
-def _info(options: argparse.Namespace) -> int:
-    from rockfrag.records.read import read_motion
-    from rockfrag.report.record_info import describe_files, draw_record
-
-    table = describe_files(options.files, options.unit, options.dt)
-    errors = table[table["error"] != ""] if "error" in table else table.iloc[:0]
-    fine = table.drop(index=errors.index).drop(columns="error", errors="ignore")
-    if len(fine):
-        print(fine.to_string(index=False, na_rep="-", float_format=lambda value: f"{value:.4g}"))
-    for error in errors["error"]:
-        print(error, file=sys.stderr)
-    if options.picture:
-        if len(options.files) != 1:
-            raise InputError("--picture draws one record; name one FILE.")
-        motion = read_motion(options.files[0], options.unit, options.channel, options.dt)
-        draw_record(motion, options.picture)
-        print(f"drawn in {options.picture}")
-    return 1 if len(errors) else 0
-
-
 def _simulate(options: argparse.Namespace) -> int:
     from rockfrag.records.read import read_motion
     from rockfrag.rocking import Block, Stack, simulate

