@@ -1,4 +1,4 @@
-# make run      the thesis's study, from records to report (STUDY=config/other.yaml for another)
+# make run      the thesis's study, from records to report (STUDY=config/other.yaml for another; VERBOSE=1)
 # make smoke    a small study in under a minute
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make bench    speed against other programs
@@ -7,14 +7,16 @@
 
 PYTHON ?= python3
 STUDY ?= config/thesis.yaml
+# one line a stage; all that Snakemake says with VERBOSE=1
+SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
 
 .PHONY: run smoke test validate coverage lint bench format
 .DEFAULT_GOAL := run
 
 run: .venv/installed
-	@report=$$($(RUN) rockfrag.cli check-config --report "$(STUDY)") && \
-	$(RUN) snakemake --configfile "$(STUDY)" --quiet host rules reason && echo "$$report"
+	@$(RUN) rockfrag.cli check-config --quiet "$(STUDY)"
+	@$(RUN) snakemake --configfile "$(STUDY)" $(SCREEN)
 
 smoke:
 	@$(MAKE) --no-print-directory run STUDY=config/smoke.yaml

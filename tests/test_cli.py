@@ -1,10 +1,14 @@
 """The command line says what a person wants to know, and one sentence where it cannot."""
 
+import pydoc
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import rockfrag
 from rockfrag.cli import main
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -63,9 +67,9 @@ def test_a_statue_on_its_pedestal_is_drawn(
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (["simulate", "absent.dat", "--body", "1", "1", "1"], "absent.dat"),
+        (["simulate", "absent.dat", "--body", "1", "1", "900"], "absent.dat"),
         (["simulate", "absent.dat", "--body", "1", "-1", "1"], "height"),
-        (["simulate", "absent.dat", "--body", "1", "1", "1", "--plot", "x.pdf"], ".png or .svg"),
+        (["simulate", "absent.dat", "--body", "1", "1", "900", "--plot", "x.pdf"], ".png or .svg"),
         (["check-config", "absent.yaml"], "absent.yaml"),
     ],
 )
@@ -81,6 +85,58 @@ def test_what_cannot_be_used_is_one_sentence_and_status_2(
 
 def test_a_right_configuration_is_summed_up(capsys: pytest.CaptureFixture[str]):
     assert main(["check-config", str(ROOT / "config" / "thesis.yaml")]) == 0
-    assert "4 records, 6 configurations" in capsys.readouterr().out
-    assert main(["check-config", "--report", str(ROOT / "config" / "thesis.yaml")]) == 0
-    assert "results/thesis/report.html" in capsys.readouterr().out
+    assert "4 records, 3 floors, 6 configurations" in capsys.readouterr().out
+    assert main(["check-config", "--quiet", str(ROOT / "config" / "thesis.yaml")]) == 0
+    assert capsys.readouterr().out == ""
+
+
+def test_sizes_and_masses_are_read_in_any_unit(record: Path, capsys: pytest.CaptureFixture[str]):
+    shown = []
+    for body in (["0.05", "0.5", "3"], ["5cm", "500 mm", "3000g"]):
+        assert main(["simulate", str(record), "--unit", "g", "--pga", "0.8", "--body", *body]) == 0
+        shown.append(capsys.readouterr().out)
+    assert shown[0] == shown[1]
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        (["35", "120", "180"], ["--body", "0.0122 kg/m³", "less than any solid"]),
+        (["35cm", "120cm", "180g"], ["0.18 kg", "12.2 kg/m³"]),
+        (["0.35", "1.2", "180000"], ["more than any solid"]),
+        (["35kg", "1.2", "180"], ["expected a length", "'35kg'"]),
+        (["wide", "1.2", "180"], ["expected a length", "'wide'"]),
+    ],
+)
+def test_a_body_of_no_solid_is_refused_with_its_density(
+    record: Path, body: list[str], words: list[str], capsys: pytest.CaptureFixture[str]
+):
+    assert main(["simulate", str(record), "--unit", "g", "--body", *body]) == 2
+    shown = capsys.readouterr().err
+    assert shown.count("\n") == 1
+    for word in words:
+        assert word in shown
+
+
+def test_the_version_is_told(capsys: pytest.CaptureFixture[str]):
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"rockfrag {rockfrag.__version__}\n"
+
+
+def test_help_shows_the_public_classes():
+    text = pydoc.render_doc(rockfrag, renderer=pydoc.plaintext)
+    for name in ("class Block", "class Stack", "class Motion", "simulate(", "overturns("):
+        assert name in text
+
+
+def test_a_reader_that_has_had_enough_is_no_error(record: Path):
+    command = [sys.executable, "-m", "rockfrag.cli", "simulate", str(record), "--unit", "g"]
+    body = ["--body", "0.05", "0.5", "3", "--pga", "0.8", "--all-events"]
+    with subprocess.Popen(
+        [*command, *body], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as run:
+        run.stdout.close()
+        assert run.stderr.read() == ""
+        assert run.wait(120) == 0

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from rockfrag._lazy import loader
 
+__version__ = "0.1.0"
+
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
     from rockfrag.records.read import read_motion
@@ -32,6 +34,12 @@ __all__ = [
     "read_motion",
     "simulate",
 ]
+
+
+def __dir__() -> list[str]:
+    """Names that `help` and completion show, though they are loaded only when used."""
+    return [*__all__, "__version__"]
+
 
 __getattr__ = loader(
     __name__,

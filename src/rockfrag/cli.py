@@ -1,11 +1,19 @@
 """The command line: what is in a record, how a body rocks, whether a configuration is right."""
 
 import argparse
+import os
 import sys
+import warnings
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, TextIO
 
+from rockfrag import __version__
 from rockfrag.errors import InputError
 from rockfrag.record_commands import add_record_commands
+from rockfrag.units import quantity
+
+if TYPE_CHECKING:
+    from rockfrag.rocking import Block
 
 MOST_EVENTS = 30
 """Lines of the pattern history that are printed unless all are asked for."""
@@ -14,17 +22,38 @@ MOST_EVENTS = 30
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return 0, 1 if a file could not be read, 2 if an input is not usable."""
     options = _parser().parse_args(arguments)
-    try:
-        return int(options.run(options))
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    with warnings.catch_warnings():
+        warnings.showwarning = _print_warning
+        try:
+            status = int(options.run(options))
+            sys.stdout.flush()
+        except InputError as error:
+            print(error, file=sys.stderr)
+            return 2
+        except BrokenPipeError:
+            # whoever reads the output, such as `head`, has had enough; Python must not try again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 0
+    return status
+
+
+def _print_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Print a warning as a sentence, without the line of code that gave it."""
+    print(f"warning: {message}", file=sys.stderr)
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="rockfrag", description="Rocking and overturning of free-standing objects."
     )
+    parser.add_argument("--version", action="version", version=f"rockfrag {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     add_record_commands(commands)
@@ -32,12 +61,12 @@ def _parser() -> argparse.ArgumentParser:
     one = commands.add_parser("simulate", help="shake one body by one record")
     one.add_argument("record", help="file with the record")
     one.add_argument(
-        "--body", nargs=3, type=float, required=True, metavar=("WIDTH", "HEIGHT", "MASS"),
-        help="the statue, or the lone block [m, m, kg]",
+        "--body", nargs=3, required=True, metavar=("WIDTH", "HEIGHT", "MASS"),
+        help="the statue, or the lone block: 35cm 120cm 180kg, or numbers of m, m and kg",
     )  # fmt: skip
     one.add_argument(
-        "--pedestal", nargs=3, type=float, metavar=("WIDTH", "HEIGHT", "MASS"),
-        help="the block it stands on [m, m, kg]",
+        "--pedestal", nargs=3, metavar=("WIDTH", "HEIGHT", "MASS"),
+        help="the block it stands on, in the same way",
     )  # fmt: skip
     one.add_argument("--pga", type=float, metavar="G", help="scale the record to this peak [g]")
     one.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
@@ -50,7 +79,7 @@ def _parser() -> argparse.ArgumentParser:
 
     check = commands.add_parser("check-config", help="check the configuration of a study")
     check.add_argument("file", metavar="FILE", help="configuration, such as config/thesis.yaml")
-    check.add_argument("--report", action="store_true", help="only say where its report will be")
+    check.add_argument("--quiet", action="store_true", help="say only what is wrong or doubtful")
     check.set_defaults(run=_check_config)
     return parser
 
@@ -58,12 +87,12 @@ def _parser() -> argparse.ArgumentParser:
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
     from rockfrag.records.read import read_motion
-    from rockfrag.rocking import Block, Stack, simulate
+    from rockfrag.rocking import Stack, simulate
     from rockfrag.units import STANDARD_GRAVITY
 
     _check_image(options.plot)
-    statue = Block(*options.body)
-    body = Stack(Block(*options.pedestal), statue) if options.pedestal else statue
+    statue = _block("--body", options.body)
+    body = Stack(_block("--pedestal", options.pedestal), statue) if options.pedestal else statue
     motion = read_motion(options.record, options.unit, options.channel, options.dt)
     acceleration = motion.acceleration
     if options.pga is not None:
@@ -96,6 +125,24 @@ def _simulate(options: argparse.Namespace) -> int:
     return 0
 
 
+def _block(option: str, given: Sequence[str]) -> "Block":
+    """Make a block of width, height and mass as people write them."""
+    from rockfrag.plausibility import check_density, size_warning
+    from rockfrag.rocking import Block
+
+    try:
+        width, height, mass = (
+            quantity(text, unit, unit) for text, unit in zip(given, ("m", "m", "kg"), strict=True)
+        )
+        block = Block(width, height, mass)
+        check_density(width, height, mass)
+    except InputError as error:
+        raise InputError(f"{option}: {error}") from None
+    if doubt := size_warning(width, height):
+        warnings.warn(f"{option}: {doubt}", stacklevel=2)
+    return block
+
+
 def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]
     if events.empty:
         return "it never rocked"
@@ -116,20 +163,27 @@ def _check_image(path: str | None) -> None:
 
 
 def _check_config(options: argparse.Namespace) -> int:
+    from rockfrag.stages.running import results_folder
     from rockfrag.study.loading import load_any
     from rockfrag.study.measured_table import MeasuredTable
+    from rockfrag.study.records import check_records
 
     study = load_any(options.file)
-    if options.report:
-        print(f"The report is results/{study.name}/report.html")
-    elif isinstance(study, MeasuredTable):
-        print(f"{options.file} is right: study {study.name} of the table {study.table}.")
-    else:
-        print(
-            f"{options.file} is right: study {study.name}, {len(study.catalogue)} records, "
-            f"{len(study.configurations)} configurations, "
-            f"{len(study.amplitudes.values_g)} amplitudes."
-        )
+    folder = results_folder(study)
+    doubts = [] if isinstance(study, MeasuredTable) else [*study.doubts(), *check_records(study)]
+    for doubt in doubts:
+        print(f"warning: {doubt}", file=sys.stderr)
+    if options.quiet:
+        return 0
+    what = (
+        f"the table {study.table}"
+        if isinstance(study, MeasuredTable)
+        else f"{len(study.catalogue)} records, {len(study.floors)} floors, "
+        f"{len(study.configurations)} configurations, {len(study.amplitudes.values_g)} amplitudes"
+    )
+    print(
+        f"{options.file} is right: study {study.name}, {what}; its report will be {folder}/report.html."
+    )
     return 0
 
 

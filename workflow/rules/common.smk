@@ -3,10 +3,13 @@ import os
 import shlex
 import sys
 
+from snakemake.logging import logger
+from snakemake.utils import update_config
+
 from rockfrag.errors import InputError
 from rockfrag.guests import study_stages
-from rockfrag.stages.running import RESULTS as ALL_RESULTS
-from rockfrag.study.loading import any_study
+from rockfrag.stages.running import prepared
+from rockfrag.yaml_file import read_yaml
 
 # Snakemake puts the interpreter's path into shell commands as it is, so spaces in it must be quoted
 sys.executable = shlex.quote(sys.executable)
@@ -14,10 +17,39 @@ sys.executable = shlex.quote(sys.executable)
 STUDY_FILE = os.path.relpath(workflow.configfiles[-1])
 
 try:
-    STUDY = any_study(config, STUDY_FILE)
+    # read once more, strictly: Snakemake takes the last of two equal keys without a word
+    config.clear()
+    for path in workflow.configfiles:
+        update_config(config, read_yaml(path))
+    update_config(config, workflow.config_settings.config or {})
+    STUDY, FOLDER = prepared(config, STUDY_FILE)
 except InputError as error:
     # nothing has run yet: one sentence, no traceback, exit status 1
     sys.exit(str(error))
 
-RESULTS = f"{ALL_RESULTS}/{STUDY.name}"
+RESULTS = str(FOLDER)
 STAGES = study_stages(STUDY)
+logger.info(
+    f"The report will be {RESULTS}/report.html",
+    extra={"report": f"{RESULTS}/report.html"},
+)
+
+
+def flagged(path):
+    """An output as Snakemake wants it: folders marked, figures and the page put into its report."""
+    if path == "figures/":
+        return report(
+            directory(f"{RESULTS}/figures"),
+            patterns=["{figure}.svg"],
+            category="Figures",
+            caption="../report/figure.rst",
+        )
+    if path == "report.html":
+        return report(
+            f"{RESULTS}/report.html",
+            category="Report",
+            caption="../report/report.rst",
+        )
+    if path.endswith("/"):
+        return directory(f"{RESULTS}/{path.rstrip('/')}")
+    return f"{RESULTS}/{path}"

@@ -6,9 +6,9 @@ rule fetch_records:
         "resources/records/{source}/provenance.json",
     log:
         "resources/logs/fetch_{source}.log",
-    retries: 2
     wildcard_constraints:
         source="[a-z0-9-]+",
+    retries: 2
     conda:
         "../envs/rockfrag.yaml"
     script:

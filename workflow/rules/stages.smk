@@ -1,26 +1,6 @@
 # A rule for each stage of the study: what it reads, writes and depends on the stage says itself.
 
 
-def flagged(path):
-    """An output as Snakemake wants it: folders marked, figures and the page put into its report."""
-    if path == "figures/":
-        return report(
-            directory(f"{RESULTS}/figures"),
-            patterns=["{figure}.svg"],
-            category="Figures",
-            caption="../report/figure.rst",
-        )
-    if path == "report.html":
-        return report(
-            f"{RESULTS}/report.html",
-            category="Report",
-            caption="../report/report.rst",
-        )
-    if path.endswith("/"):
-        return directory(f"{RESULTS}/{path.rstrip('/')}")
-    return f"{RESULTS}/{path}"
-
-
 for stage in STAGES:
 
     rule:

@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.building.model import ShearBuilding
+from rockfrag.plausibility import size_warning
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.study.amplitudes import Amplitudes
@@ -80,6 +81,14 @@ class Study:
     fragility: FragilitySettings
     compare_with: str | None
     more: Supplementary
+
+    def doubts(self) -> list[str]:
+        """Warnings about sizes that look as if they were in another unit."""
+        return [
+            f"{self.specimens_file}, {name}: {doubt}."
+            for name, block in self.specimens.items()
+            if (doubt := size_warning(block.width, block.height))
+        ]
 
     @property
     def has_pairs(self) -> bool:
