@@ -54,7 +54,3 @@ __getattr__ = loader(
         "simulate": "rockfrag.rocking.simulation",
     },
 )
-
-
-def __dir__() -> list[str]:
-    return [*__all__, "__version__"]
