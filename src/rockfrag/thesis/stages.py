@@ -39,17 +39,14 @@ def _printed_tables(job: Job[Study]) -> Results:
 
 def _statements(job: Job[Study]) -> Results:
     from rockfrag.shaketable.readings import READING
-    from rockfrag.thesis.statements import Evidence, contradictions, ledger, ledger_table
-    from rockfrag.thesis.statements.theory import theory_claims
+    from rockfrag.thesis.statements import Evidence, contradictions, ledger, theory_ledger
 
     study = job.study
-    theory = ledger_table(
-        theory_claims(
-            {**study.tested_blocks, **study.stacks},
-            job.motions("motions/ground"),
-            seed=study.seed,
-            threads=job.threads,
-        )
+    theory = theory_ledger(
+        {**study.tested_blocks, **study.stacks},
+        job.motions("motions/ground"),
+        seed=study.seed,
+        threads=job.threads,
     )
     yield "claims_theory", theory
     if not study.has_pairs:
@@ -58,42 +55,19 @@ def _statements(job: Job[Study]) -> Results:
     forces = job.table("validity")[["test", "friction_demand", "least_normal_force_n"]]
     tests = tests[tests["reading"] == READING].merge(forces, on="test", how="left")
     bodies = study.tested_blocks
-    claims = ledger(tests, basis="simulated", seed=study.seed, measures=measures, bodies=bodies)
-    claims = pd.concat([theory, claims], ignore_index=True)
+    evidence = Evidence(tests, "simulated", measures, bodies)
+    claims = pd.concat([theory, ledger(evidence)], ignore_index=True)
     yield "claims", claims
-    evidence = Evidence(tests, "simulated", study.seed, measures, bodies)
     yield "contradictions", contradictions(evidence)
     verdicts = claims["verdict"].value_counts().items()
     job.log.info("statements: %s", ", ".join(f"{n} {verdict}" for verdict, n in verdicts))
 
 
 def _measured_statements(job: Job[Study]) -> pd.DataFrame:
-    from rockfrag.thesis.statements import ledger
+    from rockfrag.thesis.statements import Evidence, ledger
 
-    study, measured = job.study, job.table("measured/tests")
-    if not _compares_objects(measured):
-        job.log.info(
-            "no statement tested on the measured tests: too few objects, motions or events"
-        )
-        return pd.DataFrame(columns=["number"])
-    return ledger(
-        measured,
-        basis="measured",
-        seed=study.seed,
-        measures=job.table("measures"),
-        bodies=study.tested_blocks,
-    )
-
-
-def _compares_objects(measured: pd.DataFrame) -> bool:
-    """Whether two objects overturned by the same motion on each side, in two events or more."""
-    known = measured[measured["amplitude_g"].notna()]
-    for side in ("P", "NP"):
-        rows = known[known["pedestal"] == side]
-        objects = rows.groupby(["event", "motion"])["object"].nunique()
-        if objects[objects > 1].reset_index()["event"].nunique() < 2:
-            return False
-    return True
+    tests, measures = job.table("measured/tests"), job.table("measures")
+    return ledger(Evidence(tests, "measured", measures, job.study.tested_blocks))
 
 
 def _inputs(study: Study) -> list[str]:

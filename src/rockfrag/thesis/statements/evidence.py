@@ -1,4 +1,4 @@
-"""What the statements are tested on, brought into the forms that the tests need."""
+"""What the statements about the experiment are tested on, brought into the forms that the tests need."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,16 +7,15 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import Estimate, mean_effect
+from rockfrag.pedestal.cluster_means import Estimate, contrast, mean_effect
 from rockfrag.pedestal.mixed import long_rows
 from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests
-from rockfrag.pedestal.study import effects_table
 from rockfrag.rocking.bodies import Block
-from rockfrag.thesis.specimens import SLENDERNESS
+from rockfrag.thesis.specimens import THESIS_BODIES
+from rockfrag.thesis.statements.statement import Undecidable
 
-
-class Undecidable(Exception):
-    """The data at hand cannot speak about a statement; the message says why."""
+PEDESTAL = "P"
+"""Name of the pedestal among the specimens."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +29,10 @@ class Evidence:
         least_normal_force_n [N] are used for C57, force_n [N] and moved_mass_kg [kg] for C56.
     basis
         ``simulated`` or ``measured``.
-    seed
-        Of the bootstrap behind rank probabilities.
     measures
         Intensity measures by motion: name, pgv_over_pga_s, mean_period_s, d5_95_s.
     bodies
-        Specimens by name, the pedestal as "P".
+        Specimens by name, the pedestal as "P"; without them those of the thesis.
     sliding
         Pairs of simulations: event, rocking_g, sliding_g (overturning amplitude with and without
         the possibility to slide) [g].
@@ -43,22 +40,24 @@ class Evidence:
 
     tests: pd.DataFrame
     basis: str
-    seed: int
     measures: pd.DataFrame | None = None
     bodies: Mapping[str, Block] | None = None
     sliding: pd.DataFrame | None = None
+
+    @property
+    def specimens(self) -> Mapping[str, Block]:
+        """Specimens by name, the pedestal as "P"."""
+        return THESIS_BODIES if self.bodies is None else self.bodies
+
+    @property
+    def slenderness(self) -> dict[str, float]:
+        """Height over width by object [-]."""
+        return {name: body.slenderness for name, body in self.specimens.items() if name != PEDESTAL}
 
     @cached_property
     def clean(self) -> pd.DataFrame:
         """Checked tests."""
         return check_tests(self.tests)
-
-    @cached_property
-    def slenderness(self) -> dict[str, float]:
-        """Height over width by tower [-]."""
-        if self.bodies is None:
-            return dict(SLENDERNESS)
-        return {name: body.slenderness for name, body in self.bodies.items() if name != "P"}
 
     @cached_property
     def pairs(self) -> Pairs:
@@ -67,7 +66,7 @@ class Evidence:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Complete pairs.
+        """Pairs with a figure.
 
         Raises
         ------
@@ -80,22 +79,16 @@ class Evidence:
 
     @cached_property
     def amplitudes(self) -> pd.DataFrame:
-        """Two rows per complete pair: side ("P" or "NP"), ln_a, a_g and the pair's columns."""
+        """Two rows per pair: side ("P" or "NP"), ln_a, a_g, slenderness and the pair's columns."""
         rows = long_rows(self.table)
-        slenderness = rows["object"].map(self.slenderness)
         return rows.assign(
             side=np.where(rows["ped"] == 1, "P", "NP"),
             a_g=np.exp(rows["ln_a"]),
-            slenderness=slenderness,
+            slenderness=rows["object"].map(self.slenderness),
         )
 
-    @cached_property
-    def effects(self) -> pd.DataFrame:
-        """P/NP for every scope, indexed by scope and level."""
-        return effects_table(self.table).set_index(["scope", "level"])
-
     def part(self, **levels: str) -> pd.DataFrame:
-        """Complete pairs at the given levels, such as ``floor="GF", tower="T1"``.
+        """Pairs at the given levels, such as ``floor="GF", object="T1"``.
 
         Raises
         ------
@@ -123,12 +116,13 @@ class Evidence:
         raise Undecidable(f"no complete pair with {column} {wanted}")
 
     def effect(self, **levels: str) -> Estimate:
-        """Mean log ratio at the given levels."""
+        """Mean log ratio P/NP at the given levels."""
         return mean_effect(self.part(**levels))
 
-    def p_holm(self, scope: str, level: str) -> float:
-        """P value of a level's effect, adjusted within its family."""
-        return float(self.effects["p_holm"].to_dict()[(scope, level)])
+    def lead(self, factor: str, one: str, other: str, block: str = "event") -> Estimate:
+        """By how much the effect at one level of a factor exceeds that at another, block by block."""
+        names = self.level(factor, one), self.level(factor, other)
+        return contrast(self.table, factor, *names, block=block)
 
 
 def _plain(name: str) -> str:

@@ -1,285 +1,293 @@
-"""C34 to C44, C50, C51: what the floors do."""
+"""C34 to C44, C50, C51: what the floors do.
+
+Most say something about orders: a function returns differences that are positive if it is so.
+"""
 
 import math
+from dataclasses import replace
 
-import numpy as np
 import pandas as pd
 
-from rockfrag.pedestal.bootstrap import rank_probabilities, share_largest
-from rockfrag.pedestal.cluster_means import (
-    Estimate,
-    contrast,
-    mean_effect,
-    sampled_unit,
-    t_estimate,
-    unit_means,
-)
-from rockfrag.pedestal.equivalence import MARGIN
+from rockfrag.pedestal.cluster_means import contrast, mean_effect, unit_means
 from rockfrag.pedestal.permutation import sign_flip_test
-from rockfrag.thesis.floor_order import FLOORS
-from rockfrag.thesis.statements.evidence import Evidence, Undecidable
-from rockfrag.thesis.statements.ledger import ClaimResult
-from rockfrag.thesis.statements.results import ratio_result
-from rockfrag.thesis.statements.verdicts import all_of, direction, extreme, remark
+from rockfrag.thesis.statements.evidence import Evidence
+from rockfrag.thesis.statements.orders import (
+    AMPLITUDES,
+    PAIRS,
+    Part,
+    Parts,
+    Size,
+    order,
+    order_statement,
+)
+from rockfrag.thesis.statements.statement import Finding, Kind, Result, Undecidable, statement
+from rockfrag.thesis.statements.verdicts import ONE_INTERVAL, SEEN
 
+GROUND, THIRD, FIFTH = FLOORS = ("GF", "F3", "F5")
 TOWERS = ("T1", "T2", "T3")
-SIGNS = {"GF": (1, 1, 1), "F3": (1, -1, -1), "F5": (-1, -1, -1)}
+
+
+@order_statement(
+    34,
+    "the increase is noticeable on the ground floor only",
+    "4.3, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule=f"an increase on GF; increases of {SEEN:.0%} or more excluded on F3 and F5",
+    several=True,
+)
+def c34(tests: Evidence) -> Parts:
+    """The ground floor's increase, and by how much those above stay below a noticeable one."""
+    parts = {"P/NP on GF": Part(tests.effect(floor=GROUND), Size.NOTICEABLE)}
+    for floor in (THIRD, FIFTH):
+        rows = tests.part(floor=floor)
+        below = mean_effect(rows.assign(d=math.log1p(SEEN) - rows["d"]))
+        parts[f"{1 + SEEN:g} over P/NP on {floor}"] = Part(below)
+    return parts
+
+
+@order_statement(
+    35,
+    "on the ground floor the mean increases with the pedestal",
+    "4.3, 4.4, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule="an increase on GF",
+)
+def c35(tests: Evidence) -> Parts:
+    """The ground floor's increase."""
+    return {"P/NP on GF": Part(tests.effect(floor=GROUND), Size.PLAIN)}
+
+
+@order_statement(
+    36,
+    "on the 3rd floor the mean slightly decreases with the pedestal",
+    "4.3, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule="a decrease on F3, however slight",
+)
+def c36(tests: Evidence) -> Parts:
+    """The 3rd floor's decrease."""
+    return {"NP/P on F3": Part(tests.effect(floor=THIRD).times(-1))}
+
+
+@order_statement(
+    37,
+    "on the 5th floor the mean slightly decreases with the pedestal",
+    "4.3, Fig. 4.6",
+    Kind.DESCRIPTION,
+    rule="a decrease on F5, however slight",
+)
+def c37(tests: Evidence) -> Parts:
+    """The 5th floor's decrease."""
+    return {"NP/P on F5": Part(tests.effect(floor=FIFTH).times(-1))}
+
+
+SIGNS = {GROUND: (1, 1, 1), THIRD: (1, -1, -1), FIFTH: (-1, -1, -1)}
 """Signs of the effect that C38 claims, by floor for T1, T2, T3."""
 
 
-def _one_floor(evidence: Evidence, number: int, floor: str, sign: int, slight: bool) -> ClaimResult:
-    effect = evidence.effect(floor=floor)
-    p = evidence.p_holm("floor", evidence.level("floor", floor))
-    verdict = direction(effect, sign, p=p, slight=slight)
-    return ratio_result(
-        number,
-        f"mean of d on {floor}, t over events, Holm over the floors",
-        f"P/NP {effect.text()}, p (Holm) = {p:.3f}",
-        verdict,
-        evidence.basis,
-        effect,
+@order_statement(
+    38,
+    "each tower shows the floors' signs, except T1 on the 3rd floor",
+    "4.3, 4.4, Fig. 4.6b",
+    Kind.DESCRIPTION,
+    rule="increases of all towers on GF and of T1 on F3, decreases elsewhere",
+    several=True,
+)
+def c38(tests: Evidence) -> Parts:
+    """The effect in each of the nine cells, in the direction claimed."""
+    return {
+        f"{'P/NP' if sign > 0 else 'NP/P'} of {tower} on {floor}": Part(
+            tests.effect(floor=floor, object=tower).times(sign)
+        )
+        for floor, signs in SIGNS.items()
+        for tower, sign in zip(TOWERS, signs, strict=True)
+    }
+
+
+def _first_tower(tests: Evidence, floor: str, sign: int) -> Parts:
+    """T1's change on a floor, and by how much it exceeds those of T2 and T3."""
+    rows = tests.part(floor=floor)
+    rows = rows.assign(d=sign * rows["d"])
+    first, *others = (tests.level("object", name) for name in TOWERS)
+    ratio = "P/NP" if sign > 0 else "NP/P"
+    own = mean_effect(rows[rows["object"] == first])
+    return {f"{ratio} of {first}": Part(own, Size.NOTICEABLE)} | {
+        f"{ratio} of {first} over {other}": Part(
+            contrast(rows, "object", first, other), Size.NOTICEABLE
+        )
+        for other in others
+    }
+
+
+@order_statement(
+    39,
+    "on the ground floor T1's increase is much greater than T2's and T3's",
+    "4.3, Fig. 4.6b",
+    Kind.DESCRIPTION,
+    rule="an increase of T1 on GF, and more than that of T2 and of T3, event by event",
+    several=True,
+)
+def c39(tests: Evidence) -> Parts:
+    """T1's increase on the ground floor, and its lead."""
+    return _first_tower(tests, GROUND, +1)
+
+
+@order_statement(
+    40,
+    "on the 5th floor T1's decrease is much greater than T2's and T3's",
+    "4.3, Fig. 4.6b",
+    Kind.DESCRIPTION,
+    rule="a decrease of T1 on F5, and more than that of T2 and of T3, event by event",
+    several=True,
+)
+def c40(tests: Evidence) -> Parts:
+    """T1's decrease on the 5th floor, and its lead."""
+    return _first_tower(tests, FIFTH, -1)
+
+
+@order_statement(
+    41,
+    "the relative change is largest on the ground floor",
+    "4.4, Fig. 4.5",
+    Kind.DESCRIPTION,
+    rule="the change on GF exceeds that on F3 and F5 and the opposite of each, event by event",
+    error_rate="at most 5 % to be true (GF's change may have either sign), 2.5 % to be false",
+)
+def c41(tests: Evidence) -> Parts:
+    """Whether |x| > |y| for the effects x on GF and y above: x - y and x + y have the sign of x."""
+    table = tests.table
+    ground, *others = (tests.level("floor", name) for name in FLOORS)
+    sign = 1.0 if tests.effect(floor=GROUND).mean >= 0 else -1.0
+    parts = {}
+    for other in others:
+        mirrored = table.assign(d=table["d"].where(table["floor"] != other, -table["d"]))
+        for word, rows in (("change", table), ("opposite change", mirrored)):
+            lead = contrast(rows, "floor", ground, other).times(sign)
+            parts[f"change on {ground} over the {word} on {other}"] = Part(lead)
+    return parts
+
+
+def _leading_floor(tests: Evidence, side: str, floor: str) -> Parts:
+    """By how much the amplitudes of a side on one floor exceed those on the others."""
+    rows = tests.amplitudes[tests.amplitudes["side"] == side]
+    top = tests.level("floor", floor)
+    others = [tests.level("floor", name) for name in FLOORS if name != floor]
+    return {
+        f"{side} on {top} over {other}": Part(contrast(rows, "floor", top, other, value="ln_a"))
+        for other in others
+    }
+
+
+@order_statement(
+    42,
+    "with the pedestal the mean is largest on the 5th floor",
+    "4.4, Fig. 4.6",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="ln a of P on F5 exceeds that on GF and on F3, event by event",
+    several=True,
+    more=lambda tests: _means(tests, "P"),
+)
+def c42(tests: Evidence) -> Parts:
+    """With the pedestal, the 5th floor over the others."""
+    return _leading_floor(tests, "P", FIFTH)
+
+
+@order_statement(
+    43,
+    "without the pedestal the mean is largest on the ground floor",
+    "4.4, Fig. 4.6",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="ln a of NP on GF exceeds that on F3 and on F5, event by event",
+    several=True,
+    more=lambda tests: _means(tests, "NP"),
+)
+def c43(tests: Evidence) -> Parts:
+    """Without the pedestal, the ground floor over the others."""
+    return _leading_floor(tests, "NP", GROUND)
+
+
+@order_statement(
+    44,
+    "the 3rd floor has the smallest mean for every tower, with and without pedestal",
+    "4.4",
+    Kind.DESCRIPTION,
+    evidence=AMPLITUDES,
+    rule="ln a on GF and on F5 exceeds that on F3 for every tower and side, event by event",
+    several=True,
+)
+def c44(tests: Evidence) -> Parts:
+    """The other floors over the 3rd, for every tower on both sides."""
+    low, *others = (tests.level("floor", name) for name in (THIRD, GROUND, FIFTH))
+    return {
+        f"{name} {side} on {other} over {low}": Part(
+            contrast(rows, "floor", other, low, value="ln_a")
+        )
+        for (name, side), rows in tests.amplitudes.groupby(["object", "side"])
+        for other in others
+    }
+
+
+@statement(
+    50,
+    "on the upper floors the pedestal lowers the acceleration, with few exceptions",
+    "5",
+    Kind.INFERENCE,
+    evidence=PAIRS,
+    rule="a decrease on F3 and F5 together; to be true, more pairs decrease than increase by more than "
+    "their steps",
+    error_rate=ONE_INTERVAL,
+)
+def c50(tests: Evidence) -> Result:
+    """The decrease on both upper floors together, and how many pairs are exceptions."""
+    floors = [tests.level("floor", name) for name in (THIRD, FIFTH)]
+    rows = tests.table[tests.table["floor"].isin(floors)]
+    steps = rows.get("resolution", 0.0)
+    down, up = int((rows["d"] < -steps).sum()), int((rows["d"] > steps).sum())
+    found = order(
+        {"NP/P on F3 and F5": Part(mean_effect(rows).times(-1))},
+        tests.basis,
+        more=f"of {len(rows)} pairs {down} decrease and {up} increase by more than their steps",
+    )
+    if found.finding is Finding.FOR and down <= up:
+        return replace(found, finding=Finding.OPEN)
+    return found
+
+
+@statement(
+    51,
+    "the increase on the ground floor is significant",
+    "5",
+    Kind.INFERENCE,
+    evidence=PAIRS,
+    rule=f"an increase on GF; false also if one of {SEEN:.0%} or more is excluded",
+    error_rate=ONE_INTERVAL,
+)
+def c51(tests: Evidence) -> Result:
+    """The test that the thesis did not make."""
+    rows = tests.part(floor=GROUND)
+    flips = sign_flip_test(unit_means(rows, "event"))
+    return order(
+        {"P/NP on GF": Part(mean_effect(rows), Size.NOTICEABLE)},
+        tests.basis,
+        more=f"the thesis made no test; by sign flips p = {flips.p:.3f}, of which {flips.units} events "
+        f"give none below {flips.smallest_p:.3g}",
     )
 
 
-def c34(evidence: Evidence) -> ClaimResult:
-    """An increase on the ground floor, and no noticeable one above."""
-    ground = evidence.effect(floor="GF")
-    p = evidence.p_holm("floor", evidence.level("floor", "GF"))
-    upper = {floor: evidence.effect(floor=floor) for floor in ("F3", "F5")}
-    noticeable = math.log1p(MARGIN)
-    verdicts = [direction(ground, +1, p=p)]
-    for floor, one in upper.items():
-        adjusted = evidence.p_holm("floor", evidence.level("floor", floor))
-        if adjusted < 0.05 and one.mean > 0:
-            verdicts.append("contradicted")
-        else:
-            verdicts.append("supported" if one.p_below(noticeable) < 0.05 else "undecided")
-    verdict = all_of(verdicts)
-    above = ", ".join(f"{floor} {one.text()}" for floor, one in upper.items())
-    return ratio_result(
-        34,
-        "d on GF above zero (t over events, Holm) and an increase of 10 % or more excluded on F3 and "
-        "on F5 (one-sided 5 %)",
-        f"P/NP GF {ground.text()}, {above}",
-        verdict,
-        evidence.basis,
-        ground,
-        more="the figure is that of GF",
-    )
+def floor_steps(tests: Evidence) -> Parts:
+    """The thesis's order of the floors for lone towers: 3rd below 5th below ground."""
+    rows = tests.amplitudes[tests.amplitudes["side"] == "NP"]
+    third, fifth, ground = (tests.level("floor", name) for name in (THIRD, FIFTH, GROUND))
+    return {
+        f"NP on {one} over {other}": Part(contrast(rows, "floor", one, other, value="ln_a"))
+        for one, other in ((fifth, third), (ground, fifth))
+    }
 
 
-def c35(evidence: Evidence) -> ClaimResult:
-    """Increase on the ground floor."""
-    return _one_floor(evidence, 35, "GF", +1, slight=False)
-
-
-def c36(evidence: Evidence) -> ClaimResult:
-    """Slight decrease on the 3rd floor."""
-    return _one_floor(evidence, 36, "F3", -1, slight=True)
-
-
-def c37(evidence: Evidence) -> ClaimResult:
-    """Slight decrease on the 5th floor."""
-    return _one_floor(evidence, 37, "F5", -1, slight=True)
-
-
-def c38(evidence: Evidence) -> ClaimResult:
-    """Nine signs."""
-    agree, verdicts, clear = 0, [], 0
-    most: Estimate | None = None
-    for floor, signs in SIGNS.items():
-        for object_name, sign in zip(TOWERS, signs, strict=True):
-            effect = evidence.effect(floor=floor, object=object_name)
-            cell = f"{evidence.level('floor', floor)}/{evidence.level('object', object_name)}"
-            one = direction(effect, sign, p=evidence.p_holm("cell", cell), slight=True)
-            verdicts.append(one)
-            agree += effect.mean * sign > 0
-            clear += one == "supported"
-            if most is None or effect.mean * sign < most.mean:
-                most = effect.times(sign)
-    assert most is not None
-    verdict = all_of(verdicts)
-    return ClaimResult(
-        38,
-        "sign of d in the nine cells floor x tower, t over events, Holm over the cells",
-        f"{agree} of 9 signs as claimed, {clear} of them beyond doubt; the cell furthest against "
-        f"the claim, as ratio in its direction, {most.text()}",
-        verdict,
-        evidence.basis,
-        float(agree),
-        math.nan,
-        math.nan,
-        unit="cells of 9",
-        remark=remark(
-            verdict, most, more=f"a cell has {most.units} values, too few for sign flips at 5 %"
-        ),
-    )
-
-
-def _first_object(evidence: Evidence, number: int, floor: str, sign: int) -> ClaimResult:
-    table = evidence.part(floor=floor)
-    first, *others = (evidence.level("object", name) for name in TOWERS)
-    oriented = table.assign(d=sign * table["d"])
-    differences = {other: contrast(oriented, "object", first, other) for other in others}
-    verdict, decisive = extreme(differences)
-    own = mean_effect(oriented[oriented["object"] == first])
-    if own.mean <= 0 and own.p < 0.05:
-        verdict = "contradicted"
-    one = differences[decisive]
-    word = "increase" if sign > 0 else "decrease"
-    return ratio_result(
-        number,
-        f"{word} of T1 on {floor} minus that of T2 and of T3, event by event, each one-sided at 5 %",
-        f"T1's {word} over that of {decisive}, as ratio {one.text()}; T1's own as ratio "
-        f"{own.text()}",
-        verdict,
-        evidence.basis,
-        one,
-    )
-
-
-def c39(evidence: Evidence) -> ClaimResult:
-    """T1's increase on the ground floor."""
-    return _first_object(evidence, 39, "GF", +1)
-
-
-def c40(evidence: Evidence) -> ClaimResult:
-    """T1's decrease on the 5th floor."""
-    return _first_object(evidence, 40, "F5", -1)
-
-
-def c41(evidence: Evidence) -> ClaimResult:
-    """Size of the change by floor, whatever its sign."""
-    table = evidence.table
-    ground, *others = (evidence.level("floor", name) for name in FLOORS)
-    signs = np.sign(table.groupby("floor")["d"].mean())
-    sized = table.assign(d=table["d"] * table["floor"].map(signs))
-    differences = {other: contrast(sized, "floor", ground, other) for other in others}
-    verdict, decisive = extreme(differences)
-    p_largest = share_largest(rank_probabilities(sized, "floor", "event", evidence.seed), ground)
-    one = differences[decisive]
-    return ratio_result(
-        41,
-        "change on GF minus that on F3 and on F5, each in the direction of its floor's mean, event "
-        "by event, each one-sided at 5 %; bootstrap over events",
-        f"change on GF over that on {decisive}, as ratio {one.text()}; GF is largest with "
-        f"probability {p_largest:.2f}",
-        verdict,
-        evidence.basis,
-        one,
-        more="directions are read from the data, which flatters small changes",
-    )
-
-
-def _largest_floor(evidence: Evidence, number: int, side: str, floor: str) -> ClaimResult:
-    rows = evidence.amplitudes
-    rows = rows[rows["side"] == side]
-    top, *others = (
-        evidence.level("floor", name)
-        for name in (floor, *(name for name in FLOORS if name != floor))
-    )
-    differences = {other: contrast(rows, "floor", top, other, value="ln_a") for other in others}
-    verdict, decisive = extreme(differences)
-    ranks = rank_probabilities(rows, "floor", "event", evidence.seed, value="ln_a")
-    p_largest = share_largest(ranks, top)
-    means = rows.groupby("floor")["a_g"].mean()
-    one = differences[decisive]
-    return ratio_result(
-        number,
-        f"ln a of {side} on {floor} minus that on the other floors, event by event, each one-sided "
-        "at 5 %; bootstrap over events",
-        f"{floor} over {decisive} {one.text()}; arithmetic means "
-        + ", ".join(f"{name} {means[name]:.3f} g" for name in (top, *others))
-        + f"; {floor} is largest with probability {p_largest:.2f}",
-        verdict,
-        evidence.basis,
-        one,
-    )
-
-
-def c42(evidence: Evidence) -> ClaimResult:
-    """With the pedestal the 5th floor is highest."""
-    return _largest_floor(evidence, 42, "P", "F5")
-
-
-def c43(evidence: Evidence) -> ClaimResult:
-    """Without it the ground floor is."""
-    return _largest_floor(evidence, 43, "NP", "GF")
-
-
-def c44(evidence: Evidence) -> ClaimResult:
-    """The 3rd floor is lowest for every tower, with and without pedestal."""
-    rows = evidence.amplitudes
-    low, *others = (evidence.level("floor", name) for name in ("F3", "GF", "F5"))
-    differences: dict[str, Estimate] = {}
-    smallest = 0
-    for (object_name, side), part in rows.groupby(["object", "side"]):
-        means = part.groupby("floor")["a_g"].mean()
-        smallest += means.idxmin() == low
-        for other in others:
-            name = f"{other} over {low} for {object_name} {side}"
-            differences[name] = contrast(part, "floor", other, low, value="ln_a")
-    verdict, decisive = extreme(differences)
-    one = differences[decisive]
-    return ratio_result(
-        44,
-        "ln a on GF and on F5 minus that on F3, for every tower and side, event by event, each "
-        "one-sided at 5 %",
-        f"F3 has the smallest mean for {smallest} of {len(differences) // 2} configurations; "
-        f"{decisive} {one.text()}",
-        verdict,
-        evidence.basis,
-        one,
-        more="the figure is the decisive comparison",
-    )
-
-
-def c50(evidence: Evidence) -> ClaimResult:
-    """Both upper floors together, and how many pairs decrease."""
-    floors = [evidence.level("floor", name) for name in ("F3", "F5")]
-    table = evidence.table[evidence.table["floor"].isin(floors)]
-    effect = mean_effect(table)
-    verdict = direction(effect, -1, slight=True)
-    down = int((table["d"] < 0).sum())
-    half_a_pair = 0.5 * table["event"].nunique() / len(table)
-    share = t_estimate(
-        (table["d"] < 0).astype(float).groupby(table["event"]).mean(), resolution=half_a_pair
-    )
-    few = share.lower > 0.5
-    if verdict == "supported" and not few:
-        verdict = "undecided"
-    return ratio_result(
-        50,
-        "mean of d on F3 and F5, t over events; share of pairs that decrease, t over events against "
-        "one half",
-        f"P/NP {effect.text()}; {down} of {len(table)} pairs decrease",
-        verdict,
-        evidence.basis,
-        effect,
-    )
-
-
-def c51(evidence: Evidence) -> ClaimResult:
-    """The test that was not made."""
-    rows = evidence.part(floor="GF")
-    effect = mean_effect(rows)
-    p = evidence.p_holm("floor", evidence.level("floor", "GF"))
-    flips = sign_flip_test(unit_means(rows, sampled_unit(rows)))
-    verdict = direction(effect, +1, p=p)
-    return ratio_result(
-        51,
-        "mean of d on GF, t over events, Holm over the floors; sign flips over events",
-        f"P/NP {effect.text()}, p = {effect.p:.3f}, Holm {p:.3f}, sign flips {flips.p:.3f}",
-        verdict,
-        evidence.basis,
-        effect,
-        more=f"no test was made in the thesis; {flips.units} events give no sign-flip p below "
-        f"{flips.smallest_p:.3g}",
-    )
-
-
-def floor_means(evidence: Evidence) -> pd.DataFrame:
-    """Arithmetic mean amplitude by floor and side [g], for the thesis's contradictions.
+def floor_means(tests: Evidence) -> pd.DataFrame:
+    """Arithmetic mean amplitude by floor and side [g], as the thesis plots it.
 
     Raises
     ------
@@ -287,9 +295,14 @@ def floor_means(evidence: Evidence) -> pd.DataFrame:
         If a floor of the thesis is missing.
     """
     for floor in FLOORS:
-        evidence.level("floor", floor)
-    rows = evidence.amplitudes
+        tests.level("floor", floor)
+    rows = tests.amplitudes
     means = rows.pivot_table(index="floor", columns="side", values="a_g", aggfunc="mean")
     if means.isna().any(axis=None):
         raise Undecidable("a floor was tested on one side only")
     return means
+
+
+def _means(tests: Evidence, side: str) -> str:
+    means = floor_means(tests)[side].to_dict()
+    return "arithmetic means " + ", ".join(f"{name} {means[name]:.3f} g" for name in means)

@@ -1,26 +1,57 @@
-"""The ledger: what was claimed, how it was tested, and what came out."""
+"""The ledger: every statement with its kind, its rule, what came out, and the word for it."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import pandas as pd
 
-from rockfrag.thesis.statements.statements import STATEMENTS
+from rockfrag.pedestal.cluster_means import TooFewUnitsError
+from rockfrag.pedestal.multiplicity import holm
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.bodies import Body
+from rockfrag.thesis.statements import (  # noqa: F401  (each enters its statements when it is loaded)
+    blocks,
+    earthquakes,
+    floors,
+    pedestal,
+    protocol,
+    slenderness,
+    spectra,
+    stacks,
+)
+from rockfrag.thesis.statements.evidence import Evidence
+from rockfrag.thesis.statements.setting import FreeRocking, Setting, make_setting
+from rockfrag.thesis.statements.statement import (
+    STATEMENTS,
+    Finding,
+    Kind,
+    Result,
+    Statement,
+    Undecidable,
+    verdict,
+)
 
-VERDICTS = ("supported", "contradicted", "undecided")
-BASES = ("simulated", "measured")
+THEORY = range(1, 25)
+"""Numbers of the statements about theory; the others are about tests."""
+
 COLUMNS = (
     "number",
     "statement",
     "source",
-    "test",
+    "kind",
+    "evidence",
+    "rule",
+    "error_rate",
+    "finding",
+    "verdict",
     "figure",
     "estimate",
     "lower",
     "upper",
     "unit",
-    "verdict",
+    "p",
+    "p_holm",
     "basis",
     "remark",
 )
@@ -28,72 +59,116 @@ COLUMNS = (
 
 
 @dataclass(frozen=True)
-class ClaimResult:
-    """What one test says about one statement.
+class Row:
+    """A statement and what came out."""
+
+    statement: Statement
+    result: Result
+    basis: str
+
+
+def theory_ledger(
+    specimens: Mapping[str, Body],
+    motions: Sequence[Motion],
+    *,
+    seed: int,
+    free_rocking: FreeRocking | None = None,
+    threads: int | None = None,
+) -> pd.DataFrame:
+    """Compute C1 to C24 for specimens and ground motions.
+
+    A statement about which they cannot speak (no stack, no motion) is open, with the reason.
 
     Parameters
     ----------
-    number
-        Number of the statement, 1 to 58.
-    test
-        How it was tested, in words a statistician can repeat.
-    figure
-        The result with its interval, in words and digits.
-    verdict
-        ``supported``, ``contradicted`` or ``undecided``.
-    basis
-        ``simulated`` (models, closed forms included) or ``measured``.
-    estimate, lower, upper
-        The figure and its interval in ``unit``; NaN where there is no single figure.
-    unit
-        Unit of the three, ``-`` for ratios and probabilities.
-    remark
-        What else a reader must know: the power needed when undecided, the population meant.
+    specimens
+        Blocks and stacks by name.  A block named "P" is the pedestal: without stacks among the
+        specimens each other block is put on it.
+    motions
+        Ground motions at their recorded amplitude.
+    seed
+        Of the perturbations and random geometries.
+    free_rocking
+        Measured free rocking by specimen: times [s] and rotations [rad] of a history (C5).
+    threads
+        Threads to use; the results do not depend on it.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns of ``COLUMNS``.
 
     Raises
     ------
-    ValueError
-        If number, verdict or basis is not one of those above.
+    InputError
+        If a measured history cannot be used.
     """
-
-    number: int
-    test: str
-    figure: str
-    verdict: str
-    basis: str
-    estimate: float = math.nan
-    lower: float = math.nan
-    upper: float = math.nan
-    unit: str = "-"
-    remark: str = ""
-
-    def __post_init__(self) -> None:
-        if self.number not in STATEMENTS:
-            raise ValueError(f"there is no statement C{self.number}")
-        if self.verdict not in VERDICTS:
-            raise ValueError(f"C{self.number}: verdict {self.verdict!r} is none of {VERDICTS}")
-        if self.basis not in BASES:
-            raise ValueError(f"C{self.number}: basis {self.basis!r} is none of {BASES}")
+    setting = make_setting(specimens, motions, seed, free_rocking, threads)
+    return _table(_row(one, setting, "simulated") for one in _statements(theory=True))
 
 
-def ledger_table(results: Iterable[ClaimResult]) -> pd.DataFrame:
-    """Put results into one table by number, then basis, with the columns of ``COLUMNS``."""
-    rows = [
-        {
-            "number": one.number,
-            "statement": STATEMENTS[one.number].text,
-            "source": STATEMENTS[one.number].source,
-            "test": one.test,
-            "figure": one.figure,
-            "estimate": one.estimate,
-            "lower": one.lower,
-            "upper": one.upper,
-            "unit": one.unit,
-            "verdict": one.verdict,
-            "basis": one.basis,
-            "remark": one.remark,
-        }
-        for one in results
-    ]
-    table = pd.DataFrame(rows, columns=list(COLUMNS))
-    return table.sort_values(["number", "basis"], kind="stable", ignore_index=True)
+def ledger(tests: Evidence) -> pd.DataFrame:
+    """Test C25 to C58 on one table of tests.
+
+    A statement about which the table cannot speak (a floor that was not tested, a column that is
+    absent, a single object) is open, with the reason.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns of ``COLUMNS``.
+
+    Raises
+    ------
+    InputError
+        If the table of tests itself cannot be used.
+    """
+    return _table(_row(one, tests, tests.basis) for one in _statements(theory=False))
+
+
+def _statements(theory: bool) -> list[Statement]:
+    return [STATEMENTS[n] for n in sorted(STATEMENTS) if (n in THEORY) == theory]
+
+
+def _row(one: Statement, evidence: Setting | Evidence, basis: str) -> Row:
+    try:
+        result = one.test(evidence)
+    except (Undecidable, TooFewUnitsError) as reason:
+        result = Result(
+            Finding.OPEN, "no figure", remark=f"not decidable with these data: {reason}"
+        )
+    if one.kind is Kind.IDENTITY:
+        basis = "computed"
+    return Row(one, result, result.basis or basis)
+
+
+def _table(rows: Iterable[Row]) -> pd.DataFrame:
+    table = pd.DataFrame(
+        [
+            {
+                "number": row.statement.number,
+                "statement": row.statement.text,
+                "source": row.statement.source,
+                "kind": str(row.statement.kind),
+                "evidence": row.statement.evidence,
+                "rule": row.statement.rule,
+                "error_rate": row.statement.error_rate,
+                "finding": str(row.result.finding),
+                "verdict": verdict(row.statement.kind, row.basis, row.result.finding),
+                "figure": row.result.figure,
+                "estimate": row.result.estimate,
+                "lower": row.result.lower,
+                "upper": row.result.upper,
+                "unit": row.result.unit,
+                "p": row.result.p,
+                "p_holm": math.nan,
+                "basis": row.basis,
+                "remark": row.result.remark,
+            }
+            for row in rows
+        ],
+        columns=list(COLUMNS),
+    )
+    # many statements are tested on one table: what still stands when all of them are counted
+    table["p_holm"] = holm(table["p"])
+    return table

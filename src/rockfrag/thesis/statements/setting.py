@@ -1,4 +1,4 @@
-"""What the checks of theory work on, and thresholds that several of them share."""
+"""What the statements about theory are tested on, and what several of them share."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
+from rockfrag.thesis.printed_tables import uplift_accelerations
 from rockfrag.thesis.specimens import THESIS_BODIES
-from rockfrag.thesis.statements.evidence import Undecidable
+from rockfrag.thesis.statements.motion_spectra import MotionSpectra
+from rockfrag.thesis.statements.statement import Undecidable
 from rockfrag.units import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]
@@ -20,24 +23,29 @@ FreeRocking = Mapping[str, tuple[ArrayLike, ArrayLike]]
 PEAKS_G = (0.3, 0.5, 0.8, 1.2)
 """Amplitudes to which the motions are scaled for the histories of the stacks [g]."""
 
+SAMPLE = 12
+"""Motions of a larger set that serve where each needs many histories, evenly spaced in its order."""
+
 EXACT = 1e-9
 """Relative difference below which two computed figures are the same [-]."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """Specimens and motions, ready for the checks.
+    """Specimens and motions, ready for the tests.
 
     Attributes
     ----------
-    towers
+    objects
         Lone blocks by name, without the pedestal.
+    pedestal
+        The block named "P", if there is one.
     stacks
         Stacks by name.
     all_motions
         Ground motions, perhaps none.
     seed, free_rocking, threads
-        As in `rockfrag.thesis.statements.theory.theory_claims`.
+        As in `rockfrag.thesis.statements.ledger.theory_ledger`.
     """
 
     objects: Mapping[str, Block]
@@ -62,7 +70,7 @@ class Setting:
             raise Undecidable("there is no stack among the specimens and no block named P")
         return dict(self.stacks)
 
-    @property
+    @cached_property
     def motions(self) -> list[Motion]:
         """Motions that shake; raises Undecidable if there is none."""
         shaking = [one for one in self.all_motions if one.pga > 0]
@@ -70,30 +78,71 @@ class Setting:
             raise Undecidable("there is no ground motion")
         return shaking
 
+    @property
+    def sample(self) -> list[Motion]:
+        """At most `SAMPLE` of the motions, evenly spaced in their order."""
+        motions = self.motions
+        step = max(1, math.ceil(len(motions) / SAMPLE))
+        return motions[::step]
+
+    @property
+    def where(self) -> str:
+        """Which histories were looked at, in words."""
+        several = f"{len(self.sample)} motions"
+        if len(self.sample) < len(self.motions):
+            several = f"{len(self.sample)} of {len(self.motions)} motions"
+        peaks = ", ".join(f"{peak:g}" for peak in PEAKS_G)
+        return f"{len(self.assemblies)} stacks under {several} scaled to {peaks} g"
+
     @cached_property
     def histories(self) -> list[Response]:
-        """Every stack under every motion at each amplitude of `PEAKS_G`."""
+        """Every stack under every motion of the sample at each amplitude of `PEAKS_G`."""
         return [
             simulate(stack, one.acceleration * (peak * STANDARD_GRAVITY / one.pga), one.dt)
             for stack in self.assemblies.values()
-            for one in self.motions
+            for one in self.sample
             for peak in PEAKS_G
         ]
 
     @cached_property
-    def alone(self) -> dict[str, float]:
-        """Acceleration at which each lone block starts to rock, by bisection of simulations [m/s²]."""
-        return {name: uplift_threshold(block) for name, block in self.blocks.items()}
+    def impacts(self) -> pd.DataFrame:
+        """Impacts of all histories, a row each, as in `rockfrag.rocking.Response.events`."""
+        parts = [one.events[one.events["kind"] == "impact"] for one in self.histories]
+        return pd.concat(parts, ignore_index=True)
 
     @cached_property
-    def pattern_4(self) -> dict[str, float]:
-        """Likewise for each stack, which starts in pattern 4 if its statue is the first to move."""
-        return {name: uplift_threshold(stack) for name, stack in self.assemblies.items()}
+    def spectra(self) -> MotionSpectra:
+        """Spectra of the motions, of blocks with the specimens' slendernesses."""
+        alpha = np.array(sorted(block.alpha for block in self.blocks.values()))
+        return MotionSpectra(self.motions, alpha, self.threads)
+
+    @cached_property
+    def alone(self) -> dict[str, float]:
+        """Least acceleration that starts each lone block (thesis eq. 2.1) [m/s²]."""
+        return {name: uplift_accelerations(block)[1] for name, block in self.blocks.items()}
 
     @cached_property
     def pattern_3(self) -> dict[str, float]:
-        """Likewise for each stack held together as one body."""
-        return {name: uplift_threshold(stack.glued()) for name, stack in self.assemblies.items()}
+        """Likewise each stack held together as one body (thesis eq. 2.21, 2.22) [m/s²]."""
+        return {name: uplift_accelerations(one)[0] for name, one in self.assemblies.items()}
+
+    @cached_property
+    def pattern_4(self) -> dict[str, float]:
+        """Likewise the statue of each stack on a still pedestal (thesis eq. 2.24, 2.25) [m/s²]."""
+        return {name: uplift_accelerations(one)[1] for name, one in self.assemblies.items()}
+
+    @cached_property
+    def pedestal_too(self) -> dict[str, float]:
+        """Least sudden acceleration that moves each stack's pedestal under a free statue [m/s²]."""
+        return {
+            name: bisect(
+                lambda a, stack=stack: bool(np.any(jump(stack, a).state[:3, 0] != 0)),  # type: ignore[misc]
+                0.5 * self.pattern_4[name],
+                10 * STANDARD_GRAVITY,
+                1e-4,
+            )
+            for name, stack in self.assemblies.items()
+        }
 
 
 def make_setting(
@@ -112,9 +161,7 @@ def make_setting(
     return Setting(blocks, pedestal, stacks, list(motions), seed, free_rocking, threads)
 
 
-def bisect(
-    happens: Callable[[float], bool], low: float, high: float, tolerance: float = 1e-12
-) -> float:
+def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:
     """Least argument at which something happens that does not at ``low`` and does at ``high``.
 
     Parameters
@@ -131,8 +178,6 @@ def bisect(
         raise Undecidable(f"no threshold lies between {low:.3g} and {high:.3g}")
     while high - low > tolerance * high:
         middle = math.sqrt(low * high)
-        if not low < middle < high:
-            break
         low, high = (low, middle) if happens(middle) else (middle, high)
     return high
 
@@ -142,12 +187,14 @@ def jump(body: Body, acceleration: float) -> Response:
     return simulate(body, np.full(3, acceleration), 0.05)
 
 
-def uplift_threshold(body: Body, pedestal: bool = False) -> float:
-    """Least sudden acceleration at which anything (or the pedestal) leaves its base [m/s²]."""
-    column = 0 if pedestal or isinstance(body, Block) else slice(None)
-    return bisect(
-        lambda a: bool(np.any(jump(body, a).state[:3, column] != 0)), 0.06, 10 * STANDARD_GRAVITY
-    )
+def moves(body: Body, acceleration: float) -> bool:
+    """Whether a sudden ground acceleration [m/s²] makes any block leave its base."""
+    return bool(np.any(jump(body, acceleration).state[:3] != 0))
+
+
+def starts_at(body: Body, acceleration: float) -> bool:
+    """Whether a simulated body starts to rock at this acceleration [m/s²] and not just below it."""
+    return moves(body, acceleration * (1 + EXACT)) and not moves(body, acceleration * (1 - EXACT))
 
 
 def require_thesis_specimens(setting: Setting) -> None:
@@ -176,11 +223,3 @@ def same_block(one: Block, other: Block) -> bool:
 def listed(values: Mapping[str, float], form: str = ".3f") -> str:
     """Names with their figures, for a sentence."""
     return ", ".join(f"{name} {value:{form}}" for name, value in values.items())
-
-
-def wilson(count: int, total: int, z: float = 1.959964) -> tuple[float, float]:
-    """Limits of a share by Wilson's score, 95 % unless ``z`` says otherwise [-]."""
-    share = count / total
-    centre = (share + z**2 / (2 * total)) / (1 + z**2 / total)
-    half = z * math.sqrt(share * (1 - share) / total + z**2 / (4 * total**2)) / (1 + z**2 / total)
-    return max(0.0, centre - half), min(1.0, centre + half)

@@ -1,0 +1,172 @@
+"""Statements about orders: differences that must all be positive, judged by their intervals.
+
+A statement such as "the mean increases on the ground floor" or "the 3rd floor is lowest" is a function from
+tests to named differences, entered with `order_statement`; `rockfrag.thesis.statements.verdicts` has the rule.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from rockfrag.pedestal.cluster_means import Estimate
+from rockfrag.pedestal.power import power_note
+from rockfrag.thesis.statements.evidence import Evidence
+from rockfrag.thesis.statements.statement import Finding, Kind, Result, statement
+from rockfrag.thesis.statements.verdicts import (
+    ONE_INTERVAL,
+    SEEN,
+    SEVERAL_INTERVALS,
+    finding_of,
+    known,
+)
+
+PAIRS = "pairs of tests, means by earthquake"
+AMPLITUDES = "overturning amplitudes, means by earthquake"
+
+
+class Size(Enum):
+    """How large a claimed change is meant to be, which decides what excludes it."""
+
+    SLIGHT = "slight"
+    """Slight, or a lead of unstated size: only the opposite sign excludes it."""
+    PLAIN = "plain"
+    """A change of unstated size: the opposite sign, or in a model any change that could be seen."""
+    NOTICEABLE = "noticeable"
+    """Noticeable, significant, much greater: excluded together with any change that could be seen."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One difference that a statement says is positive.
+
+    Parameters
+    ----------
+    estimate
+        The difference, in logarithms of ratios [-].
+    size
+        How large it is meant to be.
+    """
+
+    estimate: Estimate
+    size: Size = Size.SLIGHT
+
+    def p_for(self) -> float:
+        """One-sided p value of the hypothesis that the difference is not positive; 1 if unknown."""
+        return known(self.estimate.p_above(0.0))
+
+    def p_against(self, basis: str) -> float:
+        """One-sided p value of the hypothesis that the difference is as the statement says."""
+        visible = self.size is Size.NOTICEABLE or (self.size is Size.PLAIN and basis == "simulated")
+        return known(self.estimate.p_below(math.log1p(SEEN) if visible else 0.0))
+
+
+Parts = Mapping[str, Part]
+"""What a statement about orders says: differences by name, all positive if it is true."""
+
+
+def order(parts: Parts, basis: str, *, unit: str = "event", more: str = "") -> Result:
+    """Judge differences of which a statement says that all are positive.
+
+    Parameters
+    ----------
+    parts
+        The differences by name, at least one.
+    basis
+        ``simulated`` or ``measured``.
+    unit
+        What was sampled, for the note on power.
+    more
+        What else there is to say.
+
+    Returns
+    -------
+    Result
+        Its estimate is the decisive difference as a ratio: the one furthest from being shown, or the one
+        that speaks most against the statement.
+    """
+    for_it = {name: part.p_for() for name, part in parts.items()}
+    against = {name: part.p_against(basis) for name, part in parts.items()}
+    weakest = max(parts, key=for_it.__getitem__)
+    strongest = min(parts, key=against.__getitem__)
+    p_for, p_against = for_it[weakest], min(1.0, against[strongest] * len(parts))
+    finding = finding_of(p_for, p_against)
+    decisive = strongest if finding is Finding.AGAINST else weakest
+    one = parts[decisive].estimate
+    notes = [more] if more else []
+    if finding is Finding.OPEN:
+        notes.append(power_note(one, unit))
+    elif finding is Finding.AGAINST and one.mean > 0:
+        notes.append(f"a change of {SEEN:.0%} or more is excluded")
+    return Result(
+        finding,
+        _listed(parts, decisive),
+        one.ratio,
+        one.ratio_lower,
+        one.ratio_upper,
+        p=min(1.0, 2 * min(p_for, p_against)),
+        remark="; ".join(notes),
+    )
+
+
+def _listed(parts: Parts, decisive: str) -> str:
+    """All ratios of a short list, or the decisive one of a long one; and what the means say."""
+    positive = sum(part.estimate.mean > 0 for part in parts.values())
+    names = list(parts) if len(parts) <= 4 else [decisive]
+    ratios = ", ".join(f"{name} {parts[name].estimate.text()}" for name in names)
+    if len(parts) == 1:
+        return f"{ratios}; the mean is {'' if positive else 'not '}as stated"
+    return f"{ratios}; {positive} of {len(parts)} means are as stated"
+
+
+def margin(parts: Parts) -> float:
+    """Least of the differences [-]: positive where the means are as stated; no inference."""
+    return min(part.estimate.mean for part in parts.values())
+
+
+Differences = Callable[[Evidence], Parts]
+
+_ORDERS: dict[int, Differences] = {}
+
+ORDERS: Mapping[int, Differences] = _ORDERS
+"""What the statements about orders say of a table of tests, by number."""
+
+
+def order_statement(
+    number: int,
+    text: str,
+    source: str,
+    kind: Kind,
+    *,
+    rule: str,
+    evidence: str = PAIRS,
+    several: bool = False,
+    error_rate: str | None = None,
+    unit: str = "event",
+    more: Callable[[Evidence], str] = lambda _: "",
+) -> Callable[[Differences], Differences]:
+    """Enter the decorated function, from tests to differences, as a statement about their order.
+
+    Parameters
+    ----------
+    number, text, source, kind, rule, evidence
+        See `rockfrag.thesis.statements.statement.Statement`.
+    several
+        Whether there is more than one difference.
+    error_rate
+        Where it is not that of the rule for one or several differences.
+    unit, more
+        As of `order`; ``more`` is computed from the tests.
+    """
+    rate = error_rate or (SEVERAL_INTERVALS if several else ONE_INTERVAL)
+
+    def enter(differences: Differences) -> Differences:
+        def test(tests: Evidence) -> Result:
+            return order(differences(tests), tests.basis, unit=unit, more=more(tests))
+
+        entry = statement(number, text, source, kind, evidence=evidence, rule=rule, error_rate=rate)
+        entry(test)
+        _ORDERS[number] = differences
+        return differences
+
+    return enter
