@@ -26,7 +26,7 @@ def test_no_order_of_the_four_means_satisfies_all_four_statements():
 def test_stack_slenderness_by_hand(made):
     """Common centre of gravity from Table 3.1 without the package's geometry."""
     masses, heights = (2172, 2790, 3456), (37.2, 49.6, 62.0)
-    table = stack_slenderness(Evidence(made(), "simulated", 1))
+    table = stack_slenderness(Evidence(made(), "simulated"))
     for mass, height, stacked in zip(masses, heights, table["stacked"], strict=True):
         centre = (2300 * 10.4 + mass * (20.8 + height / 2)) / (2300 + mass)
         assert abs(stacked - centre / 9.2) < 1e-12
@@ -37,9 +37,9 @@ def test_table_says_what_the_tests_show(made):
     bare = contradictions()
     assert len(bare) == 10
     assert (bare["in_these_tests"] == "").all()
-    seen = contradictions(Evidence(made(), "simulated", 1))
+    seen = contradictions(Evidence(made(), "simulated"))
     first = seen.iloc[0]
     assert "C42" in first["statements"] and "P GF" in first["in_these_tests"]
     tests = made()
-    ground = contradictions(Evidence(tests[tests["floor"] == "GF"], "simulated", 1))
+    ground = contradictions(Evidence(tests[tests["floor"] == "GF"], "simulated"))
     assert "cannot be said" in ground.iloc[0]["in_these_tests"]
