@@ -11,7 +11,6 @@ from rockfrag.report.figures.style import figure_style, new_figure
 from rockfrag.report.page import Column, cell, render, table_html
 from rockfrag.report.part import FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw
-from rockfrag.thesis.ledger_html import ledger_html
 
 
 def drawing() -> Figure:
@@ -85,21 +84,3 @@ def test_cells_show_digits_truth_and_what_is_missing():
     assert cell(None, None) == "–"
     assert cell(True, None) == "yes"
     assert cell("", None) == "–"
-
-
-def test_the_ledger_marks_each_verdict():
-    claims = pd.DataFrame(
-        {
-            "number": [25],
-            "statement": ["a falls & falls"],
-            "source": ["4.2"],
-            "test": ["regression"],
-            "figure": ["-0.1"],
-            "verdict": ["supported"],
-            "basis": ["simulated"],
-            "remark": [None],
-        }
-    )
-    html = ledger_html(claims)
-    assert 'class="statement supported"' in html
-    assert "falls &amp; falls" in html

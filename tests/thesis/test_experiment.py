@@ -373,6 +373,24 @@ def test_one_motion_decides_nothing_and_breaks_nothing(made):
     assert set(rows.loc[rows["verdict"] != "open", "number"]) <= {30}
 
 
+def test_a_table_without_pairs_leaves_the_pedestal_open(made):
+    tests = made()
+    rows = ledger(Evidence(tests[tests["pedestal"] == "NP"], "measured")).set_index("number")
+    assert (rows.loc[31:51, "verdict"] == "open").all()
+    assert rows.loc[35, "remark"].startswith(
+        "not decidable with these data: Table of tests: no object"
+    )
+
+
+def test_an_object_on_two_pedestals_is_no_double_test(made):
+    tests = made(everywhere(0.2)).assign(configuration="lone")
+    on_one = tests["pedestal"] == "P"
+    tests.loc[on_one, "configuration"] = "low " + tests["object"]
+    second = tests[on_one].assign(configuration="high " + tests["object"])
+    rows = ledger(Evidence(pd.concat([tests, second]), "measured")).set_index("number")
+    assert rows.loc[29, "verdict"] == "confirmed"
+
+
 def test_spelling_of_event_names_does_not_matter(made):
     tests = made(on_event(LomaPrieta=0.3))
     tests["event"] = tests["event"].str.lower().str.replace(" ", "_")

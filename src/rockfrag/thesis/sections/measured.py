@@ -3,6 +3,7 @@
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.measured import has_measured_tests
 from rockfrag.thesis.ledger_html import ledger_html
+from rockfrag.thesis.sections.statements import words_on_verdicts
 
 
 def _section(results: Results) -> Section | None:
@@ -12,7 +13,7 @@ def _section(results: Results) -> Section | None:
     return Section(
         "measured_claims",
         "The thesis’s statements on measured tests",
-        ["Each statement with its test and verdict on the measured tests."],
+        [words_on_verdicts(claims)],
         [ledger_html(claims)],
     )
 

@@ -6,7 +6,7 @@ from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.explanation import asks_explanation, departures
 from rockfrag.report.wording import listed, of_all, sentence
-from rockfrag.thesis.floor_order import FLOORS
+from rockfrag.thesis.statements.floors import FLOORS
 
 _GROUND, *_UPPER = FLOORS
 

@@ -1,9 +1,12 @@
 """The thesis's statements with their verdicts, and where it contradicts itself."""
 
+import pandas as pd
+
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Finding, Part, Results, Section
 from rockfrag.report.sections.pedestal import has_pairs
-from rockfrag.thesis.ledger_html import ledger_html
+from rockfrag.report.wording import number, sentence
+from rockfrag.thesis.ledger_html import ledger_html, verdicts_by_kind
 
 _CONTRADICTIONS = (
     Column("statements", "Statements"),
@@ -13,31 +16,46 @@ _CONTRADICTIONS = (
 )
 
 
+_KINDS = (
+    Column("kind", "Kind of statement"),
+    Column("statements", "Statements"),
+    Column("verdicts", "Verdicts"),
+)
+
+
 def _section(results: Results) -> Section:
-    contradictions = results.table("contradictions")
+    claims, contradictions = results.table("claims"), results.table("contradictions")
     return Section(
         "claims",
         "The thesis’s statements",
+        [words_on_verdicts(claims)],
         [
-            "Each statement with its test and verdict. A verdict on simulated tests says what the "
-            "model does, not what the laboratory saw."
-        ],
-        [
-            ledger_html(results.table("claims")),
+            table_html(verdicts_by_kind(claims), _KINDS, "Verdicts on the thesis’s statements."),
+            ledger_html(claims),
             table_html(contradictions, _CONTRADICTIONS, "Where the thesis contradicts itself."),
         ],
     )
 
 
+def words_on_verdicts(claims: pd.DataFrame) -> str:
+    """Say what the verdicts mean, and how many may be wrong by chance."""
+    inferred = int(claims["p"].notna().sum())
+    return (
+        "A simulation can reproduce what a laboratory reports or not; only measured tests can confirm or "
+        "reject it. Statements about the model’s equations hold or do not, for the specimens or everywhere. "
+        "Each rule of inference reads the 95 % interval that is printed and errs in at most 2.5 % of tables "
+        f"each way, so that of the {inferred} statements inferred here up to {number(0.05 * inferred, 1)} may "
+        "be wrong by chance; the second p value of each counts them all (Holm)."
+    )
+
+
 def _findings(results: Results) -> list[Finding]:
     claims = results.table("claims")
-    counts = claims["verdict"].value_counts()
-    parts = [f"{count} {verdict}" for verdict, count in counts.items()]
+    kinds = verdicts_by_kind(claims).to_dict("records")
     return [
         Finding(
             f"{claims['number'].nunique()} statements of the thesis are tested",
-            f"By simulation: {', '.join(parts)}. A statement about the laboratory's measurements is "
-            "tested on the simulated counterparts; each verdict says on what it rests.",
+            sentence("; ".join(f"{row['kind']}: {row['verdicts']}" for row in kinds)) + ".",
         )
     ]
 

@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import Estimate, contrast, mean_effect
 from rockfrag.pedestal.mixed import long_rows
-from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests
+from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests, pedestals_apart
 from rockfrag.rocking.bodies import Block
 from rockfrag.thesis.specimens import THESIS_BODIES
 from rockfrag.thesis.statements.statement import Undecidable
@@ -57,12 +58,22 @@ class Evidence:
     @cached_property
     def clean(self) -> pd.DataFrame:
         """Checked tests."""
-        return check_tests(self.tests)
+        return check_tests(pedestals_apart(self.tests)[0])
 
     @cached_property
     def pairs(self) -> Pairs:
-        """Tests in pairs."""
-        return pair_tests(self.tests, self.slenderness)
+        """Tests in pairs.
+
+        Raises
+        ------
+        Undecidable
+            If no object was tested under the same motion with and without pedestal, or the slenderness of
+            one is not known.
+        """
+        try:
+            return pair_tests(self.tests, self.slenderness)
+        except InputError as reason:
+            raise Undecidable(str(reason)) from None
 
     @property
     def table(self) -> pd.DataFrame:

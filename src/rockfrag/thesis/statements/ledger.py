@@ -123,6 +123,7 @@ def ledger(tests: Evidence) -> pd.DataFrame:
     InputError
         If the table of tests itself cannot be used.
     """
+    _ = tests.clean  # a table that cannot be used is the user's error, and no statement's
     return _table(_row(one, tests, tests.basis) for one in _statements(theory=False))
 
 

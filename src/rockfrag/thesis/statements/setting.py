@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
-from rockfrag.thesis.printed_tables import uplift_accelerations
+from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.thesis.specimens import THESIS_BODIES
 from rockfrag.thesis.statements.motion_spectra import MotionSpectra
 from rockfrag.thesis.statements.statement import Undecidable

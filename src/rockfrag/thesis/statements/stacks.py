@@ -9,7 +9,7 @@ import pandas as pd
 
 from rockfrag.rocking import Block, Stack, simulate
 from rockfrag.rocking.response import PATTERNS
-from rockfrag.thesis.printed_tables import uplift_accelerations
+from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.thesis.statements.setting import (
     EXACT,
     Setting,
