@@ -1,7 +1,7 @@
 # make run      the thesis's study, from records to report (STUDY=config/other.yaml for another; VERBOSE=1)
 # make smoke    a small study in under a minute
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
-# make bench    speed against other programs
+# make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
 # Paths are relative throughout, so the checkout may stand anywhere, spaces included.
 
@@ -45,6 +45,7 @@ format: .venv/installed
 bench: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]"
 	@.venv/bin/python benchmarks/run.py
+	@.venv/bin/python benchmarks/waits.py
 
 .venv/installed: pyproject.toml constraints.txt
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; name another with make PYTHON=…")'
