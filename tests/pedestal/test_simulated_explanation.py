@@ -65,7 +65,8 @@ def test_the_table_is_one_that_the_explanation_takes(motions):
     cases = factor_cases("T2", STACK, {"pedestal_width_cm": (13.0,), "pedestal_lean_deg": (2.0,)})
     effects = explain(with_references(case_ratios(cases, motions, LADDER), ideal))
     assert set(effects["factor"]) == {"pedestal_width_cm", "pedestal_lean_deg"}
-    assert set(effects.loc[effects["level"] == "ideal", "effect"]) == {1.0}
+    ideal_rows = effects[effects["level"] == "ideal"]
+    assert set(ideal_rows["effect"]) == {1.0} and set(ideal_rows["judgement"]) == {""}
 
 
 def test_perturbed_copies_follow_from_the_seed_and_differ_on_the_two_sides():

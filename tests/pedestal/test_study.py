@@ -96,7 +96,7 @@ def test_explanation_recovers_the_effect_of_a_level_by_floor():
         for floor, sign in (("GF", 1), ("F3", -0.5)):
             row = result.loc[(level, floor)]
             assert row["effect_lower"] < np.exp(sign * 0.15 * factor) < row["effect_upper"]
-    assert result.loc[(0.80, "GF"), "pattern"]
+    assert result.loc[(0.80, "GF"), "judgement"] == "changes P/NP"
     assert result.loc[(0.85, "all"), "effect"] == 1.0
 
 

@@ -10,10 +10,12 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import mean_effect
+from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 
 COLUMNS = ("factor", "level", "reference", "object", "event", "floor", "ratio")
-UPPER_FLOORS = ("F3", "F5")
+CHANGES, SAME, OPEN = "changes P/NP", "within ±10 %", "open"
+"""What the intervals say of a level: p below 5 % over everything, equivalence, or neither."""
 
 
 def explain(table: pd.DataFrame) -> pd.DataFrame:
@@ -24,8 +26,9 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
     table
         One row per factor, level, object, event, floor (and replicate): factor, level (text or
         number), reference (True for the rows of the reference level, one level per factor), object,
-        event, floor, ratio (a_P over a_NP, NaN where censored), and optionally motion and replicate
-        (such as a number of a perturbed copy).  Replicates are averaged in the logarithm.
+        event, floor, ratio (a_P over a_NP, NaN where censored), and optionally motion, replicate
+        (such as a number of a perturbed copy) and resolution (half-width to which ln ratio is known).
+        Replicates are averaged in the logarithm.
 
     Returns
     -------
@@ -33,8 +36,8 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
         factor, level, floor ("all" or one floor), ratio, ratio_lower, ratio_upper (P/NP at that
         level [-]), effect, effect_lower, effect_upper (ratio over the reference's [-]), p, p_holm
         (within the factor), p_bh (over everything), pairs, events, left_out (pairs without a value
-        on either side), pattern (True where P/NP is above one on the ground floor and below one on
-        the upper floors, the signs that the thesis reports).
+        on either side), p_equivalence (of a change within ±10 %), judgement (`CHANGES` where p_bh is
+        below 5 %, `SAME` where p_equivalence is, else `OPEN`; empty for the reference).
 
     Raises
     ------
@@ -54,11 +57,15 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
             "be a positive number, or empty where a test never overturned."
         )
     work = table.assign(d=np.log(table["ratio"].astype(float)))
+    if "resolution" not in work:
+        work["resolution"] = 0.0
     if "motion" not in work:
         work["motion"] = work["event"].astype(str) + "/" + work["floor"].astype(str)
     parts = [_explain_factor(str(name), rows) for name, rows in work.groupby("factor", sort=True)]
     result = pd.concat(parts, ignore_index=True)
     result["p_bh"] = benjamini_hochberg(result["p"])
+    choices = [result["p_bh"] < 0.05, result["p_equivalence"] < 0.05, result["p_bh"].isna()]
+    result["judgement"] = np.select(choices, [CHANGES, SAME, ""], OPEN)
     return result
 
 
@@ -70,21 +77,17 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
             f"Explanation study: factor {name} has {len(marked)} reference levels; mark exactly one."
         )
     key = ["object", "event", "floor", "motion"]
-    cells = rows.groupby(["level", *key])["d"].mean().reset_index()
+    cells = rows.groupby(["level", *key])[["d", "resolution"]].mean().reset_index()
+    step = cells.groupby(key)["resolution"].max()
     reference = cells[cells["level"] == marked[0]].set_index(key)["d"]
     levels = sorted(cells["level"].unique(), key=lambda level: (level != marked[0], level))
     found: list[dict[str, object]] = []
     for level in levels:
         here = cells[cells["level"] == level].set_index(key)["d"]
-        both = pd.DataFrame({"here": here, "reference": reference})
+        both = pd.DataFrame({"here": here, "reference": reference, "resolution": step})
         known = both.dropna().reset_index()
         if known.empty:
             continue
-        means = known.groupby("floor")["here"].mean()
-        pattern = "GF" in means and all(
-            means[floor] < 0 < means["GF"] for floor in UPPER_FLOORS if floor in means
-        )
-        pattern = pattern and len(means) > 1
         for floor in ("all", *sorted(known["floor"].unique())):
             part = known if floor == "all" else known[known["floor"] == floor]
             total = (
@@ -93,7 +96,10 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
                 else int((both.index.get_level_values("floor") == floor).sum())
             )
             ratio = mean_effect(part.assign(d=part["here"]))
-            effect = mean_effect(part.assign(d=part["here"] - part["reference"]))
+            change = part.assign(
+                d=part["here"] - part["reference"], resolution=2 * part["resolution"]
+            )
+            effect = mean_effect(change)
             found.append(
                 {
                     "factor": name,
@@ -109,7 +115,7 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
                     "pairs": len(part),
                     "events": effect.units,
                     "left_out": total - len(part),
-                    "pattern": pattern,
+                    "p_equivalence": equivalence(effect).p if level != marked[0] else np.nan,
                 }
             )
     result = pd.DataFrame(found)

@@ -75,28 +75,62 @@ def factor_cases(
     InputError
         If a body cannot stand or a restitution would add energy; factor and level are named.
     """
-    make: dict[str, Callable[[Stack, float], tuple[Block, Stack, Restitution, Restitution]]] = {
-        "statue_restitution": _statue_restitution,
-        "interface_restitution": _interface_restitution,
-        "ground_restitution": _ground_restitution,
-        "pedestal_lean_deg": _pedestal_lean,
-        "statue_offset_mm": _statue_offset,
-        "statue_cg_offset_mm": _statue_cg_offset,
-        "pedestal_width_cm": _pedestal_width,
-    }
     cases = []
-    for factor, build in make.items():
+    for factor in DEPARTURES:
         for level in levels.get(factor, ()):
-            try:
-                cases.append(Case(factor, level, object_name, *build(stack, level)))
-            except InputError as error:
-                raise InputError(
-                    f"explanation.{factor}, {level:g}, {object_name}: {error}"
-                ) from error
+            cases.append(departed_case(object_name, stack, {factor: level}))
     return cases
 
 
-Bodies = tuple[Block, Stack, Restitution, Restitution]
+def departed_case(object_name: str, stack: Stack, departures: Mapping[str, float]) -> Case:
+    """Object with and without its pedestal where one or more factors depart from the ideal together.
+
+    Parameters
+    ----------
+    object_name
+        Its name.
+    stack
+        The ideal stack; its statue is the lone object.
+    departures
+        Level by factor, of `DEPARTURES`.
+
+    Raises
+    ------
+    InputError
+        If a body cannot stand or a restitution would add energy; factor and level are named.
+    """
+    setup = Setup(stack.statue, stack)
+    for factor, change in DEPARTURES.items():
+        if factor not in departures:
+            continue
+        level = departures[factor]
+        try:
+            setup = change(setup, level)
+        except InputError as error:
+            raise InputError(f"explanation.{factor}, {level:g}, {object_name}: {error}") from error
+    names = [name for name in DEPARTURES if name in departures]
+    return Case(
+        " + ".join(names),
+        float(departures[names[0]]),
+        object_name,
+        setup.lone,
+        setup.stack,
+        setup.alone,
+        None
+        if setup.ground is None and setup.interface is None
+        else (setup.ground, setup.interface),
+    )
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What stands on the table, and its restitutions: of the lone object, the pedestal, the interface."""
+
+    lone: Block
+    stack: Stack
+    alone: float | None = None
+    ground: float | None = None
+    interface: float | None = None
 
 
 def _restitution(block: Block, factor: float) -> float:
@@ -109,39 +143,53 @@ def _restitution(block: Block, factor: float) -> float:
     return value
 
 
-def _statue_restitution(stack: Stack, factor: float) -> Bodies:
-    value = _restitution(stack.statue, factor)
-    return stack.statue, stack, value, (None, value)
+def _statue_restitution(setup: Setup, factor: float) -> Setup:
+    value = _restitution(setup.lone, factor)
+    return replace(setup, alone=value, interface=value)
 
 
-def _interface_restitution(stack: Stack, factor: float) -> Bodies:
-    return stack.statue, stack, None, (None, _restitution(stack.statue, factor))
+def _interface_restitution(setup: Setup, factor: float) -> Setup:
+    return replace(setup, interface=_restitution(setup.stack.statue, factor))
 
 
-def _ground_restitution(stack: Stack, factor: float) -> Bodies:
-    return stack.statue, stack, None, (_restitution(stack.pedestal, factor), None)
+def _ground_restitution(setup: Setup, factor: float) -> Setup:
+    return replace(setup, ground=_restitution(setup.stack.pedestal, factor))
 
 
-def _pedestal_lean(stack: Stack, degrees: float) -> Bodies:
-    pedestal = replace(stack.pedestal, lean=stack.pedestal.lean + radians(degrees))
-    return stack.statue, replace(stack, pedestal=pedestal), None, None
+def _pedestal_lean(setup: Setup, degrees: float) -> Setup:
+    leaning = replace(setup.stack.pedestal, lean=setup.stack.pedestal.lean + radians(degrees))
+    return replace(setup, stack=replace(setup.stack, pedestal=leaning))
 
 
-def _statue_offset(stack: Stack, millimetres: float) -> Bodies:
-    return stack.statue, replace(stack, offset=stack.offset + millimetres / 1000), None, None
+def _statue_offset(setup: Setup, millimetres: float) -> Setup:
+    offset = setup.stack.offset + millimetres / 1000
+    return replace(setup, stack=replace(setup.stack, offset=offset))
 
 
-def _statue_cg_offset(stack: Stack, millimetres: float) -> Bodies:
-    statue = replace(stack.statue, cg_offset=stack.statue.cg_offset + millimetres / 1000)
-    return statue, replace(stack, statue=statue), None, None
+def _statue_cg_offset(setup: Setup, millimetres: float) -> Setup:
+    statue = replace(setup.lone, cg_offset=setup.lone.cg_offset + millimetres / 1000)
+    return replace(setup, lone=statue, stack=replace(setup.stack, statue=statue))
 
 
-def _pedestal_width(stack: Stack, centimetres: float) -> Bodies:
+def _pedestal_width(setup: Setup, centimetres: float) -> Setup:
     # of the same material and depth; the inertia follows from the shape
+    ideal = setup.stack.pedestal
     width = centimetres / 100
-    mass = stack.pedestal.mass * width / stack.pedestal.width
-    pedestal = replace(stack.pedestal, width=width, mass=mass, inertia=None)
-    return stack.statue, replace(stack, pedestal=pedestal), None, None
+    pedestal = replace(ideal, width=width, mass=ideal.mass * width / ideal.width, inertia=None)
+    return replace(setup, stack=replace(setup.stack, pedestal=pedestal))
+
+
+DEPARTURES: Mapping[str, Callable[[Setup, float], Setup]] = {
+    # shapes before restitutions, which are factors on what the shapes give
+    "pedestal_lean_deg": _pedestal_lean,
+    "statue_offset_mm": _statue_offset,
+    "statue_cg_offset_mm": _statue_cg_offset,
+    "pedestal_width_cm": _pedestal_width,
+    "statue_restitution": _statue_restitution,
+    "interface_restitution": _interface_restitution,
+    "ground_restitution": _ground_restitution,
+}
+"""How each mechanical factor changes what stands on the table, by its name."""
 
 
 def perturbed_cases(
@@ -248,7 +296,8 @@ def case_ratios(
     Returns
     -------
     One row per case and motion: ``factor``, ``level``, ``reference`` (False), ``object``, ``event``,
-    ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``.
+    ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``,
+    ``resolution`` (half-width to which its logarithm is known, a step of the ladder [-]).
     """
     wanted: dict[tuple[Body, Restitution], int] = {}
     for case in cases:
@@ -266,7 +315,8 @@ def case_ratios(
     for case in cases:
         lone, stack = (amplitudes[wanted[key]] for key in _keys(case))
         tables.append(_rows(case, motions, stack, lone))
-    return pd.concat(tables, ignore_index=True)
+    step = float(np.log(ladder_g[1] / ladder_g[0])) if len(ladder_g) > 1 else 0.0
+    return pd.concat(tables, ignore_index=True).assign(resolution=step)
 
 
 def _keys(case: Case) -> Iterator[tuple[Body, Restitution]]:
@@ -282,7 +332,7 @@ def _rows(case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats) ->
             "reference": False,
             "object": case.object,
             "event": [str(one.metadata.get("event") or one.name) for one in motions],
-            "floor": [str(one.metadata.get("floor") or "GF") for one in motions],
+            "floor": [str(one.metadata.get("floor") or "ground") for one in motions],
             "motion": [one.name for one in motions],
             "replicate": case.replicate,
             "p_g": stack,

@@ -6,11 +6,15 @@ from dataclasses import asdict
 import numpy as np
 import pandas as pd
 
+from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Stack
 from rockfrag.stages.protocol import protocol_of
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
+
+SIMULATED_PAIRS = 3
+"""Closest pairs of departures that are simulated together, since adding them up is an approximation."""
 
 
 def run(job: Job[Study]) -> Results:
@@ -23,6 +27,9 @@ def run(job: Job[Study]) -> Results:
     )
     yield "explanation/ratios", ratios
     yield "explanation/effects", effects
+    if _asks_for_an_effect(job.study):
+        inverted = inversion_table(job.study, ratios, job.motions("motions/floors"), job.threads)
+        yield "explanation/inversion", inverted
     levels = effects[["factor", "level"]].drop_duplicates()
     job.log.info(
         "%d ratios at %d levels of %d factors",
@@ -102,6 +109,64 @@ def explanation_tables(
     return ratios, _in_order(explain(ratios))
 
 
+def _asks_for_an_effect(study: Study) -> bool:
+    explanation = study.more.explanation
+    return explanation is not None and bool(explanation.wanted_percent)
+
+
+def inversion_table(
+    study: Study, ratios: pd.DataFrame, motions: Sequence[Motion], threads: int = 1
+) -> pd.DataFrame:
+    """Find what would give the wanted effect, and simulate the closest pairs of departures together.
+
+    Parameters
+    ----------
+    study
+        A study with the key ``explanation.wanted_percent``.
+    ratios
+        As of :func:`explanation_tables`.
+    motions, threads
+        Likewise.
+
+    Returns
+    -------
+    Table of :func:`rockfrag.pedestal.inversion.invert` with ``simulated_ground`` and ``simulated_above``,
+    the ratios when the two departures act together in one simulation, for the closest pairs; the others
+    have none.
+    """
+    from rockfrag.pedestal.inversion import NEUTRAL, invert
+    from rockfrag.pedestal.simulated_explanation import DEPARTURES, case_ratios, departed_case
+
+    settings = study.more.explanation
+    if settings is None or not settings.wanted_percent:
+        raise ValueError("the study asks for no effect")
+    wanted = {name: 1 + percent / 100 for name, percent in settings.wanted_percent.items()}
+    stacks = tested_stacks(study)
+    neutral = dict(NEUTRAL)
+    widths = {stack.pedestal.width for stack in stacks.values()}
+    if len(widths) == 1:
+        neutral["pedestal_width_cm"] = 100 * widths.pop()
+    step = float(np.log1p(study.protocol_step_percent / 100))
+    table = invert(ratios, wanted, study.floors, neutral, step)
+    together = table[table["factor_1"].isin(DEPARTURES) & table["factor_2"].isin(DEPARTURES)]
+    ladder = protocol_of(study).amplitudes()
+    for row in together.index[:SIMULATED_PAIRS]:
+        departures = {
+            str(table.loc[row, f"factor_{k}"]): float(table.loc[row, f"level_{k}"]) for k in (1, 2)
+        }
+        try:
+            cases = [departed_case(name, stack, departures) for name, stack in stacks.items()]
+        except InputError:
+            # two departures, each possible, may leave no body that stands
+            continue
+        found = case_ratios(cases, motions, ladder, threads)
+        ground = found["floor"].map(study.floors).fillna(0) == 0
+        for place, here in (("ground", ground), ("above", ~ground)):
+            mean = np.log(found.loc[here, "ratio"]).groupby(found["event"]).mean().mean()
+            table.loc[row, f"simulated_{place}"] = np.exp(mean)
+    return table
+
+
 def tested_stacks(study: Study) -> dict[str, Stack]:
     """Stack of each object that is tested with and without a pedestal; of several the first."""
     lone = {one.object for one in study.configurations if one.label == "NP"}
@@ -128,7 +193,11 @@ STAGE = Stage(
     wanted=lambda study: study.more.explanation is not None,
     inputs=("motions/floors.parquet",),
     files=lambda study: study.body_files,
-    outputs=("explanation/ratios", "explanation/effects"),
+    outputs=lambda study: (
+        "explanation/ratios",
+        "explanation/effects",
+        *(["explanation/inversion"] if _asks_for_an_effect(study) else []),
+    ),
     settings=("explanation", "bodies", "amplitudes", "protocol", "seed"),
     parallel=True,
 )

@@ -1,7 +1,7 @@
 """What a study may ask for beyond its tests: shaker, measured tests, sensitivity, explanation."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,8 @@ class Explanation:
         Standard deviations of every length and restitution in perturbed copies.
     replicates
         Number of perturbed copies.
+    wanted_percent
+        Effect that is asked for, changes of P/NP on the ``ground`` and ``above`` it [%]; empty where none is.
     """
 
     statue_restitution: tuple[float, ...]
@@ -46,6 +48,7 @@ class Explanation:
     tolerance_percent: float
     tolerance_restitution: float
     replicates: int
+    wanted_percent: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,252 @@
+"""Which departure from the ideal model, or which two together, would give an effect that was asked for.
+
+The question of `rockfrag.pedestal.explanation` turned round.  Every factor was varied alone; between its
+levels its change of ln P/NP is taken as straight, beyond them nothing is said, and changes of two factors
+are added.  For a wanted effect on the ground and above it, the levels are found at which the model comes
+closest, and all levels that the model's own earthquakes do not exclude: Hotelling's T² over events, of
+what lies beyond the ladder's resolution.
+"""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+from rockfrag.pedestal.cluster_means import Array
+
+PLAUSIBLE = 0.05
+"""Levels whose T² has a smaller p value are excluded [-]."""
+
+LEAST_SCATTER = 0.005
+"""Standard deviation of ln P/NP between events that a model is never taken to be surer than [-]."""
+
+REACH = 0.02
+"""Largest difference of ln P/NP at which the wanted effect counts as reached [-]."""
+
+POINTS = 25
+"""Levels tried along each factor."""
+
+NEUTRAL: Mapping[str, float] = {
+    "statue_restitution": 1.0,
+    "interface_restitution": 1.0,
+    "ground_restitution": 1.0,
+    "pedestal_lean_deg": 0.0,
+    "statue_offset_mm": 0.0,
+    "statue_cg_offset_mm": 0.0,
+}
+"""Level of the ideal model, where it is the same for all objects; a pedestal's width is its own."""
+
+BY_INVERSE = ("pedestal_not_counted", "table_not_counted")
+"""Factors that vanish as their level grows without end: they are taken as straight in 1/level."""
+
+COLUMNS = [
+    *("factor_1", "level_1", "level_1_low", "level_1_high"),
+    *("factor_2", "level_2", "level_2_low", "level_2_high"),
+    *("acts_on", "ground", "above", "p", "plausible", "reaches"),
+]
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Changes of ln P/NP by event along one factor, shape (points, events, floors), and its levels."""
+
+    factor: str
+    level: Array
+    change: Array
+
+
+def invert(
+    ratios: pd.DataFrame,
+    wanted: Mapping[str, float],
+    floors: Mapping[str, int],
+    neutral: Mapping[str, float] = NEUTRAL,
+    resolution: float = 0.0,
+) -> pd.DataFrame:
+    """Find the departures, alone and in pairs, that come closest to a wanted effect.
+
+    Parameters
+    ----------
+    ratios
+        As `rockfrag.pedestal.explanation.explain` takes them; levels are text, numbers where they can be
+        varied continuously.
+    wanted
+        Ratio P/NP on the ``ground`` and ``above`` it [-]; either may be missing.
+    floors
+        Level of each floor by its label; level 0 is the ground.
+    neutral
+        Level of the ideal model by factor; of a factor without one only the levels themselves are tried.
+    resolution
+        ln(1 + step) of the ladder [-].
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per factor, acting everywhere, on the ``ground`` alone or ``above`` alone, and per pair of
+        factors, the most plausible first: factor_1, level_1, level_1_low, level_1_high (levels that are
+        not excluded, empty where all are); the same of factor_2 (empty for one factor); acts_on; ground,
+        above (P/NP of the model there); p (of the wanted effect under the model's scatter between
+        events; NaN with too few events); plausible; reaches (both ratios within 2 % of the wanted ones).
+    """
+    places = [name for name in ("ground", "above") if name in wanted]
+    cells = _by_event(ratios, floors, places)
+    ideal = cells.pop(("", ""))
+    goal = np.log([wanted[name] for name in places])
+    lines = _lines(cells, ideal, neutral)
+    start = ideal.to_numpy(dtype=np.float64)
+    found = []
+    for one in lines:
+        for acts_on in ("all floors", *(places if len(places) > 1 else [])):
+            mask = np.array([acts_on in ("all floors", name) for name in places], dtype=float)
+            tried = start + one.change * mask
+            found.append(_row([one], tried, acts_on, goal, places, resolution))
+    for one, two in itertools.combinations(lines, 2):
+        both = one.change[:, None] + two.change[None, :]
+        tried = start + both.reshape(-1, *both.shape[2:])
+        found.append(_row([one, two], tried, "all floors", goal, places, resolution))
+    table = pd.DataFrame(found, columns=[*COLUMNS, "distance"])
+    table = table.sort_values("distance", kind="stable", ignore_index=True)
+    return table.drop(columns="distance")
+
+
+def _by_event(
+    ratios: pd.DataFrame, floors: Mapping[str, int], places: Sequence[str]
+) -> dict[tuple[str, str], pd.DataFrame]:
+    """Mean of ln P/NP, events by places, of each factor and level; the ideal model under empty names."""
+    work = ratios.assign(
+        d=np.log(ratios["ratio"].astype(float)),
+        place=["ground" if floors.get(str(one), 1) == 0 else "above" for one in ratios["floor"]],
+        factor=ratios["factor"].where(~ratios["reference"].astype(bool), ""),
+        level=ratios["level"].astype(str).where(~ratios["reference"].astype(bool), ""),
+    )
+    work = work[work["place"].isin(places) & work["d"].notna()]
+    cells = work.groupby(["factor", "level", "event", "place", "motion"])["d"].mean().reset_index()
+    found: dict[tuple[str, str], pd.DataFrame] = {}
+    for (factor, level), rows in cells.groupby(["factor", "level"], sort=False):
+        wide = rows.pivot_table(index="event", columns="place", values="d", aggfunc="mean")
+        found[str(factor), str(level)] = wide.reindex(columns=list(places)).dropna()
+    return found
+
+
+def _lines(
+    cells: Mapping[tuple[str, str], pd.DataFrame],
+    ideal: pd.DataFrame,
+    neutral: Mapping[str, float],
+) -> list[_Line]:
+    """Changes along each factor whose levels are numbers and share the ideal model's events."""
+    lines = []
+    for name in dict.fromkeys(factor for factor, _ in cells):
+        if name in ("step_percent", "tolerances"):
+            continue
+        known = []
+        for (factor, level), rows in cells.items():
+            if factor == name and set(ideal.index) <= set(rows.index):
+                known.append((float(level), (rows.loc[ideal.index] - ideal).to_numpy()))
+        if not known:
+            continue
+        x = np.array([1.0 / level if name in BY_INVERSE else level for level, _ in known])
+        change = np.array([value for _, value in known])
+        at_rest = 0.0 if name in BY_INVERSE else neutral.get(name)
+        if at_rest is None:
+            lines.append(_Line(name, x, change))
+            continue
+        x, change = np.append(x, at_rest), np.concatenate([change, 0.0 * change[:1]])
+        order = np.argsort(x)
+        grid = np.linspace(x.min(), x.max(), POINTS)
+        flat = change[order].reshape(len(x), -1)
+        between = [np.interp(grid, x[order], column) for column in flat.T]
+        straight = np.column_stack(between).reshape(POINTS, *change.shape[1:])
+        with np.errstate(divide="ignore"):
+            shown = 1.0 / grid if name in BY_INVERSE else grid
+        lines.append(_Line(name, shown, straight))
+    return lines
+
+
+def _row(
+    lines: Sequence[_Line],
+    tried: Array,
+    acts_on: str,
+    goal: Array,
+    places: Sequence[str],
+    resolution: float,
+) -> dict[str, object]:
+    """Closest point of one or two factors, and what is not excluded around it."""
+    p = hotelling(tried, goal, resolution)
+    distance = np.abs(tried.mean(axis=1) - goal).max(axis=1)
+    best = int(distance.argmin())
+    inside = p >= PLAUSIBLE
+    shape = [line.level.size for line in lines]
+    at = np.unravel_index(best, shape)
+    reached = np.unravel_index(np.flatnonzero(inside), shape)
+    row: dict[str, object] = {"acts_on": acts_on, "p": float(p[best]), "distance": distance[best]}
+    for number, line in enumerate(lines, start=1):
+        levels = line.level[reached[number - 1]]
+        row |= {
+            f"factor_{number}": line.factor,
+            f"level_{number}": float(line.level[at[number - 1]]),
+            f"level_{number}_low": float(levels.min()) if levels.size else np.nan,
+            f"level_{number}_high": float(levels.max()) if levels.size else np.nan,
+        }
+    if len(lines) == 1:
+        row |= {"factor_2": "", "level_2": np.nan, "level_2_low": np.nan, "level_2_high": np.nan}
+    mean = tried[best].mean(axis=0)
+    row |= dict(zip(places, np.exp(mean), strict=True))
+    row["plausible"] = bool(inside.any())
+    row["reaches"] = bool(distance[best] <= REACH)
+    return row
+
+
+def hotelling(values: Array, goal: Array, resolution: float) -> Array:
+    """P value of a goal as the mean over events (Hotelling 1931) [-].
+
+    Parameters
+    ----------
+    values
+        Logarithms by event, shape (points, events, places).
+    goal
+        Shape (places,).
+    resolution
+        Half-width to which each is known [-]; a goal nearer than that cannot be told from the mean.
+
+    Returns
+    -------
+    Shape (points,); NaN where there are no more events than places.
+    """
+    points, events, places = values.shape
+    if events <= places:
+        return np.full(points, np.nan)
+    mean = values.mean(axis=1)
+    offset = values - mean[:, None]
+    covariance = np.einsum("pei,pej->pij", offset, offset) / (events - 1)
+    covariance += np.eye(places) * LEAST_SCATTER**2
+    away = np.sign(mean - goal) * np.maximum(np.abs(mean - goal) - resolution, 0.0)
+    inverse = np.linalg.solve(covariance, away[..., None])[..., 0]
+    distance = events * np.einsum("pi,pi->p", away, inverse)
+    scaled = distance * (events - places) / (places * (events - 1))
+    return np.asarray(stats.f.sf(scaled, places, events - places))
+
+
+def inversion_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> str:
+    """Say in a sentence or two what would and what would not give the wanted effect."""
+    asked = " and ".join(
+        f"{100 * (value - 1):+.0f} % {'on the ground' if name == 'ground' else 'above it'}"
+        for name, value in wanted.items()
+    )
+    single = table[(table["factor_2"] == "") & (table["acts_on"] == "all floors")]
+    reach = table[table["reaches"] & (table["acts_on"] == "all floors")]
+    alone = [str(name) for name in single.loc[single["reaches"], "factor_1"]]
+    pairs = [
+        f"{one} with {two}"
+        for one, two in zip(reach["factor_1"], reach["factor_2"], strict=True)
+        if two
+    ]
+    first = (
+        f"No departure alone gives {asked} within the levels tried"
+        if not alone
+        else f"{', '.join(alone)} alone can give {asked}"
+    )
+    second = f"two together can: {'; '.join(pairs[:3])}" if pairs else "nor do any two together"
+    excluded = int((~table["plausible"]).sum())
+    return f"{first}; {second}. {excluded} of {len(table)} mechanisms are excluded by the model's own scatter."
