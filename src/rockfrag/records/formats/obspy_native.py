@@ -1,4 +1,4 @@
-"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, Kinemetrics EVT, GSE, …"""
+"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, Kinemetrics EVT, SLIST, TSPAIR"""
 
 import glob
 import gzip
@@ -31,20 +31,9 @@ from rockfrag.records.parsing.text_file import (
     read_head,
 )
 
-_READ_BY_OBSPY = (
-    "MSEED",
-    "SAC",
-    "KNET",
-    "KINEMETRICS_EVT",
-    "GSE2",
-    "GSE1",
-    "GCF",
-    "REFTEK130",
-    "SEISAN",
-    "SLIST",
-    "TSPAIR",
-)
-"""Formats left to ObsPy. Its others are of other fields; its PICKLE would run what a file says."""
+_READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR")
+"""Formats left to ObsPy. Of its others PICKLE would run what a file says, GSE ends the process on a
+damaged file, and the rest are of other fields."""
 
 _SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})
 """Formats whose ``calib`` turns counts into m/s²."""
