@@ -7,7 +7,20 @@ import pytest
 from obspy.signal.rotate import rotate_ne_rt
 
 from rockfrag.errors import InputError
-from rockfrag.motions import pga, pgv, rotate, rotd, rotd50, rotd100, spectral_acceleration
+from rockfrag.motions import (
+    common_time,
+    fault_normal,
+    pga,
+    pgv,
+    radial,
+    rotate,
+    rotate_to_azimuth,
+    rotd,
+    rotd50,
+    rotd100,
+    spectral_acceleration,
+    stronger_direction,
+)
 from rockfrag.records.motion import Motion
 
 
@@ -65,3 +78,95 @@ def test_components_that_do_not_fit_are_refused(other):
 def test_percentile_beyond_the_hundredth_is_refused():
     with pytest.raises(InputError, match="between 0 and 100"):
         rotd(*pair(5), pga, 101)
+
+
+def components(azimuths=(30.0, 120.0), starts=(None, None)):
+    """A straight motion of azimuth 75° seen by two sensors."""
+    shape = np.sin(np.linspace(0, 20, 400))
+    return [
+        Motion(
+            shape * math.cos(math.radians(75 - azimuth)),
+            0.01,
+            f"c{azimuth:g}",
+            {"component": f"{azimuth:g}", "start_time": start},
+        )
+        for azimuth, start in zip(azimuths, starts, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("azimuths", [(30, 120), (120, 30), (30, 300), (210, 300), (0, 90)])
+def test_an_azimuth_is_reached_from_components_of_any_order_and_sense(azimuths):
+    first, second = components(azimuths)
+    along, across = (rotate_to_azimuth(first, second, a) for a in (75, 165))
+    assert along.pga == pytest.approx(1.0, rel=1e-3)
+    assert across.pga == pytest.approx(0.0, abs=1e-12)
+    assert along.metadata["component"] == "75"
+    np.testing.assert_allclose(
+        rotate_to_azimuth(first, second, azimuths[1]).acceleration, second.acceleration, atol=1e-14
+    )
+
+
+def test_fault_normal_and_radial_are_directions_by_their_definitions():
+    first, second = components()
+    np.testing.assert_allclose(
+        fault_normal(first, second, -15).acceleration,
+        rotate_to_azimuth(first, second, 75).acceleration,
+        atol=1e-14,
+    )
+    np.testing.assert_allclose(
+        radial(first, second, 255).acceleration,
+        rotate_to_azimuth(first, second, 75).acceleration,
+        atol=1e-14,
+    )
+
+
+def test_the_stronger_direction_has_the_largest_peak_of_all():
+    first, second = pair(2)
+    strongest = stronger_direction(first, second)
+    assert strongest.pga == pytest.approx(
+        np.hypot(first.acceleration, second.acceleration).max(), rel=1e-12
+    )
+    assert strongest.pga >= rotd100(first, second, pga)
+
+
+def test_components_that_are_no_pair_are_refused():
+    first, second = components()
+    upright = Motion(second.acceleration, 0.01, "up", {"component": "UP"})
+    unknown = Motion(second.acceleration, 0.01, "x")
+    with pytest.raises(InputError, match="vertical"):
+        rotd100(first, upright, pga)
+    with pytest.raises(InputError, match="one and the same"):
+        rotd100(first, first, pga)
+    with pytest.raises(InputError, match="not at a right angle"):
+        rotate_to_azimuth(first, components((30, 60))[1], 0)
+    with pytest.raises(InputError, match="azimuth is not known"):
+        rotate_to_azimuth(first, unknown, 0)
+
+
+class TestCommonTime:
+    def test_stated_starts_shift_and_lengths_are_cut(self):
+        """Samples that say their own time in seconds after 10:00:00."""
+        early = Motion(np.arange(100) * 0.01 + 1, 0.01, "a", {"start_time": "2014-08-24T10:00:01"})
+        late = Motion(
+            np.arange(80) * 0.01 + 1.3, 0.01, "b", {"start_time": "2014-08-24T10:00:01.3"}
+        )
+        one, other = common_time([early, late])
+        np.testing.assert_allclose(one.acceleration, other.acceleration, atol=1e-12)
+        assert one.acceleration.size == 70
+        assert one.provenance[-1]["left_out_at_beginning_s"] == pytest.approx(0.3)
+
+    def test_other_intervals_and_parts_of_samples_are_interpolated(self):
+        early = Motion(np.arange(100) * 0.01 + 1, 0.01, "a", {"start_time": "2014-08-24T10:00:01"})
+        late = Motion(
+            np.arange(40) * 0.02 + 1.304, 0.02, "b", {"start_time": "2014-08-24T10:00:01.304"}
+        )
+        one, other = common_time([early, late])
+        assert one.dt == other.dt == 0.01
+        np.testing.assert_allclose(one.acceleration, other.acceleration, atol=1e-12)
+
+    def test_components_without_times_begin_together_and_others_may_not_meet(self):
+        first, second = components()
+        assert common_time([first, second]) == [first, second]
+        apart = components(starts=("2014-08-24T10:00:00", "2014-08-24T11:00:00"))
+        with pytest.raises(InputError, match="no time in common"):
+            common_time(apart)

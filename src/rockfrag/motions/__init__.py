@@ -49,7 +49,16 @@ if TYPE_CHECKING:
         sine,
         sine_sweep,
     )
-    from rockfrag.motions.rotation import rotate, rotd, rotd50, rotd100
+    from rockfrag.motions.rotation import (
+        fault_normal,
+        radial,
+        rotate,
+        rotate_to_azimuth,
+        rotd,
+        rotd50,
+        rotd100,
+        stronger_direction,
+    )
     from rockfrag.motions.scaling import (
         compress_time,
         scale,
@@ -66,6 +75,7 @@ if TYPE_CHECKING:
         response_spectrum,
     )
     from rockfrag.motions.synthetic import evolutionary, spectrum_compatible
+    from rockfrag.motions.time_base import common_time
 
 __all__ = [
     "STEPS",
@@ -79,11 +89,13 @@ __all__ = [
     "bracketed_times",
     "cav",
     "check_steps",
+    "common_time",
     "compress_time",
     "cumulative_arias",
     "demean",
     "displacement_baseline",
     "evolutionary",
+    "fault_normal",
     "fourier_amplitude",
     "frequency_ratio",
     "half_sine",
@@ -111,6 +123,7 @@ __all__ = [
     "predominant_period",
     "process",
     "pulse_motion",
+    "radial",
     "rectangular",
     "resample",
     "response_spectrum",
@@ -118,6 +131,7 @@ __all__ = [
     "ricker_symmetric",
     "rocking_measures",
     "rotate",
+    "rotate_to_azimuth",
     "rotd",
     "rotd50",
     "rotd100",
@@ -134,6 +148,7 @@ __all__ = [
     "spectral_velocity",
     "spectrum_compatible",
     "strong_part",
+    "stronger_direction",
     "strongest_pulse",
     "taper",
     "trim",
@@ -142,6 +157,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "time_base": ("common_time",),
     "conditioning": (
         "baseline",
         "demean",
@@ -215,6 +231,10 @@ _HOMES = {
         "rotd",
         "rotd50",
         "rotd100",
+        "fault_normal",
+        "radial",
+        "rotate_to_azimuth",
+        "stronger_direction",
     ),
     "scaling": (
         "compress_time",

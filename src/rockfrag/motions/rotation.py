@@ -2,12 +2,18 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import number
+from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
+
+_RIGHT_ANGLE = 5.0
+"""Degrees by which two components may be off a right angle."""
 
 DIRECTIONS_DEG = range(180)
 """Directions that are looked in [degrees]; the other half of the circle sees the same."""
@@ -107,10 +113,111 @@ def rotd100(first: Motion, second: Motion, measure: Callable[[Motion], float]) -
     return rotd(first, second, measure, 100.0)
 
 
+def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Motion:
+    """Component of a horizontal motion in the direction of an azimuth.
+
+    Parameters
+    ----------
+    first, second
+        Components whose azimuths are known, at about a right angle, in either order and sense; they are
+        brought to common times.
+    azimuth_deg
+        Direction [degrees from north, clockwise].
+
+    Returns
+    -------
+    Motion named after the first, its component the azimuth, its provenance followed by this step.
+
+    Raises
+    ------
+    InputError
+        If an azimuth is not known, the components are not perpendicular, or have no time in common.
+    """
+    wanted = math.radians(number("rotate_to_azimuth", "azimuth_deg", azimuth_deg, "degrees"))
+    angles = [math.radians(azimuth(motion)) for motion in (first, second)]
+    sine = math.sin(angles[1] - angles[0])
+    if abs(sine) < math.cos(math.radians(_RIGHT_ANGLE)):
+        raise InputError(
+            f"components {first.name!r} and {second.name!r} have the azimuths "
+            f"{azimuth(first):g} and {azimuth(second):g}°, which are not at a right angle."
+        )
+    one, other = common_time([first, second])
+    # the motion x has x·e₁ = a₁ and x·e₂ = a₂; its part in the direction wanted follows of both
+    parts = math.sin(angles[1] - wanted) / sine, math.sin(wanted - angles[0]) / sine
+    turned = parts[0] * one.acceleration + parts[1] * other.acceleration
+    moved = one.after(
+        "rotate to azimuth", turned, second=second.name, azimuth_deg=float(azimuth_deg) % 360
+    )
+    facts = {**moved.metadata, "component": f"{float(azimuth_deg) % 360:g}"}
+    facts.pop("azimuth_deg", None)
+    return replace(moved, metadata=facts)
+
+
+def fault_normal(first: Motion, second: Motion, strike_deg: float) -> Motion:
+    """Component at a right angle to a fault of a strike [degrees from north]; see rotate_to_azimuth."""
+    return rotate_to_azimuth(first, second, strike_deg + 90)
+
+
+def radial(first: Motion, second: Motion, back_azimuth_deg: float) -> Motion:
+    """Component away from the source, which lies at the back azimuth; see rotate_to_azimuth."""
+    return rotate_to_azimuth(first, second, back_azimuth_deg + 180)
+
+
+def stronger_direction(first: Motion, second: Motion) -> Motion:
+    """Component in the direction of the largest acceleration of any direction.
+
+    Parameters
+    ----------
+    first, second
+        Perpendicular components; they are brought to common times.
+
+    Raises
+    ------
+    InputError
+        If the components do not fit together.
+    """
+    one, other = common_time([first, second])
+    _check_pair(one, other)
+    at = int(np.argmax(np.hypot(one.acceleration, other.acceleration)))
+    angle = math.degrees(math.atan2(other.acceleration[at], one.acceleration[at]))
+    return rotate(one, other, angle)
+
+
+def azimuth(motion: Motion) -> float:
+    """Azimuth of a component [degrees from north], stated or named by its component.
+
+    Raises
+    ------
+    InputError
+        If it is not known, or the component is a vertical one.
+    """
+    stated = motion.metadata.get("azimuth_deg")
+    name = str(motion.metadata.get("component") or "")
+    found = float(stated) if stated is not None else azimuth_of(name)
+    if found is None:
+        kind = "a vertical one" if is_vertical(name) else f"{name!r}" if name else "not stated"
+        raise InputError(
+            f"motion {motion.name!r}: its component is {kind}, so that its azimuth is not known; give "
+            "metadata['azimuth_deg']."
+        )
+    return found
+
+
 def _check_pair(first: Motion, second: Motion) -> None:
+    """Check that two motions can be the two horizontal components of one record."""
     sizes = first.acceleration.size, second.acceleration.size
-    if first.dt != second.dt or sizes[0] != sizes[1]:
+    if abs(first.dt - second.dt) > 1e-9 * first.dt or sizes[0] != sizes[1]:
         raise InputError(
             f"components {first.name!r} and {second.name!r} have {sizes[0]} and {sizes[1]} samples "
-            f"of {first.dt:g} and {second.dt:g} s; bring them to one sampling and length first."
+            f"of {first.dt:g} and {second.dt:g} s; bring them to one sampling and length first "
+            "(common_time)."
+        )
+    for motion in (first, second):
+        if is_vertical(str(motion.metadata.get("component") or "")):
+            raise InputError(
+                f"motion {motion.name!r} is a vertical component; a pair has two horizontal ones."
+            )
+    if first is second or np.array_equal(first.acceleration, second.acceleration):
+        raise InputError(
+            f"components {first.name!r} and {second.name!r} are one and the same; a pair has two."
         )

@@ -11,10 +11,10 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import COLUMNS
+from rockfrag.records.doubts import doubts
 from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.peer_search import FILE_NAME, PeerRecord, read_search_results
-from rockfrag.records.plausibility import doubts
 from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.records.sources.folder import files_of

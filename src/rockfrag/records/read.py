@@ -120,6 +120,8 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
                 continue
             try:
                 name, channels = _channels(member.path, dt, cut_short)
+                # read before the folder goes, and to know which members are damaged
+                channels = [replace(c, samples=c.samples().copy) for c in channels]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
                 told = type(error)(str(error).replace(str(member.path), f"{file}#{member.name}"))

@@ -18,9 +18,9 @@ from rockfrag.errors import InputError
 from rockfrag.motions.integration import integrate
 from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
 from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
+from rockfrag.records.doubts import doubts
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.text_file import NotAcceleration
-from rockfrag.records.plausibility import doubts
 from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.folder import files_of
 from rockfrag.report.figures.style import (

@@ -9,22 +9,32 @@ from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
 
 def run(job: Job[Study]) -> Results:
     """Yield the motions as read, on the ground and on every floor, and their intensity measures."""
+    from rockfrag.motions.directions import measure_records, motion_of_row
     from rockfrag.motions.measures import measure_motions
     from rockfrag.motions.processing import process
-    from rockfrag.records.catalogue import load_motion
 
     study = job.study
-    folder = study.catalogue_file.parent
-    records = [
-        load_motion({str(key): value for key, value in row.items()}, folder, Path(RECORDS_FOLDER))
+    place = study.catalogue_file.parent, Path(RECORDS_FOLDER)
+    rows = [
+        {str(key): value for key, value in row.items()}
         for row in study.catalogue.to_dict("records")
     ]
+    records = [motion_of_row(row, *place) for row in rows]
     yield "motions/records", records
     ground = [process(one, study.processing) for one in records]
     yield "motions/ground", ground
     floors = [floor for one in ground for floor in _floors(study, one)]
     yield "motions/floors", floors
-    yield "measures", measure_motions(floors)
+    table = measure_motions(floors)
+    pairs = measure_records(rows, *place, study.processing)
+    if len(pairs):
+        # what no direction decides is known of the ground alone
+        grounds = {
+            one.metadata["ground_motion"]: one.name for one in floors if one.metadata["level"] == 0
+        }
+        pairs = pairs.assign(name=pairs["name"].map(grounds)).dropna(subset="name")
+        table = table.merge(pairs, on="name", how="left")
+    yield "measures", table
     job.log.info("%d records, %d motions of floors", len(records), len(floors))
 
 

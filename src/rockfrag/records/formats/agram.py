@@ -84,7 +84,7 @@ def _channel(words: list[str], values: Channel) -> Channel:
             try:
                 start = UTCDateTime(year=year, julday=day, hour=hour, minute=minute)
                 start += float(match[5])
-            except (ValueError, OverflowError):
+            except (ValueError, OverflowError, TypeError):
                 start = None
     event = next((line.strip() for line in words if "EARTHQUAKE" in line.upper()), "")
     return Channel(

@@ -196,7 +196,7 @@ def _start(whole: list[int], numbers: list[float], unknown: float) -> UTCDateTim
     second = 0.0 if numbers[_SECOND] == unknown else numbers[_SECOND]
     try:
         return UTCDateTime(year, month, day, hour, minute) + second
-    except (ValueError, OverflowError):
+    except (ValueError, OverflowError, TypeError):
         return None
 
 

@@ -126,7 +126,7 @@ def _start(whole: list[int]) -> UTCDateTime | None:
         return None
     try:
         start = UTCDateTime(year=year, julday=day, hour=hour, minute=minute)
-    except (ValueError, OverflowError):
+    except (ValueError, OverflowError, TypeError):
         return None
     seconds = 0 if second == missing else second
     return start + seconds + (0 if millisecond == missing else millisecond / 1000)

@@ -157,7 +157,7 @@ def clock_time(
         full += 2000 if full <= _LAST_YEAR_OF_2000S else 1900
     try:
         start = UTCDateTime(full, int(month), int(day), int(hour), int(minute))
-    except (ValueError, OverflowError):
+    except (ValueError, OverflowError, TypeError):
         return None
     return start + float(second) + 3600.0 * behind
 

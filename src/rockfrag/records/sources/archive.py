@@ -166,7 +166,8 @@ def _from_tar(path: str | os.PathLike[str], room: _Room) -> list[Member]:
 
 
 def _hidden(name: str) -> bool:
-    return any(part.startswith(".") or part == "__MACOSX" for part in PurePosixPath(name).parts)
+    parts = [part for part in PurePosixPath(name).parts if part not in (".", "..")]
+    return any(part.startswith(".") or part == "__MACOSX" for part in parts)
 
 
 def _by_number(name: str) -> list[tuple[int, str]]:

@@ -1,0 +1,148 @@
+"""The motion that a row of a catalogue asks for: one component, or a direction of two."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.motions.measures import measure_pair
+from rockfrag.motions.processing import process
+from rockfrag.motions.rotation import (
+    fault_normal,
+    radial,
+    rotate_to_azimuth,
+    stronger_direction,
+)
+from rockfrag.motions.time_base import common_time
+from rockfrag.records.catalogue import load_component, load_motion
+from rockfrag.records.motion import Motion
+
+_DIRECTION = re.compile(
+    r"^(?:(?P<kind>fault-normal|fault-parallel|radial|transverse)\s+)?(?P<angle>-?\d+(?:\.\d*)?)$"
+)
+_TURNS = {"fault-normal": fault_normal, "radial": radial}
+
+
+def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
+    """Read the motion of one row of a catalogue, in the direction that the row asks for.
+
+    The column ``direction`` may have an azimuth (``45``), ``fault-normal`` or ``fault-parallel`` with
+    the strike, ``radial`` or ``transverse`` with the azimuth from the station to the source, or
+    ``stronger``: the direction of the largest acceleration. Where it is empty the motion is the
+    component of ``file`` itself.
+
+    Parameters
+    ----------
+    row
+        Cells by column, as :func:`rockfrag.records.catalogue.read_catalogue` gives them.
+    folder
+        Folder of the catalogue.
+    records
+        Folder of fetched records.
+
+    Raises
+    ------
+    InputError
+        If a record is wrong, or the direction cannot be read or reached.
+    """
+    motion = load_motion(row, folder, records)
+    direction = str(row.get("direction") or "")
+    if not direction:
+        return motion
+    second = load_component(row, row["second"], folder, records)
+    factor = row.get("scale_factor", math.nan)
+    if not math.isnan(factor) and factor != 1:
+        second = second.after("scale", second.acceleration * factor, factor=factor)
+    return replace(turned(motion, second, direction), name=motion.name)
+
+
+def turned(first: Motion, second: Motion, direction: str) -> Motion:
+    """Return two components in a direction of a catalogue; see :func:`motion_of_row`.
+
+    Raises
+    ------
+    InputError
+        If the direction cannot be read, or the components not be turned into it.
+    """
+    if direction == "stronger":
+        return stronger_direction(first, second)
+    match = _DIRECTION.match(direction)
+    if match is None:
+        raise InputError(
+            f"direction {direction!r} is none of an azimuth, 'fault-normal STRIKE', 'fault-parallel "
+            "STRIKE', 'radial BACK-AZIMUTH', 'transverse BACK-AZIMUTH' and 'stronger'."
+        )
+    angle, kind = float(match["angle"]), match["kind"]
+    if kind in _TURNS:
+        return _TURNS[kind](first, second, angle)
+    return rotate_to_azimuth(first, second, angle - 90 if kind == "transverse" else angle)
+
+
+def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[str, Motion]:
+    """Read the components that a row names, at common times: ``first``, ``second``, ``vertical``.
+
+    Those that the row does not name are not there; none is scaled.
+
+    Raises
+    ------
+    InputError
+        If a record is wrong, or the components have no time in common.
+    """
+    named = {"first": row["file"], "second": row.get("second"), "vertical": row.get("vertical")}
+    files = {role: str(file) for role, file in named.items() if file}
+    motions = [load_component(row, file, folder, records) for file in files.values()]
+    return dict(zip(files, common_time(motions), strict=True))
+
+
+def measure_records(
+    rows: Sequence[dict[str, Any]],
+    folder: Path,
+    records: Path,
+    processing: Sequence[Mapping[str, Any]],
+) -> pd.DataFrame:
+    """Measure the records of which both horizontal components are known, whatever their directions.
+
+    Parameters
+    ----------
+    rows
+        Rows of a catalogue; those without ``second`` are passed over.
+    folder
+        Folder of the catalogue.
+    records
+        Folder of fetched records.
+    processing
+        Steps that both components go through first, as in :func:`rockfrag.motions.process`.
+
+    Returns
+    -------
+    DataFrame
+        ``name`` of the row, then the measures of :func:`rockfrag.motions.measure_pair`: RotD50 and
+        RotD100 of PGA, PGV and spectral accelerations. No column where no row names a second component.
+
+    Raises
+    ------
+    InputError
+        If a record is wrong, or two components are no pair.
+    """
+    known: dict[frozenset[str], dict[str, float]] = {}
+    table: list[dict[str, Any]] = []
+    for row in rows:
+        if not row.get("second"):
+            continue
+        pair = frozenset((row["file"], row["second"]))
+        if pair not in known:
+            components = components_of_row({**row, "vertical": ""}, folder, records)
+            factor = row.get("scale_factor", math.nan)
+            scale = 1.0 if math.isnan(factor) else factor
+            first, second = (
+                process(one.after("scale", one.acceleration * scale, factor=scale), processing)
+                for one in components.values()
+            )
+            known[pair] = measure_pair(first, second)
+        table.append({"name": row["name"], **known[pair]})
+    return pd.DataFrame(table)

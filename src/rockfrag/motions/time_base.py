@@ -1,0 +1,73 @@
+"""Components of one record brought to the same times, so that they can be turned and added."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from obspy import UTCDateTime
+
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
+
+_WHOLE = 1e-3
+"""Share of a sampling interval within which a shift counts as one of whole samples."""
+
+
+def common_time(motions: Sequence[Motion]) -> list[Motion]:
+    """Return motions at the same times: those that all of them have, at the shortest interval.
+
+    Where all state the time of their first sample they are shifted by it, else they are taken to begin
+    together. Samples between those of a motion are on the straight line between its neighbours.
+
+    Parameters
+    ----------
+    motions
+        Components of one record.
+
+    Returns
+    -------
+    list of Motion
+        Of one length and interval; the provenance of each says what was left out at its beginning.
+
+    Raises
+    ------
+    InputError
+        If they have no two samples of time in common.
+    """
+    starts = _starts(motions)
+    dt = min(motion.dt for motion in motions)
+    first = max(starts)
+    last = min(s + (m.acceleration.size - 1) * m.dt for s, m in zip(starts, motions, strict=True))
+    count = int(np.floor((last - first) / dt + _WHOLE)) + 1
+    names = ", ".join(repr(motion.name) for motion in motions)
+    if count < 2:
+        raise InputError(
+            f"{names}: these components have no time in common; are they of one record?"
+        )
+    return [
+        _at(motion, first - start, dt, count) for start, motion in zip(starts, motions, strict=True)
+    ]
+
+
+def _starts(motions: Sequence[Motion]) -> list[float]:
+    """Return the times of the first samples [s] after the earliest; zeros where one is not stated."""
+    stated = [motion.metadata.get("start_time") for motion in motions]
+    if not all(stated):
+        return [0.0] * len(motions)
+    times = [UTCDateTime(str(time)) for time in stated]
+    earliest = min(times)
+    return [float(time - earliest) for time in times]
+
+
+def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
+    """Return ``count`` samples from ``begin`` seconds after the first, ``dt`` seconds apart."""
+    shift = begin / motion.dt
+    same = abs(dt - motion.dt) <= 1e-9 * dt and abs(shift - round(shift)) < _WHOLE
+    if same:
+        samples = motion.acceleration[round(shift) : round(shift) + count]
+    else:
+        samples = np.interp(begin + np.arange(count) * dt, motion.time, motion.acceleration)
+    if same and round(shift) == 0 and samples.size == motion.acceleration.size:
+        return motion
+    return motion.after(
+        "common time", samples, dt, left_out_at_beginning_s=begin, interpolated=not same
+    )

@@ -1,0 +1,127 @@
+"""A folder of records, or a download, becomes a study in two commands: a catalogue, and the run."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import yaml
+
+from rockfrag.cli import main
+from rockfrag.guests import study_stages
+from rockfrag.stages.running import run_stage
+from rockfrag.study.loading import load_any
+
+from .conftest import CONFIGURATIONS, SPECIMENS, study_content, write_record
+
+
+def peer_download(folder: Path, count: int) -> Path:
+    """Make a download of PEER's database, as the tests of the records do."""
+    path = Path(__file__).resolve().parents[1] / "records" / "built_records.py"
+    spec = importlib.util.spec_from_file_location("built_records", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["built_records"] = module
+    spec.loader.exec_module(module)
+    return module.peer_download(folder, count)
+
+
+def far_field_set(folder: Path) -> Path:
+    """22 pairs named as those of FEMA P-695: ``120111.txt`` and ``120112.txt`` are one record.
+
+    One pair has no time column, another one whose steps are rounded.
+    """
+    folder.mkdir()
+    for pair in range(22):
+        for component in (1, 2):
+            path = folder / f"12{pair:02d}1{component}.txt"
+            write_record(path, seed=2 * pair + component)
+            rows = [line.split() for line in path.read_text().splitlines()]
+            if pair == 7:
+                path.write_text("".join(f"{value}\n" for _, value in rows))
+            if pair == 9:
+                lines = (f"{i * 0.003:.3f} {value}\n" for i, (_, value) in enumerate(rows))
+                path.write_text("".join(lines))
+    return folder
+
+
+@pytest.fixture
+def study_file(tmp_path: Path) -> Path:
+    (tmp_path / "specimens.csv").write_text(SPECIMENS)
+    (tmp_path / "configurations.csv").write_text(CONFIGURATIONS)
+    path = tmp_path / "study.yaml"
+    path.write_text(yaml.safe_dump(study_content(), sort_keys=False))
+    return path
+
+
+def run_motions(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> pd.DataFrame:
+    """Run the stage of the motions as ``make run`` does, and return its table of measures."""
+    monkeypatch.chdir(study_file.parent)
+    study = load_any(study_file.name)
+    run_stage("motions", study_stages(study), study, 1, "log.txt")
+    return pd.read_csv("results/tiny/measures.csv")
+
+
+def test_44_text_files_become_a_study(tmp_path, study_file, monkeypatch, capsys):
+    folder = far_field_set(tmp_path / "records")
+    catalogue = str(tmp_path / "motions.csv")
+    assert (
+        main(["catalogue", str(folder), "--unit", "g", "--dt", "0.01", "--output", catalogue]) == 0
+    )
+    table = pd.read_csv(catalogue, dtype=str, keep_default_na=False)
+    assert len(table) == 44
+    assert (table["second"] != "").all()
+    assert table.groupby("event").size().tolist() == [2] * 22
+    assert sorted(table["dt"][table["dt"] != ""]) == ["0.01"] * 4
+    assert "its earthquake is not stated" in capsys.readouterr().err
+    measures = run_motions(study_file, monkeypatch)
+    assert len(measures) == 44
+    assert (measures["rotd100_pga_g"] >= measures["pga_g"] * (1 - 1e-3)).all()
+    assert (measures["rotd50_pga_g"] <= measures["rotd100_pga_g"]).all()
+    # both components of a record have the measures that no direction decides
+    assert measures.groupby("event")["rotd50_pga_g"].nunique().eq(1).all()
+
+
+def test_a_download_of_20_pairs_becomes_a_study(tmp_path, study_file, monkeypatch):
+    folder = peer_download(tmp_path / "PEERNGARecords_Unscaled", 20)
+    catalogue = str(tmp_path / "motions.csv")
+    assert main(["catalogue", str(folder), "--output", catalogue]) == 0
+    table = pd.read_csv(catalogue, dtype=str, keep_default_na=False)
+    assert len(table) == 40
+    first = table.iloc[2]
+    assert first["name"] == "RSN701_LOMAP_S01000"
+    assert first["second"] == "PEERNGARecords_Unscaled/RSN701_LOMAP_S01090.AT2"
+    assert first["vertical"] == "PEERNGARecords_Unscaled/RSN701_LOMAP_S01-UP.AT2"
+    assert (first["event"], first["station"]) == ("Loma Prieta 1989", "Station 1")
+    assert (first["magnitude"], first["distance_km"]) == ("6.93", "5.0")
+    assert first["scale_factor"] == "1.1"
+    assert (table["vertical"] == "").sum() == 10
+    measures = run_motions(study_file, monkeypatch)
+    assert len(measures) == 40
+    assert measures["rotd50_sa_0_3s_g"].notna().all()
+
+
+def test_a_row_may_ask_for_a_direction_of_both_components(tmp_path, study_file, monkeypatch):
+    folder = peer_download(tmp_path / "download", 2)
+    catalogue = tmp_path / "motions.csv"
+    main(["catalogue", str(folder), "--output", str(catalogue)])
+    table = pd.read_csv(catalogue, dtype=str, keep_default_na=False)
+    table = table.iloc[[0, 0, 0]].assign(name=["a", "b", "c"])
+    table["direction"] = ["stronger", "90", "fault-normal 0"]
+    table.to_csv(catalogue, index=False)
+    measures = run_motions(study_file, monkeypatch).set_index("name")
+    assert measures.loc["a_ground", "pga_g"] >= measures.loc["a_ground", "rotd100_pga_g"] * (
+        1 - 1e-9
+    )
+    assert measures.loc["b_ground", "pga_g"] == pytest.approx(measures.loc["c_ground", "pga_g"])
+
+
+@pytest.mark.slow
+def test_both_commands_end_in_a_report(tmp_path, study_file):
+    from .test_run import snakemake
+
+    folder = peer_download(tmp_path / "download", 20)
+    main(["catalogue", str(folder), "--output", str(tmp_path / "motions.csv")])
+    done = snakemake(tmp_path, "--cores", "2")
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert (tmp_path / "results/tiny/report.html").is_file()
