@@ -104,16 +104,6 @@ class Results:
         """Names of the objects tested, in the study's order."""
         return list(dict.fromkeys(one.object for one in self.study.configurations))
 
-    def file_names(self, start: str) -> dict[str, str]:
-        """A file name for each object that starts with ``start``; no two are the same."""
-        names: dict[str, str] = {}
-        for number, name in enumerate(self.objects, start=1):
-            slug = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in name)
-            file = f"{start}_{slug[:40]}"
-            taken = file.lower() in {known.lower() for known in names.values()}
-            names[name] = f"{file}-{number}" if taken or len(slug) > 40 else file
-        return names
-
 
 def _always(_: Study) -> bool:
     return True

@@ -4,6 +4,7 @@ from functools import partial
 
 import pandas as pd
 
+from rockfrag.files import file_name
 from rockfrag.report.figures.sweep import MOST_ROWS, verdict_map
 from rockfrag.report.findings import amplitudes_found, objects_compared, windows_found
 from rockfrag.report.page import Column, table_html
@@ -58,7 +59,6 @@ def _wide(tests: pd.DataFrame) -> pd.DataFrame:
 
 def _maps(results: Results) -> list[FigureSpec]:
     verdicts = results.verdicts
-    files = results.file_names("verdicts")
     specs = []
     for name in results.objects:
         own = verdicts[verdicts["object"] == name]
@@ -71,7 +71,7 @@ def _maps(results: Results) -> list[FigureSpec]:
             caption += f" The first {MOST_ROWS} of {motions} motions."
         alt = f"Map of the amplitudes that overturn {name}; it overturns in {fallen}."
         draw = partial(verdict_map, own, configurations)
-        specs.append(FigureSpec(files[name], alt, caption, draw))
+        specs.append(FigureSpec(f"verdicts_{file_name(name)}", alt, caption, draw))
     return specs
 
 

@@ -5,6 +5,7 @@ from functools import partial
 import pandas as pd
 from markupsafe import Markup
 
+from rockfrag.files import file_name
 from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
@@ -42,7 +43,6 @@ def _ordered(results: Results) -> pd.DataFrame:
 def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
     bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
     measure = str(results.table("fragility")["im"].iloc[0])
-    files = results.file_names("fragility")
     specs = []
     for name in results.objects:
         own = [one.name for one in results.study.configurations if one.object == name]
@@ -64,7 +64,7 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
         )
         specs.append(
             FigureSpec(
-                files[name],
+                f"fragility_{file_name(name)}",
                 alt,
                 caption,
                 partial(

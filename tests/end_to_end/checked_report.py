@@ -1,0 +1,145 @@
+"""What any report must be: about its own study, whole, and without a number that says nothing."""
+
+import math
+import re
+from collections.abc import Iterable
+from html.parser import HTMLParser
+from pathlib import Path
+
+from rockfrag.files import file_name
+
+GUEST = re.compile(
+    r"thesis|towers?\b|\bT[123]\b|\bGF\b|\bF[35]\b|\bC\d\d?\b|Tables? [34]\.\d|figures? [34]\.\d"
+    r"|counterpart|statements? (?:are|is) tested|contradict",
+    re.IGNORECASE,
+)
+NO_NUMBER = re.compile(
+    r"\b(?:nan|inf|infinity|none|null|NaT)\b|<NA>|\bTrue\b|\bFalse\b|mathdefault"
+)
+INTERVAL = re.compile(r"(?:([−\d.]+) )?\[([−\d.]+|open), ([−\d.]+|open)\]")
+NOUNS = "record|test|motion|event|earthquake|pair|floor|object|configuration|sweep|departure|building|row"
+PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
+SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
+VOID = {"meta", "link", "br", "img", "input", "hr"}
+
+
+class Page(HTMLParser):
+    """Texts of a page and of its drawings, its tables cell by cell, and whether its tags close."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.words: list[str] = []
+        self.drawings: list[str] = []
+        self.labels: list[str] = []
+        self.tables: list[list[list[str]]] = []
+        self.open: list[str] = []
+        self.feed(text)
+        self.close()
+        assert not self.open, f"tags are left open: {self.open}"
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag in VOID:
+            return
+        self.open.append(tag)
+        about = dict(attrs)
+        if tag == "svg":
+            self.labels.append(about.get("aria-label") or "")
+        elif tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Elements of drawings close themselves."""
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open and self.open[-1] == tag, f"</{tag}> closes {self.open[-1:]}"
+        self.open.pop()
+
+    def handle_data(self, data: str) -> None:
+        text = " ".join(data.split())
+        if not text or "style" in self.open:
+            return
+        (self.drawings if "svg" in self.open else self.words).append(text)
+        if self.open[-1:] and {"td", "th"} & set(self.open):
+            self.tables[-1][-1][-1] += text
+
+
+def check_report(results: Path, names: Iterable[str] = (), guest: bool = False) -> Page:
+    """Assert that a report is fit to be shown, and return what is on it.
+
+    Parameters
+    ----------
+    results
+        Folder of the study's results.
+    names
+        Names that the user has given, which may be any words.
+    guest
+        Whether the study asked to be compared with the thesis.
+    """
+    text = (results / "report.html").read_text(encoding="utf-8")
+    page = Page(text)
+    said = [_without(one, names) for one in (*page.words, *page.drawings, *page.labels)]
+    whole = " ".join(said)
+    for pattern in (NO_NUMBER, PLURALS, SINGULARS, *(() if guest else (GUEST,))):
+        found = pattern.search(whole)
+        assert found is None, (
+            f"“{found[0]}” in “…{whole[max(0, found.start() - 90) : found.end() + 60]}…”"
+        )
+    _check_intervals(whole)
+    _check_tables(page)
+    _check_figures(results, page)
+    sources = re.findall(r'(?:src|href)="([^"]*)"', text)
+    assert all(source.startswith(("data:", "#")) for source in sources)
+    anchors = set(re.findall(r' id="([^"]*)"', text))
+    assert {source[1:] for source in sources if source.startswith("#")} <= anchors
+    if not guest:
+        strange = [
+            path.name for path in results.rglob("*") if GUEST.search(_without(path.stem, names))
+        ]
+        assert not strange, f"files of the guest: {strange}"
+    return page
+
+
+def _without(text: str, names: Iterable[str]) -> str:
+    """The text with all names, and what they are in names of files, replaced by a sign."""
+    for name in names:
+        for form in (name, file_name(name)):
+            text = re.sub(rf"(?<!\w){re.escape(form)}(?!\w)", "¤", text)
+    return text
+
+
+def _number(text: str) -> float:
+    return math.nan if text == "open" else float(text.replace("−", "-"))
+
+
+def _check_intervals(text: str) -> None:
+    for found in INTERVAL.finditer(text):
+        value, lower, upper = (_number(one) if one else math.nan for one in found.groups())
+        assert not lower >= upper, f"an interval without width: {found[0]}"
+        assert not value < lower and not value > upper, (
+            f"an estimate outside its limits: {found[0]}"
+        )
+
+
+def _check_tables(page: Page) -> None:
+    for head, *rows in page.tables:
+        assert rows, f"an empty table: {head}"
+        for row in rows:
+            assert len(row) == len(head), f"a row of {len(row)} cells under {head}"
+        for number, title in enumerate(head):
+            cells = [row[number] for row in rows]
+            assert all(cells), f"an empty cell under {title}"
+            assert "None" not in cells, f"a missing value is printed under {title}"
+            if re.match(r"p\b", title):
+                assert "0.000" not in cells, f"a p value of zero under {title}"
+
+
+def _check_figures(results: Path, page: Page) -> None:
+    drawn = sorted(path.stem for path in (results / "figures").glob("*.svg"))
+    assert drawn == sorted(path.stem for path in (results / "figures").glob("*.png"))
+    assert len(page.labels) == len(drawn), f"{len(page.labels)} figures on the page of {drawn}"
+    assert all(len(label) > 20 for label in page.labels), "a figure without words for it"
+    assert all(path.stat().st_size > 500 for path in (results / "figures").iterdir())
