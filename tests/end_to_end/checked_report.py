@@ -13,9 +13,7 @@ GUEST = re.compile(
     r"|counterpart|statements? (?:are|is) tested|contradict",
     re.IGNORECASE,
 )
-NO_NUMBER = re.compile(
-    r"\b(?:nan|inf|infinity|none|null|NaT)\b|<NA>|\bTrue\b|\bFalse\b|mathdefault"
-)
+NO_NUMBER = re.compile(r"\b(?:nan|NaN|NaT|inf|infinity|null|True|False)\b|<NA>|mathdefault|\(s\)")
 INTERVAL = re.compile(r"(?:([−\d.]+) )?\[([−\d.]+|open), ([−\d.]+|open)\]")
 NOUNS = "record|test|motion|event|earthquake|pair|floor|object|configuration|sweep|departure|building|row"
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
@@ -82,7 +80,7 @@ def check_report(results: Path, names: Iterable[str] = (), guest: bool = False) 
     text = (results / "report.html").read_text(encoding="utf-8")
     page = Page(text)
     said = [_without(one, names) for one in (*page.words, *page.drawings, *page.labels)]
-    whole = " ".join(said)
+    whole = " · ".join(said)
     for pattern in (NO_NUMBER, PLURALS, SINGULARS, *(() if guest else (GUEST,))):
         found = pattern.search(whole)
         assert found is None, (

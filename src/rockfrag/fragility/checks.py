@@ -139,7 +139,8 @@ def _checks(
         )
     if fit.n_motions < FEWEST_MOTIONS and np.isfinite(fit.theta):
         notes.append(
-            f"The curve rests on {fit.n_motions} motions only; it describes little beyond them."
+            f"The curve rests on {fit.n_motions} motion{'s' if fit.n_motions > 1 else ''} only; it "
+            "describes little beyond."
         )
     name, influence = _influence(interval, groups)
     return Checks(p_fit, test, residual, name, influence, *points, tuple(notes))

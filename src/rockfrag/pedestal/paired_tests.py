@@ -62,7 +62,7 @@ class Pairs:
                 )
             )
             notes.append(
-                f"{len(bounded)} pair(s) enter the means with the bound of P/NP, because one of the two "
+                f"{_counted(len(bounded), 'pair')} in the means with the bound of P/NP, because one of the two "
                 f"tests never overturned, or did so at its first step ({names}): the "
                 "true means lie further on that side; the interval likelihood takes them as bounds"
             )
@@ -72,15 +72,21 @@ class Pairs:
         if len(lost):
             names = ", ".join("/".join(row) for row in lost[["object", "motion"]].to_numpy())
             notes.append(
-                f"{len(lost)} pair(s) left out because both tests are unfinished ({names})"
+                f"{_counted(len(lost), 'pair')} left out because both tests are unfinished ({names})"
             )
         if len(self.unpaired):
             names = ", ".join(
                 f"{row.object}/{row.motion} without {row.missing}"
                 for row in self.unpaired.itertuples()
             )
-            notes.append(f"{len(self.unpaired)} test(s) have no partner and are left out ({names})")
+            notes.append(
+                f"{_counted(len(self.unpaired), 'test')} without a partner left out ({names})"
+            )
         return notes
+
+
+def _counted(n: int, noun: str) -> str:
+    return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
 
 
 def is_balanced(table: pd.DataFrame) -> bool:

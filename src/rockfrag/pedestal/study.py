@@ -255,6 +255,12 @@ def _mixed_fits(table: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
         except InputError as error:
             notes.append(str(error))
             continue
+        except np.linalg.LinAlgError:
+            notes.append(
+                f"Mixed model {formula}: variances of events, motions and pairs cannot be told apart "
+                "in these pairs; it is left out."
+            )
+            continue
         frames.append(
             fit.coefficients.assign(
                 formula=formula,
