@@ -60,6 +60,7 @@ def test_a_study_runs_from_records_to_report_and_then_has_nothing_to_do(study_fo
     report = (results / "report.html").read_text()
     assert 'src="http' not in report
     assert "Simulated, not measured" in report
+    assert "thesis" not in report
     assert {path.name for path in study_folder.iterdir() if path.is_dir()} <= {
         ".snakemake",
         "results",

@@ -1,0 +1,24 @@
+"""The workflow writes what the stages write, to the byte, and ends well."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+from .checked_report import check_report
+from .studies import run, write
+from .test_foreign_studies import STUDIES
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_one_object_under_one_record_goes_through_the_workflow(tmp_path: Path):
+    study = STUDIES["one marble figure, one record"]
+    path = write(study, tmp_path / "by the workflow")
+    command = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+    command += ["--directory", str(path.parent), "--configfile", str(path), "--cores", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = path.parent / "results" / "own"
+    check_report(results, study.names)
+    alone = run(study, tmp_path / "by hand")
+    assert (results / "report.html").read_bytes() == (alone / "report.html").read_bytes()
