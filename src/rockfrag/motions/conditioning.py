@@ -28,6 +28,42 @@ def demean(motion: Motion) -> Motion:
     return motion.after("demean", motion.acceleration - mean, removed_m_s2=mean)
 
 
+def remove_median(motion: Motion) -> Motion:
+    """Subtract the median of the acceleration: the zero line of an instrument, whatever the shaking."""
+    median = float(np.median(motion.acceleration))
+    return motion.after("remove_median", motion.acceleration - median, removed_m_s2=median)
+
+
+def despike(motion: Motion, times: float = 30.0) -> Motion:
+    """Replace samples that stand out from their neighbours by the median of their neighbourhood.
+
+    A spike is a sample that differs from the running median of five samples by more than ``times`` the
+    standard deviation of such differences, estimated by the size that 68.27 % of them do not exceed
+    (Hampel's identifier, Davies and Gather, 1993, J. Am. Stat. Assoc. 88: 782-792, with a quantile that
+    coarse digits do not turn into zero).  Where most samples repeat each other nothing is replaced.
+
+    Parameters
+    ----------
+    times
+        How far a sample must stand out [standard deviations].
+
+    Raises
+    ------
+    InputError
+        If ``times`` is not above zero or the motion has fewer than five samples.
+    """
+    times = positive("step despike", "times", times, "standard deviations")
+    _enough_samples("despike", motion, 5)
+    from scipy.ndimage import median_filter
+
+    smooth = median_filter(motion.acceleration, size=5, mode="nearest")
+    difference = np.abs(motion.acceleration - smooth)
+    scale = float(np.quantile(difference, 0.6827))
+    spikes = difference > times * scale if scale > 0 else np.zeros(difference.size, dtype=bool)
+    cleaned = np.where(spikes, smooth, motion.acceleration)
+    return motion.after("despike", cleaned, times=times, replaced=int(spikes.sum()))
+
+
 def baseline(motion: Motion, order: int = 1) -> Motion:
     """Subtract the polynomial in time that fits the acceleration best (least squares).
 

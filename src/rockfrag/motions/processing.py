@@ -14,6 +14,8 @@ STEPS: Mapping[str, Callable[..., Motion]] = MappingProxyType(
         step.__name__: step
         for step in (
             conditioning.demean,
+            conditioning.remove_median,
+            conditioning.despike,
             conditioning.baseline,
             conditioning.displacement_baseline,
             conditioning.taper,

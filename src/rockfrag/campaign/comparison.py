@@ -1,0 +1,175 @@
+"""Simulation against measurement as a referee wants it: shares with intervals, both errors, rivals, regions."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import stats
+
+from rockfrag.campaign.validation import Bools, Floats, Validated, clustered_error
+from rockfrag.fragility.batch_glm import fit_batch
+
+NEAR_CRITICAL = (0.1, 0.9)
+"""A test is near-critical if plausible trials disagree: this share of votes or more says each verdict."""
+
+
+def agreement_row(
+    name: str, verdicts: Bools, measured: Bools, groups: NDArray[np.int64], level: float
+) -> dict[str, object]:
+    """Share of right verdicts with an interval over motions, and both kinds of error.
+
+    Parameters
+    ----------
+    name
+        Who gave the verdicts.
+    verdicts
+        Shape (repeats, tests) or (tests,); repeats are divisions into folds and are averaged.
+    measured, groups
+        What the laboratory saw, and the group of each test.
+    level
+        Of the interval: Student's t over the groups.
+    """
+    each = np.atleast_2d(verdicts)
+    right = (each == measured).mean(axis=0)
+    error = clustered_error(right, groups)
+    width = stats.t.ppf(0.5 + level / 2, len(np.unique(groups)) - 1) * error
+    share = float(right.mean())
+    return {
+        "who": name,
+        "right": share,
+        "lower": max(0.0, share - width),
+        "upper": min(1.0, share + width),
+        "false_alarms": float((each & ~measured).sum(axis=1).mean()),
+        "missed": float((~each & measured).sum(axis=1).mean()),
+        "tests": len(measured),
+    }
+
+
+def paired_row(
+    ours: Bools, theirs: Bools, measured: Bools, groups: NDArray[np.int64], level: float, seed: int
+) -> dict[str, float]:
+    """How many more tests are right than by a rival, on the same tests.
+
+    Returns
+    -------
+    ``better`` (difference of the shares of right verdicts) with ``better_lower`` and ``better_upper`` (Student's
+    t over the groups) and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's test for
+    tests that are not independent).
+    """
+    difference = (np.atleast_2d(ours) == measured).mean(axis=0) - (
+        np.atleast_2d(theirs) == measured
+    ).mean(axis=0)
+    sums = np.bincount(groups, difference)
+    width = stats.t.ppf(0.5 + level / 2, len(sums) - 1) * clustered_error(difference, groups)
+    found = stats.permutation_test(
+        (sums,), np.sum, permutation_type="samples", n_resamples=9999, rng=np.random.default_rng(seed)
+    )
+    mean = float(difference.mean())
+    return {
+        "better": mean,
+        "better_lower": mean - width,
+        "better_upper": mean + width,
+        "p": float(found.pvalue),
+    }
+
+
+def fragility_beside(
+    measure: Floats,
+    measured: Bools,
+    simulated: Mapping[str, Bools],
+    groups: NDArray[np.int64],
+    *,
+    level: float,
+    replicates: int,
+    seed: int,
+) -> pd.DataFrame:
+    """Lognormal fragility of the measured and of simulated verdicts, with their ratio.
+
+    Parameters
+    ----------
+    measure
+        Intensity measure of each test.
+    simulated
+        Verdicts by name, shape (tests,) each.
+    groups
+        Motions; the bootstrap draws them whole.
+    level, replicates, seed
+        Of the intervals.
+
+    Returns
+    -------
+    A row per set of verdicts: ``who``, ``theta`` and ``beta`` with limits, and, for simulated ones,
+    ``theta_ratio`` and ``beta_ratio`` to the measured curve with limits.
+    """
+    rng = np.random.default_rng(seed)
+    count = int(groups.max()) + 1
+    draws = rng.integers(0, count, (replicates, count))
+    weights = np.stack([np.bincount(draw, minlength=count)[groups] for draw in draws]).astype(np.float64)
+    weights = np.vstack([np.ones((1, len(measure))), weights])
+    curves = {
+        name: _curves(measure, verdicts, weights) for name, verdicts in {"measured": measured, **simulated}.items()
+    }
+    tails = [(1 - level) / 2, (1 + level) / 2]
+    rows = []
+    for name, curve in curves.items():
+        row: dict[str, object] = {"who": name}
+        for i, parameter in enumerate(("theta", "beta")):
+            row[parameter] = curve[0, i]
+            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = np.nanquantile(curve[1:, i], tails)
+            if name != "measured":
+                ratio = curve[:, i] / curves["measured"][:, i]
+                row[f"{parameter}_ratio"] = ratio[0]
+                limits = np.nanquantile(ratio[1:], tails)
+                row[f"{parameter}_ratio_lower"], row[f"{parameter}_ratio_upper"] = limits
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _curves(measure: Floats, verdicts: Bools, weights: Floats) -> Floats:
+    """θ and β for each row of weights, shape (rows, 2); NaN where no curve rises."""
+    design = np.column_stack([np.ones(len(measure)), np.log(measure)])
+    coefficients = fit_batch(design, weights * verdicts, weights).coefficients
+    slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)
+    return np.column_stack([np.exp(-coefficients[:, 0] / slope), 1 / slope])
+
+
+def by_region(
+    tests: pd.DataFrame, first: str, second: str, verdict: Bools, measured: Bools
+) -> pd.DataFrame:
+    """Share of right verdicts in thirds of two measures.
+
+    Returns
+    -------
+    A row per region: limits of both measures, ``tests``, ``overturned``, ``simulated`` and ``right``.
+    """
+    thirds = {name: _thirds(tests[name].to_numpy()) for name in (first, second)}
+    rows = []
+    for i in range(3):
+        for j in range(3):
+            inside = (thirds[first][1] == i) & (thirds[second][1] == j)
+            row: dict[str, object] = {}
+            for name, k in ((first, i), (second, j)):
+                row[f"{name}_from"], row[f"{name}_to"] = thirds[name][0][k : k + 2]
+            row["tests"] = int(inside.sum())
+            row["overturned"] = int(measured[inside].sum())
+            row["simulated"] = int(verdict[inside].sum())
+            row["right"] = float((verdict == measured)[inside].mean()) if inside.any() else float("nan")
+            rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _thirds(values: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    limits = np.quantile(values, [0, 1 / 3, 2 / 3, 1])
+    return limits, np.clip(np.searchsorted(limits, values, side="right") - 1, 0, 2)
+
+
+def judged_tests(tests: pd.DataFrame, validated: Validated, measured: Bools) -> pd.DataFrame:
+    """Each test with its votes, its verdict, whether that is right, and whether it is near-critical."""
+    votes = validated.mean_votes
+    return tests.assign(
+        votes_to_overturn=votes,
+        simulated=validated.verdict,
+        right=validated.verdict == measured,
+        near_critical=(votes > NEAR_CRITICAL[0]) & (votes < NEAR_CRITICAL[1]),
+    )

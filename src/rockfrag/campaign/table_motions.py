@@ -1,0 +1,134 @@
+"""What the table did in each test: measured motions read, and conditioned as the study says."""
+
+import os
+import zipfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockfrag.errors import InputError
+from rockfrag.motions.processing import process
+from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.quantities import TO_SI, asked_unit
+from rockfrag.records.read import read_motion
+from rockfrag.units import STANDARD_GRAVITY
+
+LARGEST_PEAK = 10 * STANDARD_GRAVITY
+"""Largest acceleration that a shake table is believed to make [m/s²]; volts and counts look larger."""
+
+KEY = "{motion}"
+"""Stands for the test's motion in a pattern of file names."""
+
+
+def table_motions(
+    source: str | os.PathLike[str],
+    names: Sequence[str],
+    *,
+    unit: str | None = None,
+    dt: float | None = None,
+    channel: str | None = None,
+    conditioning: Sequence[Mapping[str, Any]] = (),
+    done: Callable[[int], None] = lambda count: None,
+) -> list[Motion]:
+    """Read and condition the measured motion of the table in each test.
+
+    Parameters
+    ----------
+    source
+        An ``.npz`` archive with one array per motion, or a pattern of file names such as
+        ``motions/Test{motion}.txt`` of records in any format that :func:`read_motion` reads.
+    names
+        Keys of the archive, or what to put for ``{motion}``, one a test.
+    unit, dt
+        Unit of acceleration and sampling interval [s] where the files do not state them.
+    channel
+        Channel or title of the column, where files have several.
+    conditioning
+        Steps as in :func:`rockfrag.motions.process`.
+    done
+        Called with the number of motions done after each.
+
+    Raises
+    ------
+    InputError
+        If motions are missing, cannot be read, or are no acceleration of a table.
+    """
+    found = []
+    for count, motion in enumerate(_read(str(source), list(names), unit, dt, channel), start=1):
+        if motion.pga > LARGEST_PEAK:
+            raise InputError(
+                f"{source}: motion {motion.name} peaks at {motion.pga / STANDARD_GRAVITY:.3g} g, which no shake "
+                "table reaches; it may be in volts or counts, or another column: check unit and channel."
+            )
+        found.append(process(motion, conditioning))
+        done(count)
+    return found
+
+
+def missing_motions(source: str | os.PathLike[str], names: Sequence[str]) -> list[str]:
+    """Return the names of which there is no motion.
+
+    Raises
+    ------
+    InputError
+        If the archive does not exist or cannot be read.
+    """
+    if not _is_archive(str(source)):
+        return [name for name in names if not Path(_path(str(source), name)).is_file()]
+    with _archive(str(source)) as content:
+        return [name for name in names if name not in content.files]
+
+
+def _is_archive(source: str) -> bool:
+    return source.endswith(".npz")
+
+
+def _path(pattern: str, name: str) -> str:
+    if KEY not in pattern:
+        raise InputError(
+            f"{pattern}: expected an .npz archive, or file names with {KEY} where the test's motion is named."
+        )
+    return pattern.replace(KEY, name)
+
+
+def _archive(source: str) -> "np.lib.npyio.NpzFile":
+    try:
+        # arrays only: an archive with Python objects could run code
+        content = np.load(source, allow_pickle=False)
+    except FileNotFoundError as error:
+        raise InputError(f"{source}: there is no such file; correct the path.") from error
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(f"{source}: cannot be read as an .npz archive ({error}).") from error
+    if not isinstance(content, np.lib.npyio.NpzFile):
+        raise InputError(f"{source}: is one array, and an .npz archive of motions is needed.")
+    return content
+
+
+def _read(
+    source: str, names: list[str], unit: str | None, dt: float | None, channel: str | None
+) -> Iterator[Motion]:
+    absent = missing_motions(source, names)
+    if absent:
+        raise InputError(
+            f"{source}: has no motion for {len(absent)} of {len(names)} tests, {', '.join(absent[:3])} first; "
+            "add them, or set without_motion: leave_out."
+        )
+    if not _is_archive(source):
+        for name in names:
+            motion = read_motion(_path(source, name), unit, channel, dt)
+            yield Motion(motion.acceleration, motion.dt, name, motion.metadata, motion.provenance)
+        return
+    if unit is None or dt is None:
+        raise InputError(f"{source}: an .npz archive states neither unit nor interval; give unit and dt.")
+    factor = TO_SI[asked_unit(unit)]
+    with _archive(source) as content:
+        for name in names:
+            try:
+                values = np.asarray(content[name], dtype=np.float64)
+            except (ValueError, OSError, EOFError, zipfile.BadZipFile) as error:
+                raise InputError(f"{source}: motion {name} cannot be read ({error}).") from error
+            yield Motion(
+                values * factor, dt, name, provenance=({"step": "read", "file": Path(source).name, "unit": unit},)
+            )

@@ -1,0 +1,111 @@
+"""What nobody measured, as ranges: each trial is one guess of all of it, which the tests then judge.
+
+How a rock or a statue was set on the table, how far in from the scanned surface it really carries, and how
+much an impact takes are not in any log.  A campaign study gives a range for each, and trials fill the ranges
+evenly (scrambled Sobol points).
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy.stats import qmc
+
+from rockfrag.errors import InputError
+from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.parameters import largest_restitution
+from rockfrag.rocking.shapes import Shape
+
+UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution")
+"""What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
+to which points carry, distance by which edges lie further in, and ratio of angular velocities in an impact
+(values above the one that conserves momentum stand for that)."""
+
+_LOGARITHMIC = ("contact_tolerance_mm",)
+
+
+@dataclass(frozen=True)
+class Trials:
+    """Guesses of what was not measured.
+
+    Attributes
+    ----------
+    table
+        One row a trial: the unknowns, ``left_m`` and ``right_m`` (edge distances from the centre of gravity)
+        and ``alpha_deg`` (the smaller critical angle).
+    bodies
+        The planar block of each trial.
+    restitution
+        What each takes in impacts; None conserves momentum.
+    refused
+        Guesses under which the object could not have stood.
+    """
+
+    table: pd.DataFrame
+    bodies: tuple[Block, ...]
+    restitution: tuple[float | None, ...]
+    refused: int
+
+
+def sample_trials(
+    shape: Shape, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
+) -> Trials:
+    """Fill the ranges of the unknowns evenly with trials.
+
+    Parameters
+    ----------
+    shape
+        The object.
+    ranges
+        Lowest and highest value of each of :data:`UNKNOWNS`.
+    count
+        Number of guesses; a power of two fills the ranges most evenly.
+    seed
+        Of the scrambling.
+
+    Raises
+    ------
+    InputError
+        If the object could not stand under any guess.
+    """
+    points = qmc.Sobol(len(UNKNOWNS), scramble=True, rng=np.random.default_rng(seed)).random(count)
+    rows, bodies, restitution = [], [], []
+    for point in points:
+        guess = {name: _value(name, ranges[name], u) for name, u in zip(UNKNOWNS, point, strict=True)}
+        try:
+            block = shape.block(
+                guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, guess["edge_retreat_mm"] / 1e3
+            )
+        except InputError:
+            continue
+        bodies.append(block)
+        restitution.append(_possible(block, guess["restitution"]))
+        angle = min(block.critical_angle(+1), block.critical_angle(-1))
+        rows.append(
+            {
+                **guess,
+                "left_m": block.b + block.cg_offset,
+                "right_m": block.b - block.cg_offset,
+                "alpha_deg": math.degrees(angle),
+            }
+        )
+    if not rows:
+        raise InputError(
+            f"{shape.name}: under none of {count} guesses could it have stood; widen contact_tolerance_mm or "
+            "lower edge_retreat_mm."
+        )
+    return Trials(pd.DataFrame(rows), tuple(bodies), tuple(restitution), count - len(rows))
+
+
+def _value(name: str, limits: tuple[float, float], share: float) -> float:
+    low, high = limits
+    if name in _LOGARITHMIC:
+        return float(low * (high / low) ** share)
+    return float(low + (high - low) * share)
+
+
+def _possible(block: Block, restitution: float) -> float | None:
+    """Restitution above the value that conserves momentum is that value."""
+    return restitution if restitution < largest_restitution(block) else None

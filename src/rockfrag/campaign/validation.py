@@ -1,0 +1,133 @@
+"""Trials chosen by some motions and judged by others.
+
+Nobody measured how the object stood, so the tests themselves must tell which trials are plausible; but a
+trial that was chosen by a test cannot be judged by it.  Tests are therefore split into folds by motion:
+trials that agree with the tests of four folds about as well as the best one vote on the fifth.  The best
+trial alone would follow the noise of the choice.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+STANDARD_ERRORS = 2.0
+"""A trial is plausible if its share of right verdicts is within this many standard errors of the best."""
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Validated:
+    """What cross-validation says of each test.
+
+    Attributes
+    ----------
+    votes
+        Share of plausible trials under which the object overturns in each test, chosen by tests with other
+        motions, shape (repeats, tests).
+    plausible
+        Number of trials that voted, shape (repeats, folds).
+    """
+
+    votes: Floats
+    plausible: NDArray[np.int64]
+
+    @property
+    def verdicts(self) -> Bools:
+        """Overturned where at least half of the votes say so, shape (repeats, tests)."""
+        return self.votes >= 0.5
+
+    @property
+    def mean_votes(self) -> Floats:
+        """Votes averaged over the repeats, shape (tests,)."""
+        return np.asarray(self.votes.mean(axis=0))
+
+    @property
+    def verdict(self) -> Bools:
+        """One verdict a test: by the votes averaged over the repeats, shape (tests,)."""
+        return self.mean_votes >= 0.5
+
+
+def folds_by_group(groups: NDArray[np.int64], count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """Assign each test to a fold such that tests of one group share it.
+
+    Parameters
+    ----------
+    groups
+        Number of each test's group, from 0 up, shape (tests,).
+    count
+        Number of folds.
+    """
+    order = rng.permutation(int(groups.max()) + 1)
+    return np.asarray(order[groups] % count)
+
+
+def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
+    """Standard error of a mean whose values share their chance within a group.
+
+    Sum of the groups' deviations (Cameron and Miller, 2015, J. Human Resources 50: 317-372) with the
+    correction G/(G - 1) for G groups; NaN for one group.
+    """
+    sums = np.bincount(groups, values - values.mean())[np.unique(groups)]
+    count = len(sums)
+    if count < 2:
+        return float("nan")
+    return float(np.sqrt(count / (count - 1) * np.sum(sums**2)) / len(values))
+
+
+def plausible_trials(right: Bools, groups: NDArray[np.int64]) -> Bools:
+    """Say which trials agree with tests about as well as the best one.
+
+    Parameters
+    ----------
+    right
+        Whether each trial's verdict is the measured one, shape (trials, tests).
+    groups
+        Group of each test.
+    """
+    share = right.mean(axis=1)
+    best = int(share.argmax())
+    error = clustered_error(right[best].astype(np.float64), groups)
+    # with one group there is no standard error, and only the best remain
+    slack = STANDARD_ERRORS * error if np.isfinite(error) else 0.0
+    return np.asarray(share >= share[best] - slack - 1e-12)
+
+
+def cross_validate(
+    verdicts: Bools,
+    measured: Bools,
+    groups: NDArray[np.int64],
+    *,
+    folds: int,
+    repeats: int,
+    seed: int,
+) -> Validated:
+    """Let trials that are plausible by the tests of other motions vote on each test.
+
+    Parameters
+    ----------
+    verdicts
+        Simulated verdicts, shape (trials, tests).
+    measured
+        What the laboratory saw, shape (tests,).
+    groups
+        Group of each test, from 0 up; groups are never split.
+    folds, repeats
+        Number of folds, and of random divisions into folds.
+    seed
+        Of the divisions.
+    """
+    rng = np.random.default_rng(seed)
+    right = verdicts == measured
+    votes = np.empty((repeats, len(measured)))
+    plausible = np.empty((repeats, folds), dtype=np.int64)
+    for repeat in range(repeats):
+        fold = folds_by_group(groups, folds, rng)
+        for number in range(folds):
+            chosen_by = fold != number
+            voters = plausible_trials(right[:, chosen_by], groups[chosen_by])
+            plausible[repeat, number] = voters.sum()
+            votes[repeat, ~chosen_by] = verdicts[voters][:, ~chosen_by].mean(axis=0)
+    return Validated(votes, plausible)

@@ -1,0 +1,52 @@
+"""Every trial × every test simulated: does the object overturn?"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.campaign.trials import Trials
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.ensemble import overturns
+
+BATCH = 50
+"""Motions simulated between two reports of progress."""
+
+
+def simulate_tests(
+    trials: Trials,
+    motions: Sequence[Motion],
+    threads: int | None = None,
+    done: Callable[[int], None] = lambda count: None,
+) -> NDArray[np.bool_]:
+    """Simulate each test under each trial.
+
+    Parameters
+    ----------
+    trials
+        Bodies and restitutions.
+    motions
+        Motion of the table in each test.
+    threads
+        Threads to use; all cores if None.
+    done
+        Called with the number of tests done after each batch.
+
+    Returns
+    -------
+    Whether the object overturns, shape (trials, tests).
+    """
+    verdicts = np.zeros((len(trials.bodies), len(motions)), dtype=bool)
+    for first in range(0, len(motions), BATCH):
+        batch = motions[first : first + BATCH]
+        result = overturns(
+            trials.bodies,
+            [one.acceleration for one in batch],
+            [one.dt for one in batch],
+            [1.0],
+            restitution=trials.restitution,
+            threads=threads,
+        )
+        verdicts[:, first : first + len(batch)] = result.overturned[:, :, 0]
+        done(first + len(batch))
+    return verdicts
