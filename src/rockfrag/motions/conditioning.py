@@ -34,7 +34,7 @@ def remove_median(motion: Motion) -> Motion:
     return motion.after("remove_median", motion.acceleration - median, removed_m_s2=median)
 
 
-def despike(motion: Motion, times: float = 30.0) -> Motion:
+def despike(motion: Motion, times: float = 50.0) -> Motion:
     """Replace samples that stand out from their neighbours by the median of their neighbourhood.
 
     A spike is a sample that differs from the running median of five samples by more than ``times`` the
