@@ -5,10 +5,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.user_table import read_tests, read_text_table, verdict_column
+from rockfrag.fragility.user_table import (
+    label_column,
+    number_column,
+    read_text_table,
+    verdict_column,
+)
 
 MEASURED = "overturned"
 """Column of what the laboratory saw."""
@@ -22,7 +28,8 @@ class Campaign:
     ----------
     tests
         One row a test: ``test`` (its name), ``motion`` (key or file of the table's motion), ``group``
-        (tests of one input motion share it), ``overturned`` (bool) and a column per intensity measure.
+        (tests of one input motion share it), ``overturned`` (bool), ``amplitude_g`` (peak to which the motion
+        is scaled, NaN for as recorded) and a column per intensity measure.
     measures
         Names of the columns with intensity measures.
     codes
@@ -32,6 +39,15 @@ class Campaign:
     tests: pd.DataFrame
     measures: tuple[str, ...]
     codes: pd.DataFrame
+
+    def only(self, keep: "pd.Series[bool]") -> "Campaign":
+        """Return the campaign with some of its tests."""
+        chosen = keep.to_numpy()
+        return Campaign(
+            self.tests[chosen].reset_index(drop=True),
+            self.measures,
+            self.codes[chosen].reset_index(drop=True),
+        )
 
 
 def read_campaign(
@@ -47,7 +63,9 @@ def read_campaign(
     path
         CSV with one row a test.
     columns
-        Its columns: ``test``, ``overturned``, ``motion`` and ``group``.
+        Its columns: ``test`` and ``motion``; either ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the
+        largest peak survived and the one that overturned, which make two tests; ``group`` where tests of one
+        input motion share a name, else the motion; ``amplitude_g`` where motions are scaled to a peak.
     measures
         For each intensity measure the columns and numbers whose product it is.
     other_codes
@@ -58,28 +76,51 @@ def read_campaign(
     InputError
         If a file cannot be read, a column or a value is missing or cannot be used, or a test stands twice.
     """
-    source = Path(path).name
-    read = read_tests(
-        path,
-        measures,
-        overturned=columns["overturned"],
-        motion=columns["motion"],
-        event=columns["group"],
-        keep=(columns["test"],),
-    )
+    raw, source = read_text_table(path), Path(path).name
+    motion = label_column(raw, columns["motion"], source)
     tests = pd.DataFrame(
         {
-            "test": read[columns["test"]],
-            "motion": read["motion"],
-            "group": read["event"],
-            MEASURED: read["overturned"].astype(bool),
-            **{name: read[name] for name in measures},
+            "test": label_column(raw, columns["test"], source),
+            "motion": motion,
+            "group": label_column(raw, columns["group"], source) if "group" in columns else motion,
         }
     )
     doubled = tests["test"][tests["test"].duplicated()]
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
+    for name, factors in measures.items():
+        values = [
+            number_column(raw, one, source, above_zero=True) if isinstance(one, str) else float(one)
+            for one in factors
+        ]
+        tests[name] = np.prod(np.broadcast_arrays(*values, np.ones(len(raw))), axis=0)
+    tests = _with_verdicts(tests, raw, columns, source)
     return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
+
+
+def _with_verdicts(
+    tests: pd.DataFrame, raw: pd.DataFrame, columns: Mapping[str, str], source: str
+) -> pd.DataFrame:
+    """Add verdict and amplitude; an amplitude of overturning makes one test survived and one overturned."""
+    if "overturned" in columns:
+        scaled = (
+            number_column(raw, columns["amplitude_g"], source, above_zero=True)
+            if "amplitude_g" in columns
+            else np.nan
+        )
+        verdicts = verdict_column(raw, columns["overturned"], source).astype(bool)
+        return tests.assign(**{MEASURED: verdicts, "amplitude_g": scaled})
+    parts = []
+    for key, fell in (("lower_g", False), ("upper_g", True)):
+        amplitude = number_column(raw, columns[key], source, above_zero=True)
+        names = [f"{test} at {a:g} g" for test, a in zip(tests["test"], amplitude, strict=True)]
+        parts.append(tests.assign(**{"test": names, MEASURED: fell, "amplitude_g": amplitude}))
+    wrong = np.flatnonzero(parts[0]["amplitude_g"] >= parts[1]["amplitude_g"])
+    if wrong.size:
+        raise InputError(
+            f"{source}, row {wrong[0] + 2}: lower_g is not below upper_g; the object overturned between them."
+        )
+    return pd.concat(parts, ignore_index=True)
 
 
 def _codes(
@@ -88,14 +129,14 @@ def _codes(
     """Verdicts of other programs in the order of the tests."""
     if path is None:
         return pd.DataFrame(index=range(len(tests)))
-    table = read_text_table(path)
-    source = Path(path).name
-    if column not in table:
-        raise InputError(f"{source}: there is no column {column!r} with the names of the tests.")
-    table = table.set_index(table[column].str.strip()).drop(columns=column)
-    absent = [name for name in tests if name not in table.index]
+    table, source = read_text_table(path), Path(path).name
+    names = label_column(table, column, source)
+    absent = sorted(set(tests) - set(names))
     if absent:
-        raise InputError(f"{source}: has no verdict for test {absent[0]} and {len(absent) - 1} others.")
-    return pd.DataFrame(
-        {name: verdict_column(table, name, source).astype(bool) for name in table}, index=table.index
-    ).loc[list(tests)].reset_index(drop=True)
+        raise InputError(
+            f"{source}: has no verdict for {len(absent)} of {len(tests)} tests, {absent[0]} first."
+        )
+    verdicts = {
+        name: verdict_column(table, name, source).astype(bool) for name in table if name != column
+    }
+    return pd.DataFrame(verdicts, index=names).loc[list(tests)].reset_index(drop=True)

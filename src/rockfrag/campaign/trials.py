@@ -7,7 +7,7 @@ evenly (scrambled Sobol points).
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -50,16 +50,16 @@ class Trials:
 
 
 def sample_trials(
-    shape: Shape, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
+    thing: Shape | Block, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
 ) -> Trials:
     """Fill the ranges of the unknowns evenly with trials.
 
     Parameters
     ----------
-    shape
-        The object.
+    thing
+        The object: a shape, or the planar block itself where its edges were measured.
     ranges
-        Lowest and highest value of each of :data:`UNKNOWNS`.
+        Lowest and highest value of each of :data:`UNKNOWNS`; for a block without direction and tolerance.
     count
         Number of guesses; a power of two fills the ranges most evenly.
     seed
@@ -70,14 +70,13 @@ def sample_trials(
     InputError
         If the object could not stand under any guess.
     """
-    points = qmc.Sobol(len(UNKNOWNS), scramble=True, rng=np.random.default_rng(seed)).random(count)
+    names = [name for name in UNKNOWNS if name in ranges]
+    points = qmc.Sobol(len(names), scramble=True, rng=np.random.default_rng(seed)).random(count)
     rows, bodies, restitution = [], [], []
     for point in points:
-        guess = {name: _value(name, ranges[name], u) for name, u in zip(UNKNOWNS, point, strict=True)}
+        guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
         try:
-            block = shape.block(
-                guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, guess["edge_retreat_mm"] / 1e3
-            )
+            block = _block(thing, guess)
         except InputError:
             continue
         bodies.append(block)
@@ -93,10 +92,17 @@ def sample_trials(
         )
     if not rows:
         raise InputError(
-            f"{shape.name}: under none of {count} guesses could it have stood; widen contact_tolerance_mm or "
-            "lower edge_retreat_mm."
+            f"unknowns: under none of {count} guesses could the object have stood; widen contact_tolerance_mm "
+            "or lower edge_retreat_mm."
         )
     return Trials(pd.DataFrame(rows), tuple(bodies), tuple(restitution), count - len(rows))
+
+
+def _block(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
+    retreat = guess["edge_retreat_mm"] / 1e3
+    if isinstance(thing, Block):
+        return replace(thing, width=thing.width - 2 * retreat)
+    return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
 
 
 def _value(name: str, limits: tuple[float, float], share: float) -> float:

@@ -1,0 +1,205 @@
+"""A study of a campaign on a shake table: every test simulated with its own motion, and compared."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rockfrag.errors import InputError
+from rockfrag.motions.processing import check_steps
+from rockfrag.study.validation import check_schema, read_schema
+
+CAMPAIGN_KEY = "campaign"
+"""Key that only a study of a campaign has."""
+
+Steps = tuple[Mapping[str, Any], ...]
+
+
+@dataclass(frozen=True)
+class PublicFile:
+    """A file that anybody can fetch: address, SHA-256, and where it is kept."""
+
+    url: str
+    sha256: str
+    path: Path
+
+
+@dataclass(frozen=True)
+class CampaignStudy:
+    """Everything that the configuration of a campaign says, checked.
+
+    Attributes
+    ----------
+    name, title, seed
+        Folder under ``results/``, heading of the report, seed of every random number.
+    source
+        The configuration file.
+    fetch
+        Public files that are fetched if they are not there.
+    tests, columns, other_codes
+        Table of tests, its columns, and a table of other programs' verdicts or None.
+    motions, unit, dt_s, channel
+        Where the table's motions are, and what their files do not state.
+    leave_out
+        Whether tests without a motion are left out; otherwise they are refused.
+    measures
+        For each intensity measure the columns and numbers whose product it is; empty to measure the motions.
+    object
+        Either ``mesh`` with its mass or density, or the planar block by hand.
+    conditioning, varied_conditioning
+        Steps that each motion goes through, and other lists of steps by name that are tried beside.
+    unknowns
+        Range of each thing that nobody measured.
+    trials, folds, repeats, confidence
+        Number of guesses, folds and divisions into folds, and the level of the intervals.
+    """
+
+    name: str
+    title: str
+    seed: int
+    source: Path
+    fetch: tuple[PublicFile, ...]
+    tests: Path
+    columns: Mapping[str, str]
+    other_codes: Path | None
+    motions: str
+    unit: str | None
+    dt_s: float | None
+    channel: str | None
+    leave_out: bool
+    measures: Mapping[str, tuple[str | float, ...]]
+    object: Mapping[str, Any]
+    conditioning: Steps
+    varied_conditioning: Mapping[str, Steps]
+    unknowns: Mapping[str, tuple[float, float]]
+    trials: int
+    folds: int
+    repeats: int
+    confidence: float
+    mesh: Path | None = field(default=None)
+
+    @property
+    def files(self) -> list[str]:
+        """Files that it depends on."""
+        found = [str(self.tests)]
+        found += [str(path) for path in (self.other_codes, self.mesh) if path is not None]
+        return found + ([self.motions] if self.motions.endswith(".npz") else [])
+
+
+def is_campaign(content: Mapping[str, Any]) -> bool:
+    """Say whether a configuration is one of a campaign on a shake table."""
+    return CAMPAIGN_KEY in content
+
+
+def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> CampaignStudy:
+    """Make the study of a campaign from a configuration that was read from ``path``.
+
+    Raises
+    ------
+    InputError
+        One sentence with the file, the key, what was expected and what was found.
+    """
+    source = Path(path)
+    check_schema(content, read_schema("campaign.schema.json"), str(source))
+    campaign, thing = content[CAMPAIGN_KEY], content["object"]
+    fetch = tuple(
+        PublicFile(one["url"], one["sha256"], _beside(source, one["file"]))
+        for one in content.get("fetch", ())
+    )
+    fetched = {one.path for one in fetch}
+    _check_object(source, thing, content["unknowns"])
+    _check_columns(source, campaign["columns"])
+    steps = {"conditioning": tuple(content.get("conditioning", ()))}
+    varied = {name: tuple(value) for name, value in content.get("varied_conditioning", {}).items()}
+    for key, value in {**steps, **{f"varied_conditioning.{k}": v for k, v in varied.items()}}.items():
+        try:
+            check_steps(value)
+        except InputError as error:
+            raise InputError(f"{source}: key {key}: {error}") from error
+    for key, (low, high) in content["unknowns"].items():
+        if low > high or (key == "contact_tolerance_mm" and low <= 0):
+            raise InputError(
+                f"{source}: key unknowns.{key}: expected the lowest value first"
+                f"{', above 0' if key == 'contact_tolerance_mm' else ''}, found [{low}, {high}]."
+            )
+    motions = str(_beside(source, campaign["motions"]))
+    if motions.endswith(".npz"):
+        _existing(source, "campaign.motions", Path(motions), fetched)
+    other = campaign.get("other_codes")
+    mesh = thing.get("mesh")
+    return CampaignStudy(
+        name=content["study"],
+        title=content["title"],
+        seed=content["seed"],
+        source=source,
+        fetch=fetch,
+        tests=_existing(source, "campaign.tests", _beside(source, campaign["tests"]), fetched),
+        columns=dict(campaign["columns"]),
+        other_codes=None
+        if other is None
+        else _existing(source, "campaign.other_codes", _beside(source, other), fetched),
+        motions=motions,
+        unit=campaign.get("unit"),
+        dt_s=campaign.get("dt_s"),
+        channel=campaign.get("channel"),
+        leave_out=campaign.get("without_motion", "refuse") == "leave_out",
+        measures={name: tuple(value) for name, value in campaign.get("measures", {}).items()},
+        object=thing,
+        conditioning=steps["conditioning"],
+        varied_conditioning=varied,
+        unknowns={key: (float(low), float(high)) for key, (low, high) in content["unknowns"].items()},
+        trials=content["trials"],
+        folds=content.get("folds", 5),
+        repeats=content.get("repeats", 20),
+        confidence=content.get("confidence", 0.9),
+        mesh=None if mesh is None else _existing(source, "object.mesh", _beside(source, mesh), fetched),
+    )
+
+
+def _beside(source: Path, name: str) -> Path:
+    return Path(os.path.normpath(source.parent / name))
+
+
+def _existing(source: Path, key: str, path: Path, fetched: set[Path]) -> Path:
+    if not path.is_file() and path not in fetched:
+        raise InputError(
+            f"{source}: key {key}: there is no {path}; put the file there, name yours, or give its address "
+            "and digest under fetch."
+        )
+    return path
+
+
+_BY_HAND = ("left_m", "right_m", "cg_height_m", "height_m", "mass_kg", "inertia_kg_m2")
+_OF_A_MESH = ("direction_deg", "contact_tolerance_mm")
+
+
+def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str, Any]) -> None:
+    where = f"{source}: key object"
+    if "mesh" in thing:
+        strange = [key for key in _BY_HAND if key in thing and key != "mass_kg"]
+        if strange:
+            raise InputError(f"{where}: {strange[0]} follows from the mesh; leave it out.")
+        if ("mass_kg" in thing) == ("density_kg_m3" in thing):
+            raise InputError(f"{where}: give either mass_kg or density_kg_m3.")
+        missing = [key for key in _OF_A_MESH if key not in unknowns]
+        if missing:
+            raise InputError(f"{source}: key unknowns: {missing[0]} is needed for a mesh; give its range.")
+        return
+    missing = [key for key in _BY_HAND if key not in thing]
+    if missing:
+        raise InputError(f"{where}: {missing[0]} is missing; without a mesh all of {', '.join(_BY_HAND)} are needed.")
+    strange = [key for key in _OF_A_MESH if key in unknowns]
+    if strange:
+        raise InputError(f"{source}: key unknowns: {strange[0]} has a meaning for a mesh only; leave it out.")
+
+
+def _check_columns(source: Path, columns: Mapping[str, str]) -> None:
+    brackets = ("lower_g" in columns, "upper_g" in columns)
+    if any(brackets) and not all(brackets):
+        raise InputError(f"{source}: key campaign.columns: lower_g and upper_g belong together; give both.")
+    if ("overturned" in columns) == all(brackets):
+        raise InputError(
+            f"{source}: key campaign.columns: give either overturned, a verdict per test, or lower_g and upper_g, "
+            "between which the object overturned."
+        )
