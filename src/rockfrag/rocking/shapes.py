@@ -85,6 +85,12 @@ class Shape:
         """Mass over volume [kg/m³]."""
         return self.mass / self.volume
 
+    @property
+    def outline(self) -> Array:
+        """Convex outline seen from above, relative to the centre of gravity, in order [m], shape (n, 2)."""
+        seen = self.points[:, :2]
+        return np.asarray(seen[ConvexHull(seen).vertices])
+
     def contact_polygon(self, tolerance: float) -> Array:
         """Return the polygon around all points that are within ``tolerance`` of the lowest one.
 

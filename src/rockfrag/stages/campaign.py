@@ -16,14 +16,13 @@ from rockfrag.campaign.table_motions import missing_motions, table_motions
 from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.thresholds import cross_validated_threshold
 from rockfrag.campaign.trials import Trials, sample_trials
-from rockfrag.campaign.validation import Validated, cross_validate
+from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
 from rockfrag.campaign.verdicts import simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.motions.filtering import highpass
 from rockfrag.motions.intensity import pga, pgv
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.records.sources.url import fetch_url
 from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.shapes import Shape, read_shape
 from rockfrag.stages.stage import Job, Results, Stage
@@ -38,7 +37,7 @@ DRIFT_CORNER_HZ = 0.1
 """High-pass before a measured motion is integrated: its noise would drift."""
 
 TABLES = (
-    "tests", "trials", "agreement", "fragility", "regions", "conditioning", "contact",
+    "tests", "trials", "agreement", "fragility", "regions", "conditioning", "contact", "footprint",
 )  # fmt: skip
 
 
@@ -58,19 +57,22 @@ def _run(job: Job[CampaignStudy]) -> Results:
         len(tests), groups.max() + 1, 100 * (validated.verdicts == measured).mean(),
     )  # fmt: skip
     yield "tests", judged_tests(tests, validated, measured)
-    yield "trials", _judged_trials(trials, verdicts, measured)
+    yield "trials", _judged_trials(trials, verdicts, measured, groups)
     yield "agreement", _agreement(study, campaign, validated, groups)
     yield "fragility", _fragility(study, campaign, validated, groups)
     first, second = (*campaign.measures, campaign.measures[0])[:2]
     yield "regions", by_region(tests, first, second, validated.verdict, measured)
     yield "conditioning", _conditioning(job, campaign, thing, validated, groups)
     yield "contact", _contact(study, thing)
+    yield "footprint", _footprint(study, thing, trials, verdicts == measured, groups)
 
 
 def _campaign_with_motions(job: Job[CampaignStudy]) -> tuple[Campaign, list[Motion]]:
     """Read the table of tests and the motion of each, scaled where the table says so."""
     study = job.study
     for public in study.fetch:
+        from rockfrag.records.sources.url import fetch_url
+
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
@@ -135,10 +137,11 @@ def _validated(study: CampaignStudy, verdicts: Any, measured: Any, groups: Any) 
     )
 
 
-def _judged_trials(trials: Trials, verdicts: Any, measured: Any) -> pd.DataFrame:
+def _judged_trials(trials: Trials, verdicts: Any, measured: Any, groups: Any) -> pd.DataFrame:
     """Trials with their agreement over all tests, which is in sample and shows only where the plausible ones lie."""
     right = (verdicts == measured).mean(axis=1)
-    return trials.table.assign(right_in_sample=right).sort_values(
+    plausible = plausible_trials(verdicts == measured, groups)
+    return trials.table.assign(right_in_sample=right, plausible=plausible).sort_values(
         "right_in_sample", ascending=False, kind="stable", ignore_index=True
     )
 
@@ -232,6 +235,27 @@ def _contact(study: CampaignStudy, thing: Shape | Block) -> pd.DataFrame:
         limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
         rows.append([tolerance, direction, np.degrees(angle), *limits])
     return pd.DataFrame(rows, columns=columns)
+
+
+def _footprint(
+    study: CampaignStudy, thing: Shape | Block, trials: Trials, right: Any, groups: Any
+) -> pd.DataFrame:
+    """Seen from above, about the centre of gravity: outline, and what carries within the plausible tolerances."""
+    columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]
+    if isinstance(thing, Block):
+        return pd.DataFrame(columns=columns)
+    likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
+    parts = [("outline", float("nan"), thing.outline)]
+    for name, share in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
+        tolerance = float(likely.quantile(share))
+        parts.append((name, tolerance, thing.contact_polygon(tolerance / 1e3)))
+    return pd.concat(
+        [
+            pd.DataFrame({"what": name, "contact_tolerance_mm": tolerance, "x_m": xy[:, 0], "y_m": xy[:, 1]})
+            for name, tolerance, xy in parts
+        ],
+        ignore_index=True,
+    )
 
 
 def _worst_angle(shape: Shape, tolerance_mm: float) -> float:

@@ -1,0 +1,130 @@
+"""Figures of a campaign: who is right how often, fragility side by side, every test, the base from above."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from scipy.stats import norm
+
+from rockfrag.report.figures.style import (
+    BLACK,
+    BLUE,
+    COLUMN_WIDTH,
+    GREEN,
+    ORANGE,
+    RED,
+    figure_style,
+    new_figure,
+)
+
+_GREY = "#999999"
+_BINS = 8
+
+
+def agreement_figure(agreement: pd.DataFrame) -> Figure:
+    """Draw the share of right verdicts of the simulation and of its rivals, with intervals."""
+    rows = agreement.iloc[::-1].reset_index(drop=True)
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 0.7 + 0.24 * len(rows))
+        axes = figure.subplots()
+        for place, row in rows.iterrows():
+            colour = BLUE if place == len(rows) - 1 else BLACK
+            filled = row["judged"] == "by other motions"
+            axes.plot([100 * row["lower"], 100 * row["upper"]], [place, place], color=colour, lw=1.2)
+            axes.plot(100 * row["right"], place, "o", color=colour, mfc=colour if filled else "white")
+        axes.set_yticks(range(len(rows)), list(rows["who"]))
+        axes.set_xlabel("Verdicts right [%]")
+        axes.grid(axis="x")
+        return figure
+
+
+def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label: str) -> Figure:
+    """Draw measured and simulated fragility in one measure: curves, and shares of tests in bins.
+
+    Parameters
+    ----------
+    tests
+        Tests with the measure, ``overturned`` and ``simulated``.
+    curves
+        Rows of the measure with ``who``, ``theta`` and ``beta``.
+    measure, label
+        Column of the measure, and what the axis says.
+    """
+    values = tests[measure].to_numpy()
+    x = np.geomspace(values.min(), values.max(), 200)
+    edges = np.unique(np.quantile(values, np.linspace(0, 1, _BINS + 1)))
+    bins = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 2.4)
+        axes = figure.subplots()
+        styles = (("measured", "overturned", BLACK, "o"), ("rockfrag", "simulated", BLUE, "s"))
+        for who, column, colour, marker in styles:
+            middle = [np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)]
+            share = [tests[column].to_numpy()[bins == k].mean() for k in range(len(edges) - 1)]
+            axes.plot(middle, share, ls="", marker=marker, mfc="white", color=colour)
+            row = curves[curves["who"] == who].iloc[0]
+            if np.isfinite(row["theta"]):
+                name = "measured" if who == "measured" else "simulated"
+                axes.plot(
+                    x, norm.cdf(np.log(x / row["theta"]) / row["beta"]), color=colour, label=name,
+                    ls="-" if who == "measured" else "--",
+                )  # fmt: skip
+        axes.set_xscale("log")
+        axes.set_xlabel(label)
+        axes.set_ylabel("Share of tests overturned")
+        axes.legend(loc="upper left")
+        return figure
+
+
+def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -> Figure:
+    """Draw every test in two measures: what happened by colour, wrong verdicts as crosses."""
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 2.8)
+        axes = figure.subplots()
+        for fell, colour, word in ((False, _GREY, "survived"), (True, ORANGE, "overturned")):
+            rows = tests[(tests["overturned"] == fell) & tests["right"]]
+            axes.plot(rows[x], rows[y], ls="", marker="o", ms=2.6, color=colour, label=word)
+        wrong = tests[~tests["right"]]
+        for fell, colour, word in (
+            (True, RED, "overturned, simulated standing"),
+            (False, BLACK, "survived, simulated fallen"),
+        ):
+            rows = wrong[wrong["overturned"] == fell]
+            axes.plot(rows[x], rows[y], ls="", marker="x", ms=4.5, color=colour, label=word)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel(labels[0])
+        axes.set_ylabel(labels[1])
+        figure.legend(loc="outside upper center", ncols=2)
+        return figure
+
+
+def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
+    """Draw the object from above: outline, contact polygons, centre of gravity, plausible directions of shaking."""
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 3.2)
+        axes = figure.subplots()
+        styles = {
+            "outline": (_GREY, "-", "outline"),
+            "contact, low": (GREEN, ":", None),
+            "contact": (GREEN, "-", "contact polygon"),
+            "contact, high": (GREEN, "--", None),
+        }
+        for what, (colour, line, word) in styles.items():
+            corners = footprint[footprint["what"] == what]
+            if corners.empty:
+                continue
+            closed = np.vstack([corners[["x_m", "y_m"]], corners[["x_m", "y_m"]].iloc[:1]])
+            tolerance = corners["contact_tolerance_mm"].iloc[0]
+            label = word if not np.isfinite(tolerance) else f"carries within {tolerance:.1f} mm"
+            axes.plot(closed[:, 0], closed[:, 1], ls=line, color=colour, label=label)
+        axes.plot(0, 0, "+", color=BLACK, ms=9, label="centre of gravity")
+        reach = float(footprint[["x_m", "y_m"]].abs().to_numpy().max())
+        likely = np.radians(trials.loc[trials["plausible"], "direction_deg"].to_numpy())
+        for number, angle in enumerate(likely[:60]):
+            ends = reach * np.array([[1.02], [1.12]]) * [np.cos(angle), np.sin(angle)]
+            axes.plot(ends[:, 0], ends[:, 1], color=BLUE, lw=0.8, label=None if number else "plausible direction")
+        axes.set_aspect("equal")
+        axes.set_xlabel("x [m]")
+        axes.set_ylabel("y [m]")
+        figure.legend(loc="outside upper center", ncols=2)
+        return figure
