@@ -93,17 +93,16 @@ def _path(pattern: str, name: str) -> str:
     return pattern.replace(KEY, name)
 
 
-def _archive(source: str) -> "np.lib.npyio.NpzFile":
+def _archive(source: str) -> Any:
+    if not Path(source).is_file():
+        raise InputError(f"{source}: there is no such file; correct the path.")
     try:
+        # looked at first: numpy leaves a file open that turns out to be no archive
+        zipfile.ZipFile(source).close()
         # arrays only: an archive with Python objects could run code
-        content = np.load(source, allow_pickle=False)
-    except FileNotFoundError as error:
-        raise InputError(f"{source}: there is no such file; correct the path.") from error
+        return np.load(source, allow_pickle=False)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise InputError(f"{source}: cannot be read as an .npz archive ({error}).") from error
-    if not isinstance(content, np.lib.npyio.NpzFile):
-        raise InputError(f"{source}: is one array, and an .npz archive of motions is needed.")
-    return content
 
 
 def _read(

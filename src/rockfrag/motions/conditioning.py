@@ -38,9 +38,9 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
     """Replace samples that stand out from their neighbours by the median of their neighbourhood.
 
     A spike is a sample that differs from the running median of five samples by more than ``times`` the
-    standard deviation of such differences, estimated by the size that 68.27 % of them do not exceed
+    standard deviation of such differences, estimated by the size that 95 % of them do not exceed
     (Hampel's identifier, Davies and Gather, 1993, J. Am. Stat. Assoc. 88: 782-792, with a quantile that
-    coarse digits do not turn into zero).  Where most samples repeat each other nothing is replaced.
+    coarse digits and smooth motions do not turn into zero).  Where most samples repeat each other nothing is replaced.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
 
     smooth = median_filter(motion.acceleration, size=5, mode="nearest")
     difference = np.abs(motion.acceleration - smooth)
-    scale = float(np.quantile(difference, 0.6827))
+    scale = float(np.quantile(difference, 0.95)) / 1.96
     spikes = difference > times * scale if scale > 0 else np.zeros(difference.size, dtype=bool)
     cleaned = np.where(spikes, smooth, motion.acceleration)
     return motion.after("despike", cleaned, times=times, replaced=int(spikes.sum()))

@@ -1,0 +1,70 @@
+"""The table of a campaign: read, or refused in one sentence."""
+
+from pathlib import Path
+
+import pytest
+
+from rockfrag.campaign.tests import read_campaign
+from rockfrag.errors import InputError
+
+COLUMNS = {"test": "test", "motion": "motion", "group": "input", "overturned": "fell"}
+GOOD = "test,motion,input,fell,pga_g\nA,1,x,yes,0.2\nB,2,x,0,0.1\nC,3,y,1,0.3\n"
+
+
+def table(folder: Path, text: str, name: str = "tests.csv") -> Path:
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def test_a_table_of_verdicts_is_read(tmp_path: Path):
+    campaign = read_campaign(table(tmp_path, GOOD), COLUMNS, {"pga_m_s2": ["pga_g", 9.81]})
+    assert list(campaign.tests["overturned"]) == [True, False, True]
+    assert list(campaign.tests["group"]) == ["x", "x", "y"]
+    assert campaign.tests["pga_m_s2"].iloc[0] == pytest.approx(1.962)
+    assert campaign.tests["amplitude_g"].isna().all()
+
+
+def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(tmp_path: Path):
+    text = "test,motion,low,high\nA,1,0.3,0.33\nB,2,0.5,0.6\n"
+    columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
+    tests = read_campaign(table(tmp_path, text), columns, {}).tests
+    assert list(tests["overturned"]) == [False, False, True, True]
+    assert list(tests["amplitude_g"]) == [0.3, 0.5, 0.33, 0.6]
+    assert list(tests["group"]) == ["1", "2", "1", "2"]
+    assert tests["test"].iloc[2] == "A at 0.33 g"
+
+
+def test_verdicts_of_other_programs_follow_the_tests(tmp_path: Path):
+    codes = table(tmp_path, "test,dem,fem\nC,1,0\nA,0,0\nB,0,1\n", "codes.csv")
+    found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes
+    assert found.to_dict("list") == {"dem": [False, False, True], "fem": [False, True, False]}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right", "sentence"),
+    [
+        ("B,2,x,0,0.1", "A,2,x,0,0.1", "test A stands twice"),
+        ("B,2,x,0,0.1", "B,2,x,perhaps,0.1", "no verdict"),
+        ("B,2,x,0,0.1", "B,2,x,0,-1", "above zero"),
+        ("B,2,x,0,0.1", "B,,x,0,0.1", "label is missing"),
+        ("fell", "verdict", "there is no column 'fell'"),
+    ],
+)
+def test_a_bad_table_ends_in_one_sentence(tmp_path: Path, wrong: str, right: str, sentence: str):
+    path = table(tmp_path, GOOD.replace(wrong, right))
+    with pytest.raises(InputError, match=sentence) as caught:
+        read_campaign(path, COLUMNS, {"pga_g": ["pga_g"]})
+    assert "\n" not in str(caught.value)
+
+
+def test_an_object_that_fell_below_what_it_survived_is_refused(tmp_path: Path):
+    columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
+    with pytest.raises(InputError, match="row 2: lower_g is not below upper_g"):
+        read_campaign(table(tmp_path, "test,motion,low,high\nA,1,0.3,0.2\n"), columns, {})
+
+
+def test_a_missing_verdict_of_another_program_is_named(tmp_path: Path):
+    codes = table(tmp_path, "test,dem\nC,1\nA,0\n", "codes.csv")
+    with pytest.raises(InputError, match="no verdict for 1 of 3 tests, B first"):
+        read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes)

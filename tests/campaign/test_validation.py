@@ -1,0 +1,134 @@
+"""Trials chosen by some motions and judged by others; rivals; intervals that know that tests share a motion."""
+
+import numpy as np
+import pytest
+
+from rockfrag.campaign.comparison import agreement_row, by_region, fragility_beside, paired_row
+from rockfrag.campaign.thresholds import best_threshold, cross_validated_threshold
+from rockfrag.campaign.validation import clustered_error, cross_validate, folds_by_group, plausible_trials
+
+RNG = np.random.default_rng(11)
+
+
+def test_the_clustered_error_is_the_plain_one_where_every_test_has_its_own_motion():
+    values = RNG.standard_normal(50)
+    plain = values.std(ddof=1) / np.sqrt(50)
+    assert clustered_error(values, np.arange(50)) == pytest.approx(plain)
+
+
+def test_copies_of_a_test_tell_nothing_new():
+    values = RNG.standard_normal(20)
+    once = clustered_error(values, np.arange(20))
+    five = clustered_error(np.repeat(values, 5), np.repeat(np.arange(20), 5))
+    assert five == pytest.approx(once)
+    assert np.isnan(clustered_error(values, np.zeros(20, dtype=int)))
+
+
+def test_folds_never_split_a_motion():
+    groups = RNG.integers(0, 17, 200)
+    fold = folds_by_group(groups, 5, np.random.default_rng(1))
+    assert set(fold) == {0, 1, 2, 3, 4}
+    for group in range(17):
+        assert len(set(fold[groups == group])) == 1
+
+
+def test_the_true_trial_is_found_and_votes_well():
+    truth = RNG.random(300) < 0.4
+    groups = RNG.integers(0, 30, 300)
+    trials = RNG.random((200, 300)) < 0.4
+    trials[17] = truth ^ (RNG.random(300) < 0.05)
+    found = cross_validate(trials, truth, groups, folds=5, repeats=3, seed=1)
+    assert (found.verdicts == truth).mean() == pytest.approx(0.95, abs=0.03)
+    assert (found.plausible == 1).all()
+
+
+def test_noise_is_not_rewarded_by_the_choice():
+    # verdicts that know nothing: the best of many looks good on the tests that chose it, and only there
+    truth = RNG.random(200) < 0.5
+    groups = np.arange(200) % 40
+    trials = RNG.random((2000, 200)) < 0.5
+    in_sample = (trials == truth).mean(axis=1).max()
+    found = cross_validate(trials, truth, groups, folds=5, repeats=5, seed=1)
+    assert in_sample > 0.6
+    assert (found.verdicts == truth).mean() == pytest.approx(0.5, abs=0.06)
+
+
+def test_plausible_trials_are_within_two_standard_errors_of_the_best():
+    truth = np.zeros(400, dtype=bool)
+    trials = np.zeros((3, 400), dtype=bool)
+    trials[0, :40], trials[1, :50], trials[2, :120] = True, True, True
+    # the best has 10 % wrong, a standard error of 1.5 %
+    assert list(plausible_trials(~trials ^ truth, np.arange(400))) == [True, True, False]
+
+
+def test_the_best_threshold_separates_what_can_be_separated():
+    measure = np.array([3.0, 1.0, 2.0, 4.0])
+    assert best_threshold(measure, measure > 2.5) == pytest.approx(np.sqrt(6))
+    assert best_threshold(measure, np.ones(4, dtype=bool)) == 1.0
+    assert best_threshold(measure, np.zeros(4, dtype=bool)) == np.inf
+
+
+def test_thresholds_are_judged_by_other_motions_too():
+    measure = np.exp(RNG.standard_normal(300))
+    groups = RNG.integers(0, 30, 300)
+    fell = RNG.random(300) < 0.5
+    verdicts = cross_validated_threshold(measure, fell, groups, folds=5, repeats=4, seed=2)
+    assert (verdicts == fell).mean() == pytest.approx(0.5, abs=0.08)
+
+
+def test_two_measures_find_a_border_that_neither_has_alone():
+    pga, ratio = np.exp(RNG.standard_normal((2, 600)))
+    fell = pga * ratio > 1
+    groups = RNG.integers(0, 50, 600)
+    options = {"folds": 5, "repeats": 2, "seed": 2}
+    both = cross_validated_threshold(np.column_stack([pga, ratio]), fell, groups, **options)
+    alone = cross_validated_threshold(pga, fell, groups, **options)
+    assert (both == fell).mean() > 0.95
+    assert (alone == fell).mean() < 0.85
+
+
+def test_both_kinds_of_error_are_counted():
+    measured = np.array([True, True, False, False])
+    row = agreement_row("x", np.array([True, False, True, True]), measured, np.arange(4), 0.9)
+    assert (row["false_alarms"], row["missed"], row["right"]) == (2, 1, 0.25)
+    assert row["lower"] < 0.25 < row["upper"]
+
+
+def test_a_rival_with_the_same_verdicts_is_as_good():
+    measured = RNG.random(100) < 0.5
+    verdicts = RNG.random(100) < 0.5
+    row = paired_row(verdicts, verdicts, measured, np.arange(100) % 20, 0.9, 1)
+    assert (row["better"], row["p"]) == (0, 1)
+
+
+def test_the_paired_test_keeps_its_level_when_tests_share_a_motion():
+    # both are right by the chance of the motion: a test that took tests for independent would reject often
+    rejected = 0
+    for seed in range(120):
+        rng = np.random.default_rng(seed)
+        groups = np.repeat(np.arange(15), 10)
+        ours, theirs = (rng.random(15)[groups] < 0.5 for _ in range(2))
+        row = paired_row(ours, theirs, np.ones(150, dtype=bool), groups, 0.9, seed)
+        rejected += row["p"] < 0.1
+    assert rejected / 120 < 0.18
+
+
+def test_the_same_verdicts_have_the_same_fragility():
+    measure = np.exp(RNG.normal(0, 0.7, 400))
+    fell = measure * np.exp(RNG.normal(0, 0.3, 400)) > 1
+    table = fragility_beside(
+        measure, fell, {"copy": fell}, np.arange(400) % 50, level=0.9, replicates=50, seed=1
+    ).set_index("who")
+    assert table.loc["measured", "theta"] == pytest.approx(1, rel=0.1)
+    assert table.loc["measured", "beta"] == pytest.approx(0.3, rel=0.3)
+    assert table.loc["copy", ["theta_ratio", "beta_ratio"]].tolist() == pytest.approx([1, 1])
+
+
+def test_regions_hold_every_test_once():
+    import pandas as pd
+
+    tests = pd.DataFrame({"a": np.exp(RNG.standard_normal(90)), "b": np.exp(RNG.standard_normal(90))})
+    fell = tests["a"].to_numpy() > 1
+    regions = by_region(tests, "a", "b", fell, fell)
+    assert regions["tests"].sum() == 90
+    assert (regions["right"] == 1).all()
