@@ -33,10 +33,21 @@ def laboratory(tmp_path_factory: pytest.TempPathFactory) -> Laboratory:
     for number in range(TESTS):
         group = number % GROUPS
         base = np.random.default_rng(group)
-        wave = np.sin(2 * np.pi * base.uniform(0.5, 3) * time + base.uniform(0, 6)) * np.hanning(len(time))
+        wave = np.sin(2 * np.pi * base.uniform(0.5, 3) * time + base.uniform(0, 6)) * np.hanning(
+            len(time)
+        )
         peak = rng.uniform(1.0, 5.0)
-        motions[f"run{number}"] = peak * (wave + 0.1 * rng.standard_normal(len(time)) * np.hanning(len(time)))
-        rows.append({"test": f"S{number}", "motion": f"run{number}", "input": f"wave {group}", "pga_g": peak / 9.81})
+        motions[f"run{number}"] = peak * (
+            wave + 0.1 * rng.standard_normal(len(time)) * np.hanning(len(time))
+        )
+        rows.append(
+            {
+                "test": f"S{number}",
+                "motion": f"run{number}",
+                "input": f"wave {group}",
+                "pga_g": peak / 9.81,
+            }
+        )
     result = overturns([BLOCK], list(motions.values()), DT, [1.0])
     table = pd.DataFrame(rows).assign(overturned=result.overturned[0, :, 0].astype(int))
     assert 0.2 < table["overturned"].mean() < 0.8

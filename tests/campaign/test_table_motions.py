@@ -1,4 +1,4 @@
-"""Motions of the table: read from an archive or from files, conditioned, and refused where they cannot be right."""
+"""Motions of the table: read from an archive or files, conditioned, refused where they cannot be right."""
 
 from pathlib import Path
 
@@ -38,7 +38,9 @@ def test_conditioning_takes_away_offset_and_spikes(tmp_path: Path):
     noisy = SHAKING + 0.001 * rng.standard_normal(len(TIME)) + 0.015
     noisy[300] = 4.0
     steps = [{"step": "remove_median"}, {"step": "despike"}]
-    (motion,) = table_motions(archive(tmp_path, a=noisy), ["a"], unit="g", dt=0.005, conditioning=steps)
+    (motion,) = table_motions(
+        archive(tmp_path, a=noisy), ["a"], unit="g", dt=0.005, conditioning=steps
+    )
     # where the spike was stands a neighbour, which the slope of the motion sets apart
     slope = np.abs(np.diff(SHAKING)).max()
     np.testing.assert_allclose(motion.acceleration / STANDARD_GRAVITY, SHAKING, atol=slope)

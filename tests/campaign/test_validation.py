@@ -5,7 +5,12 @@ import pytest
 
 from rockfrag.campaign.comparison import agreement_row, by_region, fragility_beside, paired_row
 from rockfrag.campaign.thresholds import best_threshold, cross_validated_threshold
-from rockfrag.campaign.validation import clustered_error, cross_validate, folds_by_group, plausible_trials
+from rockfrag.campaign.validation import (
+    clustered_error,
+    cross_validate,
+    folds_by_group,
+    plausible_trials,
+)
 
 RNG = np.random.default_rng(11)
 
@@ -127,7 +132,9 @@ def test_the_same_verdicts_have_the_same_fragility():
 def test_regions_hold_every_test_once():
     import pandas as pd
 
-    tests = pd.DataFrame({"a": np.exp(RNG.standard_normal(90)), "b": np.exp(RNG.standard_normal(90))})
+    tests = pd.DataFrame(
+        {"a": np.exp(RNG.standard_normal(90)), "b": np.exp(RNG.standard_normal(90))}
+    )
     fell = tests["a"].to_numpy() > 1
     regions = by_region(tests, "a", "b", fell, fell)
     assert regions["tests"].sum() == 90

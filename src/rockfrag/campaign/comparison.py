@@ -63,7 +63,11 @@ def paired_row(
     sums = np.bincount(groups, difference)
     width = stats.t.ppf(0.5 + level / 2, len(sums) - 1) * clustered_error(difference, groups)
     found = stats.permutation_test(
-        (sums,), np.sum, permutation_type="samples", n_resamples=9999, rng=np.random.default_rng(seed)
+        (sums,),
+        np.sum,
+        permutation_type="samples",
+        n_resamples=9999,
+        rng=np.random.default_rng(seed),
     )
     mean = float(difference.mean())
     return {
@@ -105,10 +109,13 @@ def fragility_beside(
     rng = np.random.default_rng(seed)
     count = int(groups.max()) + 1
     draws = rng.integers(0, count, (replicates, count))
-    weights = np.stack([np.bincount(draw, minlength=count)[groups] for draw in draws]).astype(np.float64)
+    weights = np.stack([np.bincount(draw, minlength=count)[groups] for draw in draws]).astype(
+        np.float64
+    )
     weights = np.vstack([np.ones((1, len(measure))), weights])
     curves = {
-        name: _curves(measure, verdicts, weights) for name, verdicts in {"measured": measured, **simulated}.items()
+        name: _curves(measure, verdicts, weights)
+        for name, verdicts in {"measured": measured, **simulated}.items()
     }
     tails = [(1 - level) / 2, (1 + level) / 2]
     rows = []
@@ -116,7 +123,9 @@ def fragility_beside(
         row: dict[str, object] = {"who": name}
         for i, parameter in enumerate(("theta", "beta")):
             row[parameter] = curve[0, i]
-            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = np.nanquantile(curve[1:, i], tails)
+            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = np.nanquantile(
+                curve[1:, i], tails
+            )
             if name != "measured":
                 ratio = curve[:, i] / curves["measured"][:, i]
                 row[f"{parameter}_ratio"] = ratio[0]
@@ -154,7 +163,9 @@ def by_region(
             row["tests"] = int(inside.sum())
             row["overturned"] = int(measured[inside].sum())
             row["simulated"] = int(verdict[inside].sum())
-            row["right"] = float((verdict == measured)[inside].mean()) if inside.any() else float("nan")
+            row["right"] = (
+                float((verdict == measured)[inside].mean()) if inside.any() else float("nan")
+            )
             rows.append(row)
     return pd.DataFrame(rows)
 

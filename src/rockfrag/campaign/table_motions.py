@@ -120,7 +120,9 @@ def _read(
             yield Motion(motion.acceleration, motion.dt, name, motion.metadata, motion.provenance)
         return
     if unit is None or dt is None:
-        raise InputError(f"{source}: an .npz archive states neither unit nor interval; give unit and dt.")
+        raise InputError(
+            f"{source}: an .npz archive states neither unit nor interval; give unit and dt."
+        )
     factor = TO_SI[asked_unit(unit)]
     with _archive(source) as content:
         for name in names:
@@ -129,5 +131,8 @@ def _read(
             except (ValueError, OSError, EOFError, zipfile.BadZipFile) as error:
                 raise InputError(f"{source}: motion {name} cannot be read ({error}).") from error
             yield Motion(
-                values * factor, dt, name, provenance=({"step": "read", "file": Path(source).name, "unit": unit},)
+                values * factor,
+                dt,
+                name,
+                provenance=({"step": "read", "file": Path(source).name, "unit": unit},),
             )

@@ -103,18 +103,20 @@ def _with_verdicts(
 ) -> pd.DataFrame:
     """Add verdict and amplitude; an amplitude of overturning makes one test survived and one overturned."""
     if "overturned" in columns:
-        scaled = (
-            number_column(raw, columns["amplitude_g"], source, above_zero=True)
-            if "amplitude_g" in columns
-            else np.nan
-        )
-        verdicts = verdict_column(raw, columns["overturned"], source).astype(bool)
-        return tests.assign(**{MEASURED: verdicts, "amplitude_g": scaled})
+        tests[MEASURED] = verdict_column(raw, columns["overturned"], source).astype(bool)
+        tests["amplitude_g"] = np.nan
+        if "amplitude_g" in columns:
+            tests["amplitude_g"] = number_column(
+                raw, columns["amplitude_g"], source, above_zero=True
+            )
+        return tests
     parts = []
     for key, fell in (("lower_g", False), ("upper_g", True)):
         amplitude = number_column(raw, columns[key], source, above_zero=True)
         names = [f"{test} at {a:g} g" for test, a in zip(tests["test"], amplitude, strict=True)]
-        parts.append(tests.assign(**{"test": names, MEASURED: fell, "amplitude_g": amplitude}))
+        part = tests.assign(test=names, amplitude_g=amplitude)
+        part[MEASURED] = fell
+        parts.append(part)
     wrong = np.flatnonzero(parts[0]["amplitude_g"] >= parts[1]["amplitude_g"])
     if wrong.size:
         raise InputError(
@@ -137,6 +139,8 @@ def _codes(
             f"{source}: has no verdict for {len(absent)} of {len(tests)} tests, {absent[0]} first."
         )
     verdicts = {
-        name: verdict_column(table, name, source).astype(bool) for name in table if name != column
+        name: verdict_column(table, name, source).astype(bool)
+        for name in map(str, table.columns)
+        if name != column
     }
     return pd.DataFrame(verdicts, index=names).loc[list(tests)].reset_index(drop=True)

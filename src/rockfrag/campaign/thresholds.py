@@ -22,7 +22,9 @@ def best_threshold(measure: Floats, overturned: Bools) -> float:
     order = np.argsort(measure, kind="stable")
     fell = overturned[order]
     # right verdicts if the first k tests are taken as survived
-    right = np.concatenate([[0], np.cumsum(~fell)]) + np.concatenate([np.cumsum(fell[::-1])[::-1], [0]])
+    right = np.concatenate([[0], np.cumsum(~fell)]) + np.concatenate(
+        [np.cumsum(fell[::-1])[::-1], [0]]
+    )
     first = int(right.argmax())
     sorted_measure = measure[order]
     if first == 0:
@@ -70,7 +72,10 @@ def _predicted(known: Floats, overturned: Bools, asked: Floats) -> Bools:
     if known.ndim == 1:
         return np.asarray(asked >= best_threshold(known, overturned))
     fit = fit_batch(
-        _design(known), overturned[None].astype(np.float64), np.ones((1, len(overturned))), penalised=True
+        _design(known),
+        overturned[None].astype(np.float64),
+        np.ones((1, len(overturned))),
+        penalised=True,
     )
     return np.asarray(_design(asked) @ fit.coefficients[0] >= 0)
 

@@ -50,7 +50,9 @@ class Validated:
         return self.mean_votes >= 0.5
 
 
-def folds_by_group(groups: NDArray[np.int64], count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+def folds_by_group(
+    groups: NDArray[np.int64], count: int, rng: np.random.Generator
+) -> NDArray[np.int64]:
     """Assign each test to a fold such that tests of one group share it.
 
     Parameters

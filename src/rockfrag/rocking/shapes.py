@@ -11,6 +11,7 @@ import os
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,7 +172,7 @@ class Shape:
         if min(edges.left, edges.right) <= 0:
             raise InputError(
                 f"{self.name}: along {direction_deg:g}° its edges are {edges.left:.4f} and {edges.right:.4f} m "
-                "from the centre of gravity, so it cannot stand; give a larger contact tolerance or a smaller retreat."
+                "from the centre of gravity, so it cannot stand; give a larger tolerance or less retreat."
             )
         return Block(
             width=edges.left + edges.right,
@@ -261,7 +262,7 @@ def _positive(path: str | os.PathLike[str], name: str, value: float | None) -> f
     return float(value)
 
 
-def _closed_mesh(path: Path):  # type: ignore[no-untyped-def]
+def _closed_mesh(path: Path) -> Any:
     """Read a mesh with trimesh and turn it outside out; refuse one with holes."""
     import trimesh
 
@@ -270,12 +271,12 @@ def _closed_mesh(path: Path):  # type: ignore[no-untyped-def]
     if not path.is_file():
         raise InputError(f"{path}: there is no such file; correct the path.")
     try:
-        mesh = trimesh.load(path, process=False, force="mesh")
+        mesh: Any = trimesh.load(path, process=False, force="mesh")
         # the triangles of an STL file do not know their neighbours
         if path.suffix.lower() == ".stl":
             mesh.merge_vertices()
         faces, vertices = np.asarray(mesh.faces), np.asarray(mesh.vertices)
-    except Exception as error:  # noqa: BLE001  trimesh raises whatever a damaged file provokes
+    except Exception as error:
         raise InputError(f"{path}: cannot be read as a mesh ({type(error).__name__}).") from error
     if len(faces) == 0 or not np.isfinite(vertices).all():
         raise InputError(f"{path}: the mesh has no triangles or a vertex that is not finite.")

@@ -83,7 +83,9 @@ def _campaign_with_motions(job: Job[CampaignStudy]) -> tuple[Campaign, list[Moti
             raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
-        campaign = Campaign(_measured(campaign.tests, motions), ("pga_g", "pgv_cm_s"), campaign.codes)
+        campaign = Campaign(
+            _measured(campaign.tests, motions), ("pga_g", "pgv_cm_s"), campaign.codes
+        )
     return campaign, motions
 
 
@@ -138,7 +140,7 @@ def _validated(study: CampaignStudy, verdicts: Any, measured: Any, groups: Any) 
 
 
 def _judged_trials(trials: Trials, verdicts: Any, measured: Any, groups: Any) -> pd.DataFrame:
-    """Trials with their agreement over all tests, which is in sample and shows only where the plausible ones lie."""
+    """Trials with their agreement over all tests: in sample, so it only shows where the plausible ones lie."""
     right = (verdicts == measured).mean(axis=1)
     plausible = plausible_trials(verdicts == measured, groups)
     return trials.table.assign(right_in_sample=right, plausible=plausible).sort_values(
@@ -200,15 +202,26 @@ def _conditioning(
     study = job.study
     measured = campaign.tests[MEASURED].to_numpy()
     rows = [
-        {**agreement_row("as configured", validated.verdicts, measured, groups, study.confidence), "trials": study.trials}
+        {
+            **agreement_row(
+                "as configured", validated.verdicts, measured, groups, study.confidence
+            ),
+            "trials": study.trials,
+        }
     ]
     fewer = max(16, study.trials // VARIED_SHARE)
     trials = sample_trials(thing, study.unknowns, fewer, study.seed)
-    for name, steps in {"as configured, fewer trials": study.conditioning, **study.varied_conditioning}.items():
+    for name, steps in {
+        "as configured, fewer trials": study.conditioning,
+        **study.varied_conditioning,
+    }.items():
         verdicts = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
         found = _validated(study, verdicts, measured, groups)
         rows.append(
-            {**agreement_row(name, found.verdicts, measured, groups, study.confidence), "trials": fewer}
+            {
+                **agreement_row(name, found.verdicts, measured, groups, study.confidence),
+                "trials": fewer,
+            }
         )
         job.log.info("conditioning %s", name)
     return pd.DataFrame(rows).rename(columns={"who": "conditioning"})
@@ -218,8 +231,14 @@ SCANS = 50
 
 
 def _contact(study: CampaignStudy, thing: Shape | Block) -> pd.DataFrame:
-    """How the base depends on the contact tolerance: critical angle in the worst direction, over repeated scans."""
-    columns = ["contact_tolerance_mm", "worst_direction_deg", "alpha_deg", "alpha_lower_deg", "alpha_upper_deg"]
+    """How the base depends on the contact tolerance: the least critical angle, with scans repeated."""
+    columns = [
+        "contact_tolerance_mm",
+        "worst_direction_deg",
+        "alpha_deg",
+        "alpha_lower_deg",
+        "alpha_upper_deg",
+    ]
     if isinstance(thing, Block):
         return pd.DataFrame(columns=columns, dtype=float)
     low, high = study.unknowns["contact_tolerance_mm"]
@@ -231,7 +250,11 @@ def _contact(study: CampaignStudy, thing: Shape | Block) -> pd.DataFrame:
             direction, angle = thing.worst_direction(tolerance / 1e3)
         except InputError:
             continue
-        angles = [_worst_angle(thing.scanned_again(scan, rng), tolerance) for _ in range(SCANS)] if scan else [angle]
+        angles = (
+            [_worst_angle(thing.scanned_again(scan, rng), tolerance) for _ in range(SCANS)]
+            if scan
+            else [angle]
+        )
         limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
         rows.append([tolerance, direction, np.degrees(angle), *limits])
     return pd.DataFrame(rows, columns=columns)
@@ -251,7 +274,9 @@ def _footprint(
         parts.append((name, tolerance, thing.contact_polygon(tolerance / 1e3)))
     return pd.concat(
         [
-            pd.DataFrame({"what": name, "contact_tolerance_mm": tolerance, "x_m": xy[:, 0], "y_m": xy[:, 1]})
+            pd.DataFrame(
+                {"what": name, "contact_tolerance_mm": tolerance, "x_m": xy[:, 0], "y_m": xy[:, 1]}
+            )
             for name, tolerance, xy in parts
         ],
         ignore_index=True,

@@ -112,7 +112,10 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     _check_columns(source, campaign["columns"])
     steps = {"conditioning": tuple(content.get("conditioning", ()))}
     varied = {name: tuple(value) for name, value in content.get("varied_conditioning", {}).items()}
-    for key, value in {**steps, **{f"varied_conditioning.{k}": v for k, v in varied.items()}}.items():
+    for key, value in {
+        **steps,
+        **{f"varied_conditioning.{k}": v for k, v in varied.items()},
+    }.items():
         try:
             check_steps(value)
         except InputError as error:
@@ -148,12 +151,16 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         object=thing,
         conditioning=steps["conditioning"],
         varied_conditioning=varied,
-        unknowns={key: (float(low), float(high)) for key, (low, high) in content["unknowns"].items()},
+        unknowns={
+            key: (float(low), float(high)) for key, (low, high) in content["unknowns"].items()
+        },
         trials=content["trials"],
         folds=content.get("folds", 5),
         repeats=content.get("repeats", 20),
         confidence=content.get("confidence", 0.9),
-        mesh=None if mesh is None else _existing(source, "object.mesh", _beside(source, mesh), fetched),
+        mesh=None
+        if mesh is None
+        else _existing(source, "object.mesh", _beside(source, mesh), fetched),
     )
 
 
@@ -184,20 +191,28 @@ def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str,
             raise InputError(f"{where}: give either mass_kg or density_kg_m3.")
         missing = [key for key in _OF_A_MESH if key not in unknowns]
         if missing:
-            raise InputError(f"{source}: key unknowns: {missing[0]} is needed for a mesh; give its range.")
+            raise InputError(
+                f"{source}: key unknowns: {missing[0]} is needed for a mesh; give its range."
+            )
         return
     missing = [key for key in _BY_HAND if key not in thing]
     if missing:
-        raise InputError(f"{where}: {missing[0]} is missing; without a mesh all of {', '.join(_BY_HAND)} are needed.")
+        raise InputError(
+            f"{where}: {missing[0]} is missing; without a mesh all of {', '.join(_BY_HAND)} are needed."
+        )
     strange = [key for key in _OF_A_MESH if key in unknowns]
     if strange:
-        raise InputError(f"{source}: key unknowns: {strange[0]} has a meaning for a mesh only; leave it out.")
+        raise InputError(
+            f"{source}: key unknowns: {strange[0]} has a meaning for a mesh only; leave it out."
+        )
 
 
 def _check_columns(source: Path, columns: Mapping[str, str]) -> None:
     brackets = ("lower_g" in columns, "upper_g" in columns)
     if any(brackets) and not all(brackets):
-        raise InputError(f"{source}: key campaign.columns: lower_g and upper_g belong together; give both.")
+        raise InputError(
+            f"{source}: key campaign.columns: lower_g and upper_g belong together; give both."
+        )
     if ("overturned" in columns) == all(brackets):
         raise InputError(
             f"{source}: key campaign.columns: give either overturned, a verdict per test, or lower_g and upper_g, "

@@ -26,11 +26,15 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.7 + 0.24 * len(rows))
         axes = figure.subplots()
-        for place, row in rows.iterrows():
+        for place, row in enumerate(rows.to_dict("records")):
             colour = BLUE if place == len(rows) - 1 else BLACK
             filled = row["judged"] == "by other motions"
-            axes.plot([100 * row["lower"], 100 * row["upper"]], [place, place], color=colour, lw=1.2)
-            axes.plot(100 * row["right"], place, "o", color=colour, mfc=colour if filled else "white")
+            axes.plot(
+                [100 * row["lower"], 100 * row["upper"]], [place, place], color=colour, lw=1.2
+            )
+            axes.plot(
+                100 * row["right"], place, "o", color=colour, mfc=colour if filled else "white"
+            )
         axes.set_yticks(range(len(rows)), list(rows["who"]))
         axes.set_xlabel("Verdicts right [%]")
         axes.grid(axis="x")
@@ -99,7 +103,7 @@ def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -
 
 
 def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
-    """Draw the object from above: outline, contact polygons, centre of gravity, plausible directions of shaking."""
+    """Draw the object from above: outline, contact polygons, centre of gravity, plausible directions."""
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 3.2)
         axes = figure.subplots()
@@ -122,7 +126,13 @@ def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
         likely = np.radians(trials.loc[trials["plausible"], "direction_deg"].to_numpy())
         for number, angle in enumerate(likely[:60]):
             ends = reach * np.array([[1.02], [1.12]]) * [np.cos(angle), np.sin(angle)]
-            axes.plot(ends[:, 0], ends[:, 1], color=BLUE, lw=0.8, label=None if number else "plausible direction")
+            axes.plot(
+                ends[:, 0],
+                ends[:, 1],
+                color=BLUE,
+                lw=0.8,
+                label=None if number else "plausible direction",
+            )
         axes.set_aspect("equal")
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
