@@ -7,13 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from rockfrag.errors import InputError
-from rockfrag.motions.processing import check_steps
-from rockfrag.study.validation import check_schema, read_schema
+from rockfrag.schema import checked
+from rockfrag.study.steps import Steps, checked_steps
 
 CAMPAIGN_KEY = "campaign"
 """Key that only a study of a campaign has."""
-
-Steps = tuple[Mapping[str, Any], ...]
 
 
 @dataclass(frozen=True)
@@ -101,7 +99,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         One sentence with the file, the key, what was expected and what was found.
     """
     source = Path(path)
-    check_schema(content, read_schema("campaign.schema.json"), str(source))
+    content = checked(content, "campaign", str(source))
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
         PublicFile(one["url"], one["sha256"], _beside(source, one["file"]))
@@ -110,16 +108,11 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     fetched = {one.path for one in fetch}
     _check_object(source, thing, content["unknowns"])
     _check_columns(source, campaign["columns"])
-    steps = {"conditioning": tuple(content.get("conditioning", ()))}
-    varied = {name: tuple(value) for name, value in content.get("varied_conditioning", {}).items()}
-    for key, value in {
-        **steps,
-        **{f"varied_conditioning.{k}": v for k, v in varied.items()},
-    }.items():
-        try:
-            check_steps(value)
-        except InputError as error:
-            raise InputError(f"{source}: key {key}: {error}") from error
+    conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
+    varied = {
+        name: checked_steps(source, f"varied_conditioning.{name}", steps)
+        for name, steps in content.get("varied_conditioning", {}).items()
+    }
     for key, (low, high) in content["unknowns"].items():
         if low > high or (key == "contact_tolerance_mm" and low <= 0):
             raise InputError(
@@ -149,7 +142,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         leave_out=campaign.get("without_motion", "refuse") == "leave_out",
         measures={name: tuple(value) for name, value in campaign.get("measures", {}).items()},
         object=thing,
-        conditioning=steps["conditioning"],
+        conditioning=conditioning,
         varied_conditioning=varied,
         unknowns={
             key: (float(low), float(high)) for key, (low, high) in content["unknowns"].items()

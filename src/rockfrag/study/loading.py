@@ -17,6 +17,7 @@ from rockfrag.files import distinct_file_names
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
+from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
 from rockfrag.study.configurations import (
     Configuration,
     each_alone,
@@ -29,9 +30,12 @@ from rockfrag.study.measured_table import (
     measured_table_from,
 )
 from rockfrag.study.paths import existing_file
+from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
 from rockfrag.yaml_file import read_yaml
+
+AnyStudy = Study | MeasuredTable | CampaignStudy
 
 
 def load_study(path: str | os.PathLike[str]) -> Study:
@@ -45,8 +49,8 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     return study_from(read_yaml(path), path)
 
 
-def load_any(path: str | os.PathLike[str]) -> Study | MeasuredTable:
-    """Read a configuration of either kind: a simulated study, or one of a measured table.
+def load_any(path: str | os.PathLike[str]) -> AnyStudy:
+    """Read a configuration of any kind: a simulated study, a measured table, a campaign on a shake table.
 
     Raises
     ------
@@ -56,8 +60,8 @@ def load_any(path: str | os.PathLike[str]) -> Study | MeasuredTable:
     return any_study(read_yaml(path), path)
 
 
-def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study | MeasuredTable:
-    """Make a study of either kind of a configuration that was read from ``path``.
+def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
+    """Make a study of any kind of a configuration that was read from ``path``.
 
     Raises
     ------
@@ -66,6 +70,8 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Study
     """
     if is_measured_table(content):
         return measured_table_from(content, path)
+    if is_campaign(content):
+        return campaign_from(content, path)
     return study_from(content, path)
 
 
@@ -97,7 +103,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         source=source,
         catalogue_file=catalogue_file,
         catalogue=_rows(source, read_catalogue(catalogue_file), motions.get("use")),
-        processing=_steps(source, motions.get("processing", ())),
+        processing=checked_steps(source, "motions.processing", motions.get("processing", ())),
         building_file=building_file,
         building=None if building_file is None else read_building(building_file),
         specimens_file=specimens_file,
@@ -124,18 +130,6 @@ def _amplitudes(source: Path, content: Mapping[str, float]) -> Amplitudes:
         return Amplitudes(**content)
     except InputError as error:
         raise InputError(f"{source}: {error}") from error
-
-
-def _steps(source: Path, steps: Sequence[Mapping[str, Any]]) -> tuple[Mapping[str, Any], ...]:
-    if steps:
-        # the steps need SciPy and ObsPy, which a study without any need not wait for
-        from rockfrag.motions.processing import check_steps
-
-        try:
-            check_steps(steps)
-        except InputError as error:
-            raise InputError(f"{source}: key motions.processing: {error}") from error
-    return tuple(steps)
 
 
 def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.DataFrame:
