@@ -68,3 +68,12 @@ def test_a_missing_verdict_of_another_program_is_named(tmp_path: Path):
     codes = table(tmp_path, "test,dem\nC,1\nA,0\n", "codes.csv")
     with pytest.raises(InputError, match="no verdict for 1 of 3 tests, B first"):
         read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes)
+
+
+def test_the_template_has_the_columns_of_a_campaign(tmp_path: Path):
+    template = Path(__file__).parents[2] / "config" / "experiment" / "campaign-template.csv"
+    text = template.read_text() + "A,run1,wave,yes\n"
+    columns = {name: name for name in ("test", "motion", "group", "overturned")}
+    tests = read_campaign(table(tmp_path, text), columns, {}).tests
+    assert tests[["test", "motion", "group"]].to_numpy().tolist() == [["A", "run1", "wave"]]
+    assert tests["overturned"].all()

@@ -1,5 +1,6 @@
 """The table of a campaign: one row a test, what the table was told to do and what the object did."""
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,12 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.user_table import (
-    label_column,
-    number_column,
-    read_text_table,
-    verdict_column,
-)
+from rockfrag.fragility.tests_file import read_columns, read_titles
 
 MEASURED = "overturned"
 """Column of what the laboratory saw."""
@@ -76,24 +72,28 @@ def read_campaign(
     InputError
         If a file cannot be read, a column or a value is missing or cannot be used, or a test stands twice.
     """
-    raw, source = read_text_table(path), Path(path).name
-    motion = label_column(raw, columns["motion"], source)
+    source = Path(path).name
+    recipes = list(measures.values())
+    peaks = [columns[key] for key in ("amplitude_g", "lower_g", "upper_g") if key in columns]
+    raw = read_columns(
+        path,
+        labels=[columns[key] for key in ("test", "motion", "group") if key in columns],
+        positive=[*(one for recipe in recipes for one in recipe if isinstance(one, str)), *peaks],
+        verdicts=[columns["overturned"]] if "overturned" in columns else [],
+    )
     tests = pd.DataFrame(
         {
-            "test": label_column(raw, columns["test"], source),
-            "motion": motion,
-            "group": label_column(raw, columns["group"], source) if "group" in columns else motion,
+            "test": raw[columns["test"]],
+            "motion": raw[columns["motion"]],
+            "group": raw[columns.get("group", columns["motion"])],
         }
     )
     doubled = tests["test"][tests["test"].duplicated()]
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
-    for name, factors in measures.items():
-        values = [
-            number_column(raw, one, source, above_zero=True) if isinstance(one, str) else float(one)
-            for one in factors
-        ]
-        tests[name] = np.prod(np.broadcast_arrays(*values, np.ones(len(raw))), axis=0)
+    for name, recipe in measures.items():
+        factors = [raw[one] if isinstance(one, str) else one for one in recipe]
+        tests[name] = math.prod(factors)
     tests = _with_verdicts(tests, raw, columns, source)
     return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
 
@@ -103,16 +103,12 @@ def _with_verdicts(
 ) -> pd.DataFrame:
     """Add verdict and amplitude; an amplitude of overturning makes one test survived and one overturned."""
     if "overturned" in columns:
-        tests[MEASURED] = verdict_column(raw, columns["overturned"], source).astype(bool)
-        tests["amplitude_g"] = np.nan
-        if "amplitude_g" in columns:
-            tests["amplitude_g"] = number_column(
-                raw, columns["amplitude_g"], source, above_zero=True
-            )
+        tests[MEASURED] = raw[columns["overturned"]].astype(bool)
+        tests["amplitude_g"] = raw[columns["amplitude_g"]] if "amplitude_g" in columns else np.nan
         return tests
     parts = []
     for key, fell in (("lower_g", False), ("upper_g", True)):
-        amplitude = number_column(raw, columns[key], source, above_zero=True)
+        amplitude = raw[columns[key]]
         names = [f"{test} at {a:g} g" for test, a in zip(tests["test"], amplitude, strict=True)]
         part = tests.assign(test=names, amplitude_g=amplitude)
         part[MEASURED] = fell
@@ -131,16 +127,12 @@ def _codes(
     """Verdicts of other programs in the order of the tests."""
     if path is None:
         return pd.DataFrame(index=range(len(tests)))
-    table, source = read_text_table(path), Path(path).name
-    names = label_column(table, column, source)
-    absent = sorted(set(tests) - set(names))
+    source = Path(path).name
+    names = [name for name in read_titles(path) if name != column]
+    table = read_columns(path, labels=[column], verdicts=names).set_index(column)
+    absent = sorted(set(tests) - set(table.index))
     if absent:
         raise InputError(
             f"{source}: has no verdict for {len(absent)} of {len(tests)} tests, {absent[0]} first."
         )
-    verdicts = {
-        name: verdict_column(table, name, source).astype(bool)
-        for name in map(str, table.columns)
-        if name != column
-    }
-    return pd.DataFrame(verdicts, index=names).loc[list(tests)].reset_index(drop=True)
+    return table.astype(bool).loc[list(tests)].reset_index(drop=True)

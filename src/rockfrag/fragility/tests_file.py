@@ -1,6 +1,7 @@
 """Somebody's own table of tests as a text file, read in pieces so that its length does not matter.
 
-Commas, semicolons and tabs, decimal commas, UTF-8, UTF-16 and Western European text are understood; what
+Commas, semicolons and tabs, decimal commas, comments above the header (lines that start with ``#``), UTF-8,
+UTF-16 and Western European text are understood; what
 is not is refused in one sentence that names file, row (the header is row 1) and column.
 """
 
@@ -103,17 +104,83 @@ def read_tests(
     return pd.concat(parts, ignore_index=True)
 
 
+def read_columns(
+    path: str | os.PathLike[str],
+    *,
+    labels: Sequence[str] = (),
+    positive: Sequence[str] = (),
+    verdicts: Sequence[str] = (),
+) -> pd.DataFrame:
+    """Read single columns of a table of tests.
+
+    Parameters
+    ----------
+    path
+        Text file with a header.
+    labels, positive, verdicts
+        Columns of text, of numbers above zero, and of verdicts (0 and 1 in the result).
+
+    Raises
+    ------
+    InputError
+        As :func:`read_tests`.
+    """
+    source = Path(path).name
+    needed = list(dict.fromkeys([*labels, *positive, *verdicts]))
+    parts, first = [], 0
+    with closing(_pieces(path, source, needed)) as pieces:
+        for piece, decimal_comma in pieces:
+            number = _Numbers(piece, source, first, decimal_comma)
+            columns: dict[str, object] = {name: number.labels(name) for name in labels}
+            columns |= {name: number.product([name]) for name in positive}
+            columns |= {name: number.verdicts(name) for name in verdicts}
+            parts.append(pd.DataFrame(columns))
+            first += len(piece)
+    if not first:
+        raise InputError(f"{source}: there is no row below the header; give at least one test.")
+    return pd.concat(parts, ignore_index=True)
+
+
+def read_titles(path: str | os.PathLike[str]) -> list[str]:
+    """Return the titles of the columns of a table of tests.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or has no header.
+    """
+    source = Path(path).name
+    encoding = _encoding(path, source)
+    head = _head(path, encoding)[1]
+    titles = [title.strip() for title in next(csv.reader([head], delimiter=_separator(head)), [])]
+    if not any(titles):
+        raise InputError(f"{source}: not a readable CSV table (it has no header); mend the file.")
+    return titles
+
+
+def _head(path: str | os.PathLike[str], encoding: str) -> tuple[int, str]:
+    """Return the number of comments, lines that start with ``#``, before the header, and the header."""
+    with open(path, encoding=encoding, newline="") as file:
+        comments = 0
+        for line in file:
+            if not line.startswith("#"):
+                return comments, line
+            comments += 1
+    return comments, ""
+
+
+def _separator(head: str) -> str:
+    return max(",;\t", key=head.count)
+
+
 def _pieces(
     path: str | os.PathLike[str], source: str, needed: Sequence[str]
 ) -> Generator[tuple[pd.DataFrame, bool], None, None]:
     """Yield the needed columns as text, piece by piece, and whether a comma may be a decimal point."""
     encoding = _encoding(path, source)
-    with open(path, encoding=encoding, newline="") as file:
-        head = file.readline()
-    separator = max(",;\t", key=head.count)
-    titles = [title.strip() for title in next(csv.reader([head], delimiter=separator), [])]
-    if not any(titles):
-        raise InputError(f"{source}: not a readable CSV table (it has no header); mend the file.")
+    titles = read_titles(path)
+    comments, head = _head(path, encoding)
+    separator = _separator(head)
     places = []
     for name in needed:
         if name not in titles:
@@ -133,7 +200,7 @@ def _pieces(
                 path,
                 header=None,
                 names=range(len(titles)),
-                skiprows=1,
+                skiprows=comments + 1,
                 dtype=str,
                 index_col=False,
                 sep=separator,
