@@ -7,8 +7,9 @@ report in :mod:`rockfrag.report.sections`.
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from rockfrag.report.stages import MEASURED_TABLE
+from rockfrag.report.stages import CAMPAIGN_REPORT, MEASURED_TABLE
 from rockfrag.stages import (
+    campaign,
     explanation,
     fragility,
     measured_tests,
@@ -19,6 +20,8 @@ from rockfrag.stages import (
     tests,
 )
 from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.study.campaign import CampaignStudy
+from rockfrag.study.loading import AnyStudy
 from rockfrag.study.measured_table import MeasuredTable
 from rockfrag.study.study import Study
 from rockfrag.thesis import stages as thesis
@@ -38,10 +41,12 @@ _GENERAL: tuple[Stage[Study], ...] = (
 )
 
 
-def study_stages(study: Study | MeasuredTable) -> list[Stage[Any]]:
+def study_stages(study: AnyStudy) -> list[Stage[Any]]:
     """Stages of a study in the order in which data flow."""
     if isinstance(study, MeasuredTable):
         return [MEASURED_TABLE]
+    if isinstance(study, CampaignStudy):
+        return [campaign.STAGE, CAMPAIGN_REPORT]
     guests = [thesis.STAGE] if study.compare_with == "thesis" else []
     stages = [one for one in (*_GENERAL, *guests) if one.wanted(study)]
     return [*stages, _report_stage(stages)]

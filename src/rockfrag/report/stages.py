@@ -1,6 +1,8 @@
-"""The stage of a table of somebody's own tests: everything, from its curves to its report."""
+"""Reports of studies that are not of a simulated kind: a table of tests, a campaign on a shake table."""
 
+from rockfrag.stages.campaign import TABLES
 from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.measured_table import MeasuredTable
 
 MEASURED_TABLES = ("tests", "fragility", "recommendation", "bins", "goodness")
@@ -34,4 +36,22 @@ MEASURED_TABLE = Stage(
     files=lambda study: [str(study.table)],
     outputs=(*MEASURED_TABLES, "figures/", "report.html"),
     settings=("title", "seed", "table", "columns", "measures", "confidence", "replicates"),
+)
+
+
+def _campaign_report(job: Job[CampaignStudy]) -> Results:
+    """Draw the figures of a campaign and write its page."""
+    from rockfrag.report.campaign_page import write_campaign_report
+
+    write_campaign_report(job.study, job.folder)
+    job.log.info("%s", job.folder / "report.html")
+    yield from ()
+
+
+CAMPAIGN_REPORT: Stage[CampaignStudy] = Stage(
+    name="campaign_report",
+    run=_campaign_report,
+    inputs=TABLES,
+    outputs=("figures/", "report.html"),
+    settings=("title", "conditioning", "confidence"),
 )

@@ -79,10 +79,12 @@ class CampaignStudy:
 
     @property
     def files(self) -> list[str]:
-        """Files that it depends on."""
-        found = [str(self.tests)]
-        found += [str(path) for path in (self.other_codes, self.mesh) if path is not None]
-        return found + ([self.motions] if self.motions.endswith(".npz") else [])
+        """Files that must be there before anything runs; those to be fetched are not among them."""
+        named = (self.tests, self.other_codes, self.mesh)
+        paths = [path for path in named if path is not None]
+        paths += [Path(self.motions)] if self.motions.endswith(".npz") else []
+        fetched = {one.path for one in self.fetch}
+        return [str(path) for path in paths if path not in fetched]
 
 
 def is_campaign(content: Mapping[str, Any]) -> bool:

@@ -1,0 +1,430 @@
+"""The report of a campaign on a shake table: how often the simulation is right, and where it is not."""
+
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rockfrag.files import write_text
+from rockfrag.fragility.observations import name_and_unit
+from rockfrag.report.figures.campaign import (
+    agreement_figure,
+    beside_figure,
+    footprint_figure,
+    tests_figure,
+)
+from rockfrag.report.page import Column, render, table_html
+from rockfrag.report.part import FigureSpec, Finding, Section
+from rockfrag.report.study_report import FIGURES, draw
+from rockfrag.report.wording import counted, estimate, listed, number, probability
+from rockfrag.stages.campaign import OURS, TABLES
+from rockfrag.stages.digest import source_digest
+from rockfrag.study.campaign import CampaignStudy
+
+
+def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
+    """Draw the figures of a campaign and write its page, ``report.html``.
+
+    Parameters
+    ----------
+    study
+        The configuration.
+    folder
+        Folder of the results, with the tables of :data:`rockfrag.stages.campaign.TABLES`.
+    """
+    tables = {name: pd.read_parquet(folder / f"{name}.parquet") for name in TABLES}
+    sections = [
+        _agreement(study, tables),
+        _fragility(study, tables),
+        _tests(study, tables),
+        _object(tables),
+        _conditioning(study, tables),
+    ]
+    pictures = {
+        spec.name: draw(spec, folder / FIGURES)
+        for section in sections
+        for spec in section.parts
+        if isinstance(spec, FigureSpec)
+    }
+    tests = tables["tests"]
+    page = render(
+        title=study.title,
+        lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
+        f"{int(tests['overturned'].sum())} of them overturned, each simulated with the table’s own motion.",
+        findings=_findings(tables),
+        sections=sections,
+        pictures=pictures,
+        provenance={
+            "Configuration": study.source.name,
+            "Tests": study.tests.name,
+            "Seed": str(study.seed),
+            "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('rockfrag.guests')}",
+        },
+        basis="measured",
+    )
+    write_text(page, folder / "report.html")
+
+
+Row = Mapping[Any, Any]
+
+
+def _percent(row: Row) -> str:
+    return estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
+
+
+def _who(name: str) -> str:
+    """Who gave verdicts, in words: thresholds by their measure, codes by their name."""
+    if name == OURS:
+        return "simulation"
+    for start in ("threshold on ", "probit on "):
+        if name.startswith(start):
+            measures = name.removeprefix(start).split(" and ")
+            return start + " and ".join(name_and_unit(one)[0] for one in measures)
+    return name
+
+
+def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
+    ours, *rivals = tables["agreement"].to_dict("records")
+    found = [
+        Finding(
+            f"{number(100 * ours['right'], 1)} % of the verdicts are right",
+            f"Of tests whose motions had no part in choosing what was not measured, {_percent(ours)} are "
+            f"simulated as they happened; {number(ours['missed'], 0)} tests overturned in the laboratory and not in the "
+            f"simulation, {number(ours['false_alarms'], 0)} in the simulation only.",
+        ),
+        *_against_rivals(rivals),
+        *_fragility_found(tables["fragility"]),
+    ]
+    tests = tables["tests"]
+    near = tests["near_critical"]
+    wrong = ~tests["right"]
+    if wrong.any():
+        found.append(
+            Finding(
+                f"{int((wrong & near).sum())} of {int(wrong.sum())} wrong verdicts are near-critical",
+                f"In {int(near.sum())} of {len(tests)} tests plausible ways to set up the object disagree by more "
+                "than one in ten; the others are decided whatever nobody measured.",
+            )
+        )
+    return found
+
+
+def _against_rivals(rivals: Sequence[Row]) -> list[Finding]:
+    if not rivals:
+        return []
+    best = max(rivals, key=lambda row: float(row["right"]))
+    name = _who(best["who"])
+    more = estimate(100 * best["better"], 100 * best["better_lower"], 100 * best["better_upper"], 1)
+    clear = best["better_lower"] > 0
+    losing = best["better_upper"] < 0
+    headline = (
+        f"Better than {name}, the best of {counted(len(rivals), 'rival')}"
+        if clear
+        else f"{name.capitalize()} is better"
+        if losing
+        else f"Not told apart from {name}, the best of {counted(len(rivals), 'rival')}"
+    )
+    if best["better_lower"] <= 0:  # an estimate with a negative limit is not written as a ratio is
+        more = (
+            f"{number(100 * best['better'], 1)} [{number(100 * best['better_lower'], 1)}, "
+            f"{number(100 * best['better_upper'], 1)}]"
+        )
+    return [
+        Finding(
+            headline,
+            f"On the same tests {name} is right in {_percent(best)}: a difference of {more} percentage points "
+            f"(p {_p(best['p'])}).",
+        )
+    ]
+
+
+def _p(value: float) -> str:
+    text = probability(value)
+    return text if text.startswith("<") else f"= {text}"
+
+
+def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
+    rows = fragility[fragility["who"] == OURS].dropna(subset=["theta_ratio"])
+    if rows.empty:
+        return []
+    # the measure that orders the tests best is the one in which a curve says most
+    measured = fragility[fragility["who"] == "measured"].set_index("measure")["beta"]
+    measure = str(measured.idxmin())
+    row = rows[rows["measure"] == measure].to_dict("records")[0]
+    name = name_and_unit(measure)[0]
+    theta = estimate(row["theta_ratio"], row["theta_ratio_lower"], row["theta_ratio_upper"], 2)
+    beta = estimate(row["beta_ratio"], row["beta_ratio_lower"], row["beta_ratio_upper"], 2)
+    agrees = row["theta_ratio_lower"] <= 1 <= row["theta_ratio_upper"]
+    headline = (
+        f"The simulated fragility in {name} is not told apart from the measured one"
+        if agrees
+        else f"The simulated median in {name} is off by {number(100 * abs(row['theta_ratio'] - 1), 0)} %"
+    )
+    return [
+        Finding(
+            headline,
+            f"Median over measured median {theta}, dispersion over measured dispersion {beta}.",
+        )
+    ]
+
+
+def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
+    agreement = tables["agreement"]
+    shown = agreement.assign(
+        who=[_who(name) for name in agreement["who"]],
+        right_text=[_percent(row) for row in agreement.to_dict("records")],
+        better_text=[
+            "–"
+            if not pd.notna(row["better"])
+            else f"{number(100 * row['better'], 1)} [{number(100 * row['better_lower'], 1)}, "
+            f"{number(100 * row['better_upper'], 1)}]"
+            for row in agreement.to_dict("records")
+        ],
+        p_text=[probability(p) for p in agreement["p"]],
+    )
+    columns = (
+        Column("who", "Verdicts by"),
+        Column("right_text", "Right", numeric=True),
+        Column("false_alarms", "False alarms", 1),
+        Column("missed", "Missed", 1),
+        Column("better_text", "Simulation better by [points]", numeric=True),
+        Column("p_text", "p", numeric=True),
+        Column("judged", "Judged"),
+    )
+    best = max(agreement.to_dict("records"), key=lambda row: float(row["right"]))
+    figure = FigureSpec(
+        "agreement",
+        f"{_who(best['who']).capitalize()} is right most often, in {_percent(best)} of the tests.",
+        f"Share of right verdicts with {100 * study.confidence:g} % intervals over motions; full dots are "
+        "judged by motions that did not choose them, open ones as they were given.",
+        lambda: agreement_figure(agreement.assign(who=shown["who"])),
+    )
+    return Section(
+        "agreement",
+        "Who is right how often",
+        [
+            "What nobody measured is chosen by some motions and judged by the others; thresholds likewise. "
+            "Other programs stand as their authors tuned them, in sample.",
+        ],
+        [
+            figure,
+            table_html(
+                shown, columns, "Verdicts of all tests, and the difference on the same tests."
+            ),
+        ],
+    )
+
+
+def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
+    fragility, tests = tables["fragility"], tables["tests"]
+    rows = []
+    for row in fragility.to_dict("records"):
+        name, unit = name_and_unit(row["measure"])
+        rows.append(
+            {
+                "measure": f"{name} [{unit}]",
+                "who": "measured" if row["who"] == "measured" else "simulated",
+                **{
+                    key: estimate(row[key], row[f"{key}_lower"], row[f"{key}_upper"], digits)
+                    for key, digits in (
+                        ("theta", 3),
+                        ("beta", 2),
+                        ("theta_ratio", 2),
+                        ("beta_ratio", 2),
+                    )
+                },
+            }
+        )
+    columns = (
+        Column("measure", "Measure"),
+        Column("who", "Verdicts"),
+        Column("theta", "Median θ", numeric=True),
+        Column("beta", "Dispersion β", numeric=True),
+        Column("theta_ratio", "θ over measured", numeric=True),
+        Column("beta_ratio", "β over measured", numeric=True),
+    )
+    measured = fragility[fragility["who"] == "measured"]
+    measure = str(measured.set_index("measure")["beta"].idxmin())
+    name, unit = name_and_unit(measure)
+    found = _fragility_found(fragility)
+    figure = FigureSpec(
+        "fragility_beside",
+        found[0].headline + "." if found else "No curve rises.",
+        f"Measured (dots, line) and simulated (squares, dashes) fragility in {name}; points are shares in bins of "
+        "equally many tests.",
+        lambda: beside_figure(
+            tests, fragility[fragility["measure"] == measure], measure, f"{name} [{unit}]"
+        ),
+    )
+    return Section(
+        "fragility",
+        "Fragility, measured and simulated",
+        [
+            f"Lognormal curves with {100 * study.confidence:g} % intervals from resampled motions; the ratio is "
+            "taken in each resample."
+        ],
+        [
+            figure,
+            table_html(
+                pd.DataFrame(rows), columns, "Curves of measured and of simulated verdicts."
+            ),
+        ],
+    )
+
+
+def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
+    tests, regions = tables["tests"], tables["regions"]
+    names = [one.removesuffix("_from") for one in map(str, regions) if one.endswith("_from")]
+    labels = {name: "{} [{}]".format(*name_and_unit(name)) for name in names}
+    shown = regions[regions["tests"] > 0].copy()
+    for name in names:
+        shown[name] = [
+            f"{low:.3g} to {high:.3g}"
+            for low, high in regions.loc[shown.index, [f"{name}_from", f"{name}_to"]].to_numpy()
+        ]
+    shown["right"] = 100 * shown["right"]
+    columns = (
+        *(Column(name, label, numeric=True) for name, label in labels.items()),
+        Column("tests", "Tests", 0),
+        Column("overturned", "Overturned", 0),
+        Column("simulated", "Simulated", 0),
+        Column("right", "Right [%]", 0),
+    )
+    wrong = tests[~tests["right"]].assign(votes=lambda t: 100 * t["votes_to_overturn"])
+    wrong_columns = (
+        Column("test", "Test"),
+        Column("group", "Input motion"),
+        *(
+            Column(name, "{} [{}]".format(*name_and_unit(name)), 3)
+            for name in study.measures or names
+        ),
+        Column("overturned", "Overturned"),
+        Column("votes", "Votes to overturn [%]", 0),
+        Column("near_critical", "Near-critical"),
+    )
+    parts = []
+    if len(names) == 2:
+        where = (names[0], names[1])
+        parts.append(
+            FigureSpec(
+                "tests",
+                f"{int(tests['right'].sum())} of {len(tests)} tests are simulated as they happened.",
+                "Every test by the motion's intensity; crosses are wrong verdicts.",
+                lambda: tests_figure(tests, *where, (labels[where[0]], labels[where[1]])),
+            )
+        )
+    return Section(
+        "tests",
+        "Where it is right, and where not",
+        ["Votes are the share of plausible ways to set up the object under which it overturns."],
+        [
+            *parts,
+            table_html(shown, columns, "Tests by thirds of two measures."),
+            table_html(wrong, wrong_columns, "Tests with a wrong verdict."),
+        ],
+    )
+
+
+def _object(tables: dict[str, pd.DataFrame]) -> Section:
+    trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
+    likely = trials[trials["plausible"]]
+    unknown = [
+        c
+        for c in (
+            "direction_deg",
+            "contact_tolerance_mm",
+            "edge_retreat_mm",
+            "restitution",
+            "left_m",
+            "right_m",
+            "alpha_deg",
+        )
+        if c in trials
+    ]
+    titles = {
+        "direction_deg": "Direction of shaking [°]",
+        "contact_tolerance_mm": "Contact tolerance [mm]",
+        "edge_retreat_mm": "Retreat of the edges [mm]",
+        "restitution": "Restitution [-]",
+        "left_m": "Left edge to the centre of gravity [m]",
+        "right_m": "Right edge to the centre of gravity [m]",
+        "alpha_deg": "Smaller critical angle [°]",
+    }
+    rows = [
+        {
+            "what": titles[name],
+            "tried": f"{trials[name].min():.3g} to {trials[name].max():.3g}",
+            "plausible": f"{likely[name].min():.3g} to {likely[name].max():.3g}",
+            "median": f"{likely[name].median():.3g}",
+        }
+        for name in unknown
+    ]
+    columns = (
+        Column("what", "What nobody measured, and what follows"),
+        Column("tried", "Tried", numeric=True),
+        Column("plausible", "Plausible", numeric=True),
+        Column("median", "Median of the plausible", numeric=True),
+    )
+    parts: list[object] = []
+    if not footprint.empty:
+        width = 100 * (likely["left_m"] + likely["right_m"])
+        parts.append(
+            FigureSpec(
+                "footprint",
+                f"Plausible bases are {width.min():.1f} to {width.max():.1f} cm wide.",
+                "The object from above: outline, polygons that carry within plausible tolerances, centre of "
+                "gravity, and plausible directions of shaking.",
+                lambda: footprint_figure(footprint, trials),
+            )
+        )
+    parts.append(
+        table_html(
+            pd.DataFrame(rows), columns, "Ranges that were tried, and what agrees with the tests."
+        )
+    )
+    contact_columns = (
+        Column("contact_tolerance_mm", "Contact tolerance [mm]", 2),
+        Column("worst_direction_deg", "Worst direction [°]", 0),
+        Column("alpha_deg", "Critical angle [°]", 1),
+        Column("alpha_lower_deg", "5 % of scans", 1),
+        Column("alpha_upper_deg", "95 % of scans", 1),
+    )
+    parts.append(
+        table_html(
+            contact,
+            contact_columns,
+            "The least critical angle by contact tolerance; below zero the object could not stand so.",
+        )
+    )
+    return Section(
+        "object",
+        "How the object stood",
+        [
+            f"{len(likely)} of {len(trials)} trials are plausible by all tests: as right as the best within two "
+            "standard errors. This choice is in sample: it shows where they lie, and judges nothing.",
+        ],
+        parts,  # type: ignore[arg-type]
+    )
+
+
+def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
+    rows = tables["conditioning"]
+    shown = rows.assign(right_text=[_percent(row) for row in rows.to_dict("records")])
+    columns = (
+        Column("conditioning", "Conditioning"),
+        Column("trials", "Trials", 0),
+        Column("right_text", "Right", numeric=True),
+        Column("false_alarms", "False alarms", 1),
+        Column("missed", "Missed", 1),
+    )
+    steps = listed([" ".join(str(value) for value in step.values()) for step in study.conditioning])
+    return Section(
+        "conditioning",
+        "What conditioning the motions does",
+        [
+            f"The motions went through: {steps or 'no step'}. Others were tried with a part of the trials."
+        ],
+        [table_html(shown, columns, "Share of right verdicts by conditioning.")],
+    )
