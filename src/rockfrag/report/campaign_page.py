@@ -91,8 +91,8 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
         Finding(
             f"{number(100 * ours['right'], 1)} % of the verdicts are right",
             f"Of tests whose motions had no part in choosing what was not measured, {_percent(ours)} are "
-            f"simulated as they happened; {number(ours['missed'], 0)} tests overturned in the laboratory and not in the "
-            f"simulation, {number(ours['false_alarms'], 0)} in the simulation only.",
+            f"simulated as they happened; {number(ours['missed'], 0)} tests overturned in the laboratory and not "
+            f"in the simulation, {number(ours['false_alarms'], 0)} in the simulation only.",
         ),
         *_against_rivals(rivals),
         *_fragility_found(tables["fragility"]),
