@@ -11,7 +11,7 @@ from rockfrag.rocking import Block, overturns
 
 BLOCK = Block(0.1, 0.6, 60.0, cg_offset=0.01)
 DT = 0.01
-GROUPS, TESTS = 12, 48
+GROUPS, TESTS = 40, 160
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Laboratory:
 
 @pytest.fixture(scope="session")
 def laboratory(tmp_path_factory: pytest.TempPathFactory) -> Laboratory:
-    """Synthetic tests of a block: noise of four strengths, three copies of each of sixteen motions."""
+    """Synthetic tests of a block: forty waves at four strengths each."""
     folder = tmp_path_factory.mktemp("synthetic")
     rng = np.random.default_rng(3)
     time = np.arange(0, 6, DT)

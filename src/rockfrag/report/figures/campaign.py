@@ -14,7 +14,9 @@ from rockfrag.report.figures.style import (
     RED,
     figure_style,
     new_figure,
+    plain_log,
 )
+from rockfrag.report.wording import shortened
 
 _GREY = "#999999"
 _BINS = 8
@@ -35,7 +37,7 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
             axes.plot(
                 100 * row["right"], place, "o", color=colour, mfc=colour if filled else "white"
             )
-        axes.set_yticks(range(len(rows)), list(rows["who"]))
+        axes.set_yticks(range(len(rows)), [shortened(name, 34) for name in rows["who"]])
         axes.set_xlabel("Verdicts right [%]")
         axes.grid(axis="x")
         return figure
@@ -73,6 +75,7 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
                     ls="-" if who == "measured" else "--",
                 )  # fmt: skip
         axes.set_xscale("log")
+        plain_log(axes, "x")
         axes.set_xlabel(label)
         axes.set_ylabel("Share of tests overturned")
         axes.legend(loc="upper left")
@@ -96,6 +99,8 @@ def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -
             axes.plot(rows[x], rows[y], ls="", marker="x", ms=4.5, color=colour, label=word)
         axes.set_xscale("log")
         axes.set_yscale("log")
+        plain_log(axes, "x")
+        plain_log(axes, "y")
         axes.set_xlabel(labels[0])
         axes.set_ylabel(labels[1])
         figure.legend(loc="outside upper center", ncols=2)

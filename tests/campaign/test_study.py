@@ -1,0 +1,194 @@
+"""A campaign as a study: from its configuration to the page; and the granite rock, where its data are at hand."""
+
+import logging
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+
+from rockfrag.errors import InputError
+from rockfrag.guests import study_stages
+from rockfrag.stages.stage import Job
+from rockfrag.study.campaign import CampaignStudy
+from rockfrag.study.loading import load_any
+
+from .conftest import BLOCK, DT, Laboratory
+
+ROOT = Path(__file__).parents[2]
+
+BY_HAND = {
+    "left_m": BLOCK.b + BLOCK.cg_offset,
+    "right_m": BLOCK.b - BLOCK.cg_offset,
+    "cg_height_m": 0.3,
+    "height_m": 0.6,
+    "mass_kg": 60.0,
+    "inertia_kg_m2": BLOCK.centroidal_inertia,
+}
+
+
+def configured(folder: Path, laboratory: Laboratory, **changes: Any) -> Path:
+    """Write the study of the synthetic laboratory, with keys of the campaign changed."""
+    content: dict[str, Any] = {
+        "study": "synthetic",
+        "title": "A synthetic laboratory",
+        "seed": 1,
+        "campaign": {
+            "tests": str(laboratory.folder / "synthetic_tests.csv"),
+            "columns": {
+                "test": "test",
+                "motion": "motion",
+                "group": "input",
+                "overturned": "overturned",
+            },
+            "motions": str(laboratory.folder / "synthetic_motions.npz"),
+            "unit": "m/s2",
+            "dt_s": DT,
+            "measures": {"pga_g": ["pga_g"]},
+        },
+        "object": BY_HAND,
+        "unknowns": {"edge_retreat_mm": [0, 10], "restitution": [0.8, 1.0]},
+        "trials": 64,
+        "repeats": 4,
+    }
+    for key, value in changes.items():
+        part, _, name = key.partition("__")
+        if name:
+            content[part] = {**content[part], name: value}
+        else:
+            content[part] = value
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def without_measures(path: Path) -> Path:
+    content = yaml.safe_load(path.read_text())
+    del content["campaign"]["measures"]
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def run(path: Path, folder: Path) -> dict[str, pd.DataFrame]:
+    """Run all stages of a study in this process; return its tables."""
+    study = load_any(path)
+    assert isinstance(study, CampaignStudy)
+    for stage in study_stages(study):
+        job = Job(study, stage, folder, 1, logging.getLogger("test"))
+        for name, table in stage.run(job):
+            job.write(name, table)
+    return {one.stem: pd.read_parquet(one) for one in folder.glob("*.parquet")}
+
+
+def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(
+    tmp_path: Path, laboratory: Laboratory
+):
+    tables = run(configured(tmp_path, laboratory), tmp_path)
+    agreement = tables["agreement"].set_index("who")
+    # a retreat of up to 1 cm of 5 cm is not known: what is left wrong is mostly near-critical
+    assert agreement.loc["rockfrag", "right"] > 0.85
+    tests = tables["tests"]
+    assert tests.loc[~tests["right"], "near_critical"].mean() > 0.8
+    assert agreement.loc["rockfrag", "right"] > agreement.loc["threshold on pga_g", "right"]
+    best = tables["trials"].iloc[0]
+    assert best["edge_retreat_mm"] < 3
+    page = (tmp_path / "report.html").read_text()
+    assert "of the verdicts are right" in page
+    assert not re.search(
+        r"\b(nan|inf)\b", re.sub(r"<svg.*?</svg>|data:[^\"]*", "", page, flags=re.S)
+    )
+    for name in ("agreement", "fragility_beside"):
+        assert (tmp_path / "figures" / f"{name}.svg").stat().st_size > 1000
+
+
+def test_without_measures_the_motions_are_measured(tmp_path: Path, laboratory: Laboratory):
+    tests = run(without_measures(configured(tmp_path, laboratory)), tmp_path)["tests"]
+    peaks = [np.abs(motion).max() / 9.81 for motion in laboratory.motions.values()]
+    assert tests["pga_g"].to_numpy() == pytest.approx(peaks)
+    assert (tests["pgv_cm_s"] > 0).all()
+
+
+def test_amplitudes_of_overturning_are_simulated_on_both_sides(
+    tmp_path: Path, laboratory: Laboratory
+):
+    rows = laboratory.table.drop_duplicates("input")
+    found = pd.DataFrame({"test": rows["test"], "motion": rows["motion"], "low": 0.05, "high": 2.5})
+    found.to_csv(tmp_path / "synthetic_amplitudes.csv", index=False)
+    columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
+    path = configured(
+        tmp_path,
+        laboratory,
+        campaign__tests=str(tmp_path / "synthetic_amplitudes.csv"),
+        campaign__columns=columns,
+    )
+    tests = run(without_measures(path), tmp_path)["tests"]
+    # nothing falls at a twentieth of g, everything at two and a half
+    assert tests["right"].all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"campaign__tests": "absent.csv"}, "key campaign.tests: there is no"),
+        ({"campaign__motions": "absent.npz"}, "key campaign.motions: there is no"),
+        ({"campaign__colums": {}}, "key campaign.colums is not known; did you mean columns"),
+        ({"object": {"mesh": "absent.ply", "mass_kg": 3}}, "direction_deg is needed for a mesh"),
+        ({"object": {"left_m": 0.1}}, "right_m is missing"),
+        ({"unknowns__restitution": [1.0, 0.8]}, "expected the lowest value first"),
+        ({"unknowns__direction_deg": [0, 90]}, "has a meaning for a mesh only"),
+        ({"conditioning": [{"step": "lowpas"}]}, "there is no step 'lowpas'"),
+        ({"campaign__columns": {"test": "a", "motion": "b"}}, "give either overturned"),
+        ({"trials": 3}, "a number of guesses"),
+    ],
+)
+def test_a_bad_campaign_ends_in_one_sentence_before_anything_runs(
+    tmp_path: Path, laboratory: Laboratory, changes: dict[str, Any], sentence: str
+):
+    with pytest.raises(InputError, match=re.escape(sentence)) as caught:
+        load_any(configured(tmp_path, laboratory, **changes))
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 500
+
+
+def granite(folder: Path, shared: Path, **changes: Any) -> Path:
+    """Write the configuration of the granite rock for the place where its data are."""
+    data = (shared / "measured").resolve()
+    content = yaml.safe_load((ROOT / "config" / "granite.yaml").read_text())
+    content["campaign"] |= {
+        "tests": str(data / "granite_rock_1.csv"),
+        "motions": str(data / "granite" / "table_accelerations.npz"),
+        "other_codes": str(data / "granite" / "rock_1_discrete_element.csv"),
+    }
+    content["object"]["mesh"] = str(data / "granite" / "rock_1.ply")
+    path = folder / "granite.yaml"
+    path.write_text(yaml.safe_dump({**content, **changes}))
+    return path
+
+
+def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path: Path, shared: Path):
+    tables = run(granite(tmp_path, shared, trials=512, varied_conditioning={}), tmp_path)
+    agreement = tables["agreement"].set_index("who")
+    assert agreement.loc["rockfrag", "tests"] == 490
+    assert agreement.loc["rockfrag", "right"] >= 0.90
+    assert (agreement["better"].dropna() > 0).all()
+    # facts of the campaign's own publication, in sample
+    assert agreement.loc["code kn10_ks1", "right"] == pytest.approx(0.876, abs=0.002)
+    fragility = tables["fragility"].set_index(["measure", "who"]).loc["pgv_cm_s"]
+    assert fragility.loc["measured", "theta"] == pytest.approx(13.9, abs=0.05)
+    assert fragility.loc["rockfrag", "theta_ratio"] == pytest.approx(1, abs=0.10)
+    assert fragility.loc["rockfrag", "beta_ratio"] == pytest.approx(1, abs=0.25)
+
+
+def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared: Path):
+    from rockfrag.campaign.table_motions import table_motions
+
+    folder = shared / "measured" / "granite"
+    (text,) = table_motions(
+        folder / "Test{motion}.txt", ["100"], unit="g", channel="Amplitude - Plot 0"
+    )
+    (array,) = table_motions(folder / "table_accelerations.npz", ["100"], unit="g", dt=0.00125)
+    assert text.dt == pytest.approx(array.dt)
+    assert text.acceleration == pytest.approx(array.acceleration, abs=1e-5)
