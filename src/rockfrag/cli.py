@@ -165,24 +165,19 @@ def _check_image(path: str | None) -> None:
 def _check_config(options: argparse.Namespace) -> int:
     from rockfrag.stages.running import results_folder
     from rockfrag.study.loading import load_any
-    from rockfrag.study.measured_table import MeasuredTable
     from rockfrag.study.records import check_records
+    from rockfrag.study.study import Study
 
     study = load_any(options.file)
     folder = results_folder(study)
-    doubts = [] if isinstance(study, MeasuredTable) else [*study.doubts(), *check_records(study)]
+    doubts = [*study.doubts(), *check_records(study)] if isinstance(study, Study) else []
     for doubt in doubts:
         print(f"warning: {doubt}", file=sys.stderr)
     if options.quiet:
         return 0
-    what = (
-        f"the table {study.table}"
-        if isinstance(study, MeasuredTable)
-        else f"{len(study.catalogue)} records, {len(study.floors)} floors, "
-        f"{len(study.configurations)} configurations, {len(study.amplitudes.values_g)} amplitudes"
-    )
     print(
-        f"{options.file} is right: study {study.name}, {what}; its report will be {folder}/report.html."
+        f"{options.file} is right: study {study.name}, {study.summary}; its report will be "
+        f"{folder}/report.html."
     )
     return 0
 

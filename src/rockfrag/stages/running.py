@@ -9,8 +9,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.stages.log import logged
 from rockfrag.stages.stage import Job, Stage
-from rockfrag.study.loading import any_study
-from rockfrag.study.measured_table import MeasuredTable
+from rockfrag.study.loading import AnyStudy, any_study
 from rockfrag.study.records import check_records
 from rockfrag.study.study import Study
 
@@ -21,9 +20,7 @@ OWNER = "configuration.txt"
 """File in a study's folder that names the configuration whose results these are."""
 
 
-def prepared(
-    content: Mapping[str, Any], path: str | os.PathLike[str]
-) -> tuple[Study | MeasuredTable, Path]:
+def prepared(content: Mapping[str, Any], path: str | os.PathLike[str]) -> tuple[AnyStudy, Path]:
     """Make all checks that come before the first job.
 
     Parameters
@@ -49,7 +46,7 @@ def prepared(
     return study, folder
 
 
-def results_folder(study: Study | MeasuredTable) -> Path:
+def results_folder(study: AnyStudy) -> Path:
     """Folder of a study's results.
 
     Raises
@@ -96,5 +93,5 @@ def run_stage(
             job.write(result, value)
 
 
-def _named(study: Study | MeasuredTable) -> str:
+def _named(study: AnyStudy) -> str:
     return Path(os.path.relpath(study.source)).as_posix()

@@ -78,6 +78,11 @@ class CampaignStudy:
     mesh: Path | None = field(default=None)
 
     @property
+    def summary(self) -> str:
+        """What it computes, in a line."""
+        return f"the campaign {self.tests}, {self.trials} trials"
+
+    @property
     def files(self) -> list[str]:
         """Files that must be there before anything runs; those to be fetched are not among them."""
         named = (self.tests, self.other_codes, self.mesh)

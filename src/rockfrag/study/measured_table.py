@@ -49,6 +49,11 @@ class MeasuredTable:
     confidence: float
     replicates: int
 
+    @property
+    def summary(self) -> str:
+        """What it computes, in a line."""
+        return f"the table {self.table}"
+
 
 def is_measured_table(content: Mapping[str, Any]) -> bool:
     """Say whether a configuration is one of a measured table and not of a simulated study."""

@@ -82,6 +82,14 @@ class Study:
     compare_with: str | None
     more: Supplementary
 
+    @property
+    def summary(self) -> str:
+        """What it computes, in a line."""
+        return (
+            f"{len(self.catalogue)} records, {len(self.floors)} floors, "
+            f"{len(self.configurations)} configurations, {len(self.amplitudes.values_g)} amplitudes"
+        )
+
     def doubts(self) -> list[str]:
         """Warnings about sizes that look as if they were in another unit."""
         return [
