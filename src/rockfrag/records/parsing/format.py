@@ -79,7 +79,12 @@ class Format:
         """
         text = read_text(source, self.encoding)
         try:
-            return self._parsed(text, dt)
+            channels = self._parsed(text, dt)
+            if cut_short:
+                for channel in channels:
+                    # samples are read on demand, and may be too few
+                    channel.samples()
+            return channels
         except NotAcceleration:
             raise
         except InputError:

@@ -24,7 +24,13 @@ MAX_BYTES = 256 * 2**20
 MAX_LINE = 8_192
 """No line of a known format is longer, comments and citations included."""
 
+MAX_LINES = 6_000_000
+"""No record has more: eight hours of samples at 200 Hz, one a line."""
+
 _BLOCK = 2**20
+_MOST_ZEROS = 4 * _BLOCK
+"""Bytes after which a file that has only zeros is given up."""
+
 _REMARK = re.compile(r"[ \t]*(?:\*\*|#)[^\d\nA-Za-z]*[A-Za-z][^\d\n]*$")
 
 
@@ -378,13 +384,17 @@ def read_bytes(source: Source) -> bytes:
 
 def _read_blocks(file: Any, name: str) -> bytes:
     blocks: list[bytes] = []
-    total = lines = open_line = 0
+    total = lines = newlines = open_line = 0
+    zeros = True
     while block := file.read(_BLOCK):
         if not isinstance(block, bytes):
             raise InputError(f"{name}: open the file in binary mode.")
         total += len(block)
         if total > MAX_BYTES:
             raise InputError(f"{name}: more than {MAX_BYTES // 2**20} MiB are no record.")
+        zeros = zeros and not block.translate(None, b"0 .,;\t\r\n+-\x00")
+        if zeros and total >= _MOST_ZEROS:
+            raise InputError(f"{name}: nothing but zeros.")
         breaks = np.frombuffer(block, dtype=np.uint8)
         ends = np.flatnonzero((breaks == ord("\n")) | (breaks == ord("\r")))
         lengths = np.diff(ends, prepend=-1 - open_line) - 1
@@ -392,11 +402,14 @@ def _read_blocks(file: Any, name: str) -> bytes:
         too_long = np.flatnonzero(lengths > MAX_LINE)
         if too_long.size or open_line > MAX_LINE:
             here = int(too_long[0]) if too_long.size else int(ends.size)
-            number = lines + int(np.count_nonzero(breaks[ends[:here]] == ord("\n"))) + 1
+            number = newlines + int(np.count_nonzero(breaks[ends[:here]] == ord("\n"))) + 1
             raise InputError(
                 f"{name}, line {number}: the line is longer than {MAX_LINE} characters, "
                 "which no record format has."
             )
-        lines += int(np.count_nonzero(breaks == ord("\n")))
+        newlines += int(np.count_nonzero(breaks == ord("\n")))
+        lines += ends.size
+        if lines > MAX_LINES:
+            raise InputError(f"{name}: more than {MAX_LINES:,} lines are no record.")
         blocks.append(block)
     return b"".join(blocks)
