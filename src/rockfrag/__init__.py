@@ -3,12 +3,9 @@
 >>> from rockfrag import Block, Stack, simulate, overturns, read_motion
 """
 
-from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 from rockfrag._lazy import loader
-
-__version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
@@ -22,7 +19,7 @@ if TYPE_CHECKING:
         simulate,
     )
 
-__version__ = version("rockfrag")
+__version__ = "0.1.0"
 
 __all__ = [
     "Block",

@@ -29,7 +29,7 @@ from rockfrag.study.measured_table import (
     is_measured_table,
     measured_table_from,
 )
-from rockfrag.study.paths import existing_file
+from rockfrag.study.paths import check_file, existing_file
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
@@ -172,10 +172,7 @@ def _check_names(study: Study) -> None:
 
 def _check_records_exist(study: Study) -> None:
     for path in study.own_records:
-        if not path.is_file():
-            raise InputError(
-                f"{study.catalogue_file}: column file: expected an existing file, found no {path}."
-            )
+        check_file(path, f"{study.catalogue_file}: column file")
 
 
 def _check_optional_parts(study: Study) -> None:

@@ -24,6 +24,22 @@ def existing_file(source: Path, key: str, name: str) -> Path:
         If there is no such file.
     """
     path = Path(os.path.normpath(source.parent / name))
-    if not path.is_file():
-        raise InputError(f"{source}: key {key}: expected an existing file, found no {path}.")
+    check_file(path, f"{source}: key {key}")
     return path
+
+
+def check_file(path: Path, where: str) -> None:
+    """Check that a file exists and has a name that the workflow can use.
+
+    Raises
+    ------
+    InputError
+        Behind ``where``, what is wrong.
+    """
+    if not path.is_file():
+        raise InputError(f"{where}: expected an existing file, found no {path}.")
+    if set("{}") & set(str(path)):
+        raise InputError(
+            f"{where}: {path} has curly brackets in its name, which the workflow takes for "
+            "wildcards; rename it."
+        )
