@@ -10,6 +10,8 @@ STUDY ?= config/thesis.yaml
 MUTATIONS ?= 10000
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
+# the profile said out loud: Snakemake would print which one it found
+PROFILE := --workflow-profile none --cores all --rerun-incomplete
 RUN := .venv/bin/python -m
 
 .PHONY: run smoke test validate coverage lint bench fuzz format
@@ -17,7 +19,7 @@ RUN := .venv/bin/python -m
 
 run: .venv/installed
 	@$(RUN) rockfrag.cli check-config --quiet "$(STUDY)"
-	@$(RUN) snakemake --configfile "$(STUDY)" $(SCREEN)
+	@$(RUN) snakemake --configfile "$(STUDY)" $(PROFILE) $(SCREEN)
 
 smoke:
 	@$(MAKE) --no-print-directory run STUDY=config/smoke.yaml

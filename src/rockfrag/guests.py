@@ -74,6 +74,7 @@ def _report_stage(stages: Sequence[Stage[Study]]) -> Stage[Study]:
         files=lambda study: study.body_files,
         outputs=("figures/", "report.html"),
         settings=("title", "bodies", "amplitudes", "protocol", "fragility", "seed", "compare_with"),
+        parallel=True,
     )
 
 
@@ -81,6 +82,6 @@ def _report(job: Job[Study]) -> Results:
     """Draw the figures and write the page."""
     from rockfrag.report.study_report import write_report
 
-    write_report(job.study, report_parts(job.study), job.folder)
+    write_report(job.study, report_parts(job.study), job.folder, job.threads)
     job.log.info("%s", job.folder / "report.html")
     yield from ()

@@ -1,5 +1,6 @@
 """The report of a study: its parts in order, every figure drawn once, and one page."""
 
+import multiprocessing
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -21,7 +22,7 @@ def report_tables(study: Study, parts: Sequence[Part]) -> list[str]:
     return list(dict.fromkeys([*names, "tests", "measures", "fragility"]))
 
 
-def write_report(study: Study, parts: Sequence[Part], folder: Path) -> None:
+def write_report(study: Study, parts: Sequence[Part], folder: Path, processes: int = 1) -> None:
     """Draw the figures of a study and write its page, ``report.html``.
 
     Parameters
@@ -33,19 +34,38 @@ def write_report(study: Study, parts: Sequence[Part], folder: Path) -> None:
     folder
         Folder of its results, with the tables of :func:`report_tables`, the sweeps, and the ground
         motions in ``motions``.
+    processes
+        How many may draw at once.
     """
     results = Results(study, folder)
     asked = [part for part in parts if part.asked(study)]
     sections = [section for part in asked if (section := part.section(results)) is not None]
     findings = [finding for part in asked for finding in part.findings(results)]
-    pictures = {
-        spec.name: draw(spec, folder / FIGURES)
-        for section in sections
-        for spec in section.parts
-        if isinstance(spec, FigureSpec)
-    }
+    specs = [one for section in sections for one in section.parts if isinstance(one, FigureSpec)]
+    pictures = draw_all(specs, folder / FIGURES, processes)
     page = study_page(results, findings, sections, pictures)
     write_text(page, folder / "report.html")
+
+
+def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int) -> dict[str, Picture]:
+    """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
+    if processes == 1 or "fork" not in multiprocessing.get_all_start_methods():
+        return {spec.name: draw(spec, folder) for spec in specs}
+    global _waiting
+    _waiting = (specs, folder)
+    # a fork has the tables and the libraries already, and needs to pickle no drawing
+    with multiprocessing.get_context("fork").Pool(processes) as pool:
+        pool.map(_draw_waiting, range(len(specs)), chunksize=1)
+    return {spec.name: read_picture(spec, folder / f"{spec.name}.svg") for spec in specs}
+
+
+_waiting: tuple[Sequence[FigureSpec], Path] = ((), Path())
+"""What the processes of :func:`draw_all` draw."""
+
+
+def _draw_waiting(number: int) -> None:
+    specs, folder = _waiting
+    draw(specs[number], folder)
 
 
 def draw(spec: FigureSpec, folder: Path) -> Picture:
