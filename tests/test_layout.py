@@ -13,19 +13,10 @@ ROOMS = (
 )
 """From left to right; a room imports from those before it."""
 
-NOT_YET = ("fragility", "pedestal")
-"""Rooms in which names are still being moved out."""
-
 LIBRARY = ROOMS[: ROOMS.index("study")]
 SPECIMENS = {"T1", "T2", "T3", "P&T1", "P&T2", "P&T3"}
 FLOORS = {"GF", "F3", "F5"}
 STATEMENT = re.compile(r"C[1-9]\d?")
-
-
-def each(rooms: tuple[str, ...]) -> list:
-    """Rooms as parameters, with those that are still in work expected to fail."""
-    work = pytest.mark.xfail(reason="names are still being moved out", strict=False)
-    return [pytest.param(one, marks=[work] if one in NOT_YET else []) for one in rooms]
 
 
 def sources(room: str) -> list[Path]:
@@ -44,7 +35,7 @@ def imported_rooms(path: Path) -> set[str]:
     return {parts[1] for parts in split if parts[0] == "rockfrag" and len(parts) > 1}
 
 
-@pytest.mark.parametrize("room", each(ROOMS))
+@pytest.mark.parametrize("room", ROOMS)
 def test_room_imports_from_the_left_only(room):
     allowed = set(ROOMS[: ROOMS.index(room) + 1])
     looked_at = 0
@@ -55,7 +46,7 @@ def test_room_imports_from_the_left_only(room):
     assert looked_at > 3
 
 
-@pytest.mark.parametrize("room", each(LIBRARY))
+@pytest.mark.parametrize("room", LIBRARY)
 def test_room_of_the_library_names_no_specimen_floor_or_statement_of_a_study(room):
     looked_at = 0
     for path in sources(room):

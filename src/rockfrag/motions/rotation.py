@@ -154,12 +154,38 @@ def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Moti
 
 
 def fault_normal(first: Motion, second: Motion, strike_deg: float) -> Motion:
-    """Component at a right angle to a fault of a strike [degrees from north]; see rotate_to_azimuth."""
+    """Component at a right angle to a fault.
+
+    Parameters
+    ----------
+    first, second
+        Perpendicular components of known azimuths; they are brought to common times.
+    strike_deg
+        Strike of the fault [degrees from north].
+
+    Raises
+    ------
+    InputError
+        As :func:`rotate_to_azimuth`.
+    """
     return rotate_to_azimuth(first, second, strike_deg + 90)
 
 
 def radial(first: Motion, second: Motion, back_azimuth_deg: float) -> Motion:
-    """Component away from the source, which lies at the back azimuth; see rotate_to_azimuth."""
+    """Component away from the source.
+
+    Parameters
+    ----------
+    first, second
+        Perpendicular components of known azimuths; they are brought to common times.
+    back_azimuth_deg
+        Azimuth from the station towards the source [degrees from north].
+
+    Raises
+    ------
+    InputError
+        As :func:`rotate_to_azimuth`.
+    """
     return rotate_to_azimuth(first, second, back_azimuth_deg + 180)
 
 
