@@ -285,3 +285,73 @@ def test_a_long_line_of_anything_is_recognised_or_not_at_once(tmp_path):
         for candidate in FORMATS:
             candidate.is_format(str(path))
         assert time.perf_counter() - start < 1.0
+
+
+HUNDREDTHS = [f"{i / 100:g}" for i in range(20)]
+
+
+@pytest.mark.parametrize(
+    ("header", "row", "components", "unit"),
+    [
+        ("Time(s);NS(gal);EW(gal)", "{t};1;2", ["NS", "EW"], "cm/s2"),
+        ("time,N,E,Z\ns,m/s^2,m/s^2,m/s^2", "{t},1,2,3", ["N", "E", "Z"], "m/s2"),
+        ("t,ax,ay", "{t},1,2", ["ax", "ay"], ""),
+        ("# time acc_x acc_y", "{t} 1 2", ["x", "y"], ""),
+        ("Time [sec] Acc [m/s2] Vel [m/s] Disp [m]", "{t} 1 2 3", [""], "m/s2"),
+        ('"Time [s]","Acceleration [g]","Velocity [cm/s]"', "{t},1,2", [""], "g"),
+        (
+            " SITE CODE= 1,,\n SAMPLING RATE= 100Hz,,\n UNIT  = gal(cm/s/s),,\n NS,EW,UD",
+            "1,2,3",
+            ["NS", "EW", "UD"],
+            "cm/s2",
+        ),
+        (
+            "Time [s] - Plot 0\tAmplitude - Plot 0\tTime [s] - Plot 1\tAmplitude - Plot 1\t",
+            "{t}\t1\t{t}\t2\t",
+            ["Amplitude - Plot 0", "Amplitude - Plot 1"],
+            "",
+        ),
+    ],
+)
+def test_titles_of_columns_say_what_they_hold(tmp_path, header, row, components, unit):
+    path = tmp_path / "columns.txt"
+    path.write_text("\n".join([header, *(row.format(t=t) for t in HUNDREDTHS)]) + "\n")
+    assert claims(str(path)) == ["COLUMNS"]
+    record = read_record(path)
+    assert [channel.component for channel in record.channels] == components
+    assert {(channel.unit, channel.dt, channel.npts) for channel in record.channels} == {
+        (unit, 0.01, 20)
+    }
+    if not unit:
+        given = read_motion(path, unit="m/s2", channel=components[0])
+        assert given.pga == 1.0
+        with pytest.raises(InputError, match="does not state its unit"):
+            read_motion(path, channel=components[0])
+
+
+def test_titles_that_cannot_be_told_apart_are_not_guessed(tmp_path):
+    path = tmp_path / "columns.txt"
+    rows = "".join(f"{t} 1 2 3\n" for t in HUNDREDTHS)
+    path.write_text("Time and the acceleration, velocity and displacement of it\n" + rows)
+    with pytest.raises(InputError, match="cannot be told apart into 4 titles"):
+        read_record(path)
+    path.write_text(rows)
+    assert [c.component for c in read_record(path).channels] == ["column 2", "column 3", "column 4"]
+
+
+def test_times_of_six_significant_digits_are_equally_spaced(tmp_path):
+    path = tmp_path / "significant.txt"
+    path.write_text("".join(f"{i * 0.00125:.6g} {i % 7}\n" for i in range(20_000)))
+    assert read_motion(path, unit="g").dt == 0.00125
+
+
+def test_an_opensees_script_may_name_the_file_of_its_values(tmp_path):
+    (tmp_path / "values.txt").write_text("0.1 -0.2\n0.3\n")
+    path = tmp_path / "old.tcl"
+    path.write_text('set accel "Series -dt 0.02 -filePath values.txt -factor 2"\n')
+    motion = read_motion(path, unit="g")
+    np.testing.assert_allclose(motion.acceleration, np.array([0.2, -0.4, 0.6]) * 9.81)
+    assert motion.dt == 0.02
+    path.write_text("timeSeries Path 1 -dt 0.02 -filePath values.txt -factor $g\n")
+    with pytest.raises(InputError, match=r"-factor is '\$g', which is no number"):
+        read_motion(path, unit="g")

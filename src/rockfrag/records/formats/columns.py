@@ -4,7 +4,9 @@ The titles stand directly above the numbers, or have a line of units (``s, g, g`
 of velocity, displacement and other quantities are left out beside titled accelerations. What a title
 states neither by a word nor by a unit, but by an orientation (``NS``, ``HNE``, ``090``), is taken for
 acceleration without a unit; so are all columns that do not say what they are where none says that it is
-acceleration: the user who gives their unit knows. Each column has the time column left of it.
+acceleration: the user who gives their unit knows. Each column has the time column left of it; without
+one the interval is that of a line such as ``SAMPLING RATE= 100Hz`` above the titles, where a line such as
+``UNIT  = gal(cm/s/s)`` may also state the unit of all columns (as the Japan Meteorological Agency does).
 """
 
 import re
@@ -13,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
 from rockfrag.records.headed_formats import HEADED
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.format import Format
@@ -36,6 +37,14 @@ _ORIENTATION = re.compile(
     re.IGNORECASE,
 )
 _BRACKETED = re.compile(r"[\[({](?P<unit>[^\[\](){}]*)[\])}]")
+_RATE = re.compile(
+    r"\bsampl\w*\s*(?:rate|freq\w*)?\s*(?:\(hz\))?\s*[=:]?\s*(?P<rate>\d+(?:\.\d+)?)\s*(?:hz|sps|\s*,*$)",
+    re.IGNORECASE,
+)
+_STEP = re.compile(
+    r"\bdt\s*(?:\(s\w*\))?\s*[=:]\s*(?P<dt>\d*\.?\d+)\s*(?:s|sec\w*)?\s*,*$", re.IGNORECASE
+)
+_ALL_UNITS = re.compile(r"\bunits?\s*[=:]\s*(?P<unit>[^\s(,]+)", re.IGNORECASE)
 _MIN_ROWS = 3
 _MAX_HEADER = 40
 
@@ -83,7 +92,11 @@ def _cells(line: str, row: str, width: int) -> list[str]:
     """Split a line into as many titles as a row has columns; empty if it cannot be."""
     plain = line.strip().lstrip("#%!/ ")
     separators = [separator for separator in (";", ",", "\t") if separator in row]
-    patterns = [re.escape(separator) for separator in separators] or [r"\s{2,}|\t", r"\s+"]
+    patterns = [re.escape(separator) for separator in separators] or [
+        r"\s{2,}|\t",
+        r"\s+(?![\[(])",
+        r"\s+",
+    ]
     for pattern in patterns:
         cells = [cell.strip(" \t\"'") for cell in re.split(pattern, plain.rstrip(" \t,;"))]
         if len(cells) == width and all(cells):
@@ -130,7 +143,11 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
         text.refuse(
             f"the first column is {titles[0]!r}: a spectrum, not acceleration in time", start - 1
         )
-    columns = [_column(title, unit) for title, unit in zip(titles, units, strict=True)]
+    above = text.lines(0, start - 1)
+    unit_of_all = next((canonical_unit(m["unit"]) for m in map(_ALL_UNITS.search, above) if m), "")
+    columns = [
+        _column(title, unit or unit_of_all) for title, unit in zip(titles, units, strict=True)
+    ]
     timed = [i for i, title in enumerate(titles) if _TIME.match(title)]
     chosen = [
         i
@@ -146,12 +163,15 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
             start - 1,
         )
     table = text.table(start, len(titles))
+    stated = _stated_step(above)
+    if not timed and None not in (dt, stated) and dt != stated:
+        text.fail(f"the header states an interval of {stated:g} s, not {dt:g} s; leave dt out")
     names = [columns[i].component for i in chosen]
     return [
         Channel(
             npts=table.shape[0],
             dt=positive_step(
-                text, _interval(text, start, table, timed, i, titles, units, dt), start
+                text, _interval(text, start, table, timed, i, titles, units, stated, dt), start
             ),
             samples=table[:, i].copy,
             unit=columns[i].unit,
@@ -162,6 +182,17 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
     ]
 
 
+def _stated_step(above: list[str]) -> float | None:
+    """Return the interval [s] that the lines above the titles state, or None."""
+    for line in above:
+        rate, step = _RATE.search(line), _STEP.search(line)
+        if rate and float(rate["rate"]) > 0:
+            return float(f"{1 / float(rate['rate']):.9g}")
+        if step:
+            return float(step["dt"])
+    return None
+
+
 def _interval(
     text: TextFile,
     start: int,
@@ -170,14 +201,15 @@ def _interval(
     column: int,
     titles: list[str],
     units: list[str],
+    stated: float | None,
     dt: float | None,
 ) -> float:
-    """Return the interval [s] of a column's time column, or the one that the user names."""
+    """Return the interval [s] that the user names, else of the time column, else that of the header."""
     left = [i for i in timed if i < column] or timed[:1]
     if dt is not None:
-        if not (np.isfinite(dt) and dt > 0):
-            raise InputError(f"dt must be a positive number of seconds, got {dt}.")
         return dt
+    if not left and stated is not None:
+        return stated
     if not left:
         text.fail("no column is titled as time; give the sampling interval with dt= (in seconds)")
     step = step_of_times(table[:, left[-1]], text, start)
@@ -187,5 +219,5 @@ def _interval(
     return step * 1e-3 if milliseconds else step
 
 
-FORMAT = Format("COLUMNS", _recognise, _parse, wants_dt=True)
+FORMAT = Format("COLUMNS", _recognise, _parse, wants_dt=True, encoding="latin-1")
 is_format, read = FORMAT.is_format, FORMAT.read

@@ -5,6 +5,8 @@ of their column. Else the numbers are one series, row after row, as OpenSees rea
 interval is the user's. The unit is always the user's.
 """
 
+import re
+
 import numpy as np
 
 from rockfrag.records.formats import columns
@@ -23,6 +25,7 @@ from rockfrag.records.parsing.number_table import (
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import step_of_times
 
+_TITLES = re.compile(r"\b(?:acc|vel|disp|time)", re.IGNORECASE)
 _LEAST, _MOST = 3, 40
 _MIN_ROWS = 3
 _MAX_WORDS = 2
@@ -54,6 +57,12 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
         text.fail("no rows of numbers below a short header", 0)
     stop = last_row(text, table.start)
     if _is_timed([numbers_of(line) for line in text.lines(table.start, table.start + 50)]):
+        if any(_TITLES.search(words) for words in table.words):
+            text.fail(
+                f"{table.words[-1][:80]!r} cannot be told apart into {table.columns} titles of columns; "
+                "separate them as the numbers are",
+                table.start - 1,
+            )
         values = text.table(table.start, table.columns, stop)
         step = step_of_times(values[:, 0], text, table.start) if dt is None else dt
         return [

@@ -17,6 +17,8 @@ SHORTEST_STEP = 1e-5
 LONGEST_STEP = 1.0
 """Longest sampling interval [s] of a record; slower channels are not of strong motion."""
 
+_FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -33,7 +35,8 @@ class Channel:
     unit
         Canonical unit (``g``, ``cm/s2``, …); empty if the file does not state it.
     start_time
-        Time of the first sample, or None if the file does not state it.
+        Time of the first sample, or None if the file does not state it; a time before 1900 or after
+        2100 is a mistake of the header and counts as not stated.
     network, station, location, code
         The SEED names as far as the file has them; a station without a code has its name here.
     component
@@ -59,6 +62,10 @@ class Channel:
     member: str = ""
     raw: bool = False
     details: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.start_time is not None and not _FIRST < self.start_time < _LAST:
+            object.__setattr__(self, "start_time", None)
 
     def check(self, name: str) -> None:
         """Check that number of samples and interval can be those of a record.
