@@ -23,7 +23,7 @@ def _digest() -> str:
     a kernel from another file.
     """
     digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.glob("_*.py")):
+    for path in sorted(Path(__file__).parent.rglob("_*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 

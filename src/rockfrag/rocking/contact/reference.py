@@ -120,7 +120,7 @@ def simulate_reference(
         A block or a stack.
     acceleration, vertical
         Horizontal and vertical acceleration of the ground [m/s²], shape (n,), linear between samples and
-        zero after the last.
+        zero one sample after the last.
     dt
         Time between samples [s].
     friction
@@ -151,7 +151,8 @@ def simulate_reference(
         [0.0] * model.count if x is None else np.atleast_1d(np.asarray(x, float)).tolist()
         for x in (theta0, omega0)
     )
-    run = _Run(model, np.array(motions), dt, theta, omega, closing)
+    closed = np.array([np.append(motion, 0.0) for motion in motions])
+    run = _Run(model, closed, dt, theta, omega, closing)
     return run.response(duration, LONGEST_TAIL / slowest, 0.05 / model.speed * model.size)
 
 

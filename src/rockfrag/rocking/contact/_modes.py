@@ -1,0 +1,292 @@
+"""Finding the mode in which touching contacts go on, after an event and in an impact.
+
+Every mode that the touching ends allow is tried, fewer closed ends first; the first one that is consistent is
+taken, or the one that violates its inequalities least (``docs/contact.md``, 5 to 9).
+"""
+
+import math
+
+from rockfrag.rocking._compile import kernel
+from rockfrag.rocking.contact._solve import bias, end_of, look_at, rate, solve
+
+CONSISTENT = 1e-11
+"""Violation below which a mode is consistent: forces over the weight, accelerations over g [-]."""
+STILL = 1e-12
+"""Share of √(g b) below which a speed is rounding."""
+
+
+@kernel
+def is_full_stick(p, w):
+    """Whether all interfaces are closed at both ends and stick."""
+    for k in range(p.count):
+        if w.closed[k, 0] == 0 or w.closed[k, 1] == 0 or w.slides[k] != 0:
+            return False
+    return True
+
+
+@kernel
+def project(p, w):
+    """Take away what rounding and integration have left at the closed contacts of ``q`` and ``v``."""
+    q, v = w.q, w.v
+    for k in range(p.count):
+        if w.closed[k, 0] == 0 and w.closed[k, 1] == 0:
+            continue
+        if w.closed[k, 0] == 1 and w.closed[k, 1] == 1:
+            q[3 * k + 2] = q[3 * k - 1] if k > 0 else 0.0
+            v[3 * k + 2] = v[3 * k - 1] if k > 0 else 0.0
+        end = 0 if w.closed[k, 0] == 1 else 1
+        look_at(p, w, q)
+        x, y, tx, ty, gap, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+        normal = rate(p, q, v, k, x, y, -ty, tx)
+        along = rate(p, q, v, k, x, y, tx, ty) if w.slides[k] == 0 else 0.0
+        for body in range(k, p.count):
+            q[3 * body] += gap * ty
+            q[3 * body + 1] -= gap * tx
+            v[3 * body] -= along * tx - normal * ty
+            v[3 * body + 1] -= along * ty + normal * tx
+    w.resting = 0
+    if is_full_stick(p, w):
+        moving = 0.0
+        for d in range(3 * p.count):
+            moving = max(moving, abs(v[d]))
+        if moving < 1e-9 * p.speed:
+            w.resting = 1
+            for d in range(3 * p.count):
+                v[d] = 0.0
+    look_at(p, w, q)
+
+
+@kernel
+def slip_speed(p, w, v, k, trial):
+    """Speed along interface k at its first closed (or, on ``trial``, touching) end; 0 if it is rounding."""
+    ends = w.touching if trial else w.closed
+    if ends[k, 0] == 0 and ends[k, 1] == 0:
+        return 0.0
+    end = 0 if ends[k, 0] == 1 else 1
+    x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
+    speed = rate(p, w.q, v, k, x, y, tx, ty)
+    return speed if abs(speed) > STILL * p.speed else 0.0
+
+
+@kernel
+def _violation(p, w, v, impact, force, motion):
+    """How far the mode in ``w`` is from consistent, in units of ``force`` and of ``motion``."""
+    worst = 0.0
+    for k in range(p.count):
+        pressed = 0.0
+        for end in range(2):
+            if w.touching[k, end] == 0:
+                continue
+            if w.closed[k, end] == 1:
+                worst = max(worst, -w.normal[k, end] / force)
+                pressed += w.normal[k, end]
+            else:
+                x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
+                apart = rate(p, w.q, w.out, k, x, y, -ty, tx)
+                if not impact:
+                    apart += bias(w.q, v, k, x, y, -ty, tx, kind)
+                worst = max(worst, -apart / motion)
+        if w.closed[k, 0] == 0 and w.closed[k, 1] == 0:
+            continue
+        if w.slides[k] == 0:
+            margin = (w.limit[k] * pressed - abs(w.shear[k])) / max(w.limit[k], 1.0)
+            worst = max(worst, -margin / force)
+        elif impact or w.moves[k] == 0:
+            end = 0 if w.closed[k, 0] == 1 else 1
+            x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
+            along = rate(p, w.q, w.out, k, x, y, tx, ty)
+            if not impact:
+                along += bias(w.q, v, k, x, y, tx, ty, kind)
+            worst = max(worst, -w.slides[k] * along / motion)
+    return worst
+
+
+@kernel
+def _set_interface(w, k, code, way):
+    """Let interface k be closed at the ends in ``code`` (bits: left, right) and slide as ``way`` says."""
+    w.closed[k, 0] = code & 1
+    w.closed[k, 1] = code >> 1
+    w.slides[k] = 0 if way == 2 else way
+
+
+@kernel
+def _is_mode(p, w, closed, slides):
+    for k in range(p.count):
+        if w.closed[k, 0] != closed[k, 0] or w.closed[k, 1] != closed[k, 1]:
+            return False
+        if w.slides[k] != slides[k]:
+            return False
+    return True
+
+
+@kernel
+def _search(p, w, ah, av, impact, force, motion, exclude):
+    """Set the mode of ``w`` to the first consistent one that its touching ends allow, or the least violated.
+
+    ``w.moves``: signs of slip that are given.  ``exclude``: the old mode has just failed.
+
+    Returns
+    -------
+    The violation of the mode found; its solution is in ``w``.
+    """
+    touch0 = w.touching[0, 0] + 2 * w.touching[0, 1]
+    touch1 = w.touching[1, 0] + 2 * w.touching[1, 1] if p.count > 1 else 0
+    best = math.inf
+    for total in range(5):
+        for code0 in range(4):
+            if code0 & touch0 != code0:
+                continue
+            for code1 in range(4):
+                if code1 & touch1 != code1:
+                    continue
+                ends = (code0 & 1) + (code0 >> 1) + (code1 & 1) + (code1 >> 1)
+                if ends != total:
+                    continue
+                for turn0 in range(3):
+                    way0 = turn0 if turn0 < 2 else -1
+                    if not _possible(w, 0, code0, way0, impact):
+                        continue
+                    for turn1 in range(3):
+                        way1 = turn1 if turn1 < 2 else -1
+                        if not _possible(w, 1, code1, way1, impact):
+                            continue
+                        _set_interface(w, 0, code0, way0)
+                        _set_interface(w, 1, code1, way1)
+                        if exclude and _is_mode(p, w, w.old_closed, w.old_slides):
+                            continue
+                        if not solve(p, w, w.q, w.v, ah, av, impact):
+                            continue
+                        wrong = _violation(p, w, w.v, impact, force, motion)
+                        if wrong <= CONSISTENT:
+                            return wrong
+                        if wrong < best:
+                            best = wrong
+                            for k in range(2):
+                                w.best_closed[k, 0] = w.closed[k, 0]
+                                w.best_closed[k, 1] = w.closed[k, 1]
+                                w.best_slides[k] = w.slides[k]
+    for k in range(2):
+        w.closed[k, 0] = w.best_closed[k, 0]
+        w.closed[k, 1] = w.best_closed[k, 1]
+        w.slides[k] = w.best_slides[k]
+    solve(p, w, w.q, w.v, ah, av, impact)
+    return best
+
+
+@kernel
+def _possible(w, k, code, way, impact):
+    """Whether interface k, closed at ``code``, may stick (0) or slide as ``way`` says."""
+    if code == 0:
+        return way == 0
+    return impact or w.moves[k] == 0 or way == w.moves[k]
+
+
+@kernel
+def approach(p, w, k, end):
+    """Speed at which an end parts [m/s]."""
+    kind = w.kind[k, end] if w.closed[k, end] == 1 or w.touching[k, end] == 1 else -1
+    x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, kind)
+    return rate(p, w.q, w.v, k, x, y, -ty, tx)
+
+
+@kernel
+def settle(p, w, ah, av, exclude):
+    """Find the mode in which the touching ends go on; False if none is consistent."""
+    for k in range(p.count):
+        w.limit[k] = p.static[k]
+        for end in range(2):
+            if w.touching[k, end] == 1 and approach(p, w, k, end) >= STILL * p.speed:
+                w.touching[k, end] = 0
+        speed = slip_speed(p, w, w.v, k, True)
+        w.moves[k] = 1 if speed > 0.0 else (-1 if speed < 0.0 else 0)
+    wrong = _search(p, w, ah, av, False, p.weight, p.g, exclude)
+    if exclude and wrong > 1e-7:
+        # nothing else is better: the old mode failed by rounding only
+        now_closed = (w.closed[0, 0], w.closed[0, 1], w.closed[1, 0], w.closed[1, 1])
+        now_slides = (w.slides[0], w.slides[1])
+        for k in range(2):
+            w.closed[k, 0] = w.old_closed[k, 0]
+            w.closed[k, 1] = w.old_closed[k, 1]
+            w.slides[k] = w.old_slides[k]
+        solve(p, w, w.q, w.v, ah, av, False)
+        old = _violation(p, w, w.v, False, p.weight, p.g)
+        if old < wrong:
+            wrong = old
+        else:
+            w.closed[0, 0], w.closed[0, 1] = now_closed[0], now_closed[1]
+            w.closed[1, 0], w.closed[1, 1] = now_closed[2], now_closed[3]
+            w.slides[0], w.slides[1] = now_slides[0], now_slides[1]
+    project(p, w)
+    return wrong < 1e-6
+
+
+@kernel
+def kinetic_energy(p, w):
+    """Kinetic energy relative to the ground [J]."""
+    total = 0.0
+    for d in range(3 * p.count):
+        total += 0.5 * w.v[d] * w.v[d] / p.inverse[d]
+    return total
+
+
+@kernel
+def strike(p, w, ah, av, closing, push):
+    """Plastic impulses at the touching ends, with Coulomb's law on them; sets mode and velocities.
+
+    ``closing``: speed [m/s] below which a contact that parts and would fall shut again stays closed.  ``push``:
+    nothing approaches, but no mode was consistent; see ``docs/contact.md``, 7.
+    """
+    before = kinetic_energy(p, w)
+    for k in range(p.count):
+        w.moves[k] = 0
+        w.limit[k] = p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
+        if push:
+            w.v[3 * k + 1] -= 1e-7 * p.speed
+    scale = 1e-300
+    mass = 0.0
+    for k in range(p.count):
+        mass += p.mass[k]
+        scale = max(scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2]))
+    _search(p, w, ah, av, True, mass * scale, scale, False)
+    for _ in range(4):
+        if not _shut_weak(p, w, ah, av, closing):
+            break
+        solve(p, w, w.q, w.v, ah, av, True)
+    for d in range(3 * p.count):
+        w.v[d] = w.out[d]
+    project(p, w)
+    w.struck += before - kinetic_energy(p, w)
+    w.impacts += 1
+
+
+@kernel
+def _shut_weak(p, w, ah, av, closing):
+    """Close the ends that part so slowly after an impact that they would only chatter."""
+    weak = False
+    for k in range(p.count):
+        for end in range(2):
+            if w.touching[k, end] == 1 and w.closed[k, end] == 0:
+                x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
+                if rate(p, w.q, w.out, k, x, y, -ty, tx) < closing:
+                    weak = True
+    if not weak:
+        return False
+    for d in range(3 * p.count):
+        w.trial[d] = w.out[d]
+    solve(p, w, w.q, w.trial, ah, av, False)
+    found = False
+    for k in range(p.count):
+        for end in range(2):
+            if w.touching[k, end] == 1 and w.closed[k, end] == 0:
+                x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
+                if rate(p, w.q, w.trial, k, x, y, -ty, tx) < closing:
+                    pull = rate(p, w.q, w.out, k, x, y, -ty, tx)
+                    pull += bias(w.q, w.trial, k, x, y, -ty, tx, kind)
+                    if pull < 0.0:
+                        w.closed[k, end] = 2  # below
+                        found = True
+    for k in range(p.count):
+        for end in range(2):
+            if w.closed[k, end] == 2:
+                w.closed[k, end] = 1
+    return found

@@ -1,0 +1,212 @@
+"""Where contacts are, and what accelerations, forces and impulses a mode has (``docs/contact.md``, 1 to 6)."""
+
+import math
+
+from rockfrag.rocking._compile import inlined_kernel, kernel
+
+
+@inlined_kernel
+def look_at(p, w, q):
+    """Take sines and cosines of the rotations in ``q``."""
+    for k in range(p.count):
+        w.cos[k] = math.cos(q[3 * k + 2])
+        w.sin[k] = math.sin(q[3 * k + 2])
+
+
+@inlined_kernel
+def face_axis(p, w, k):
+    """Tangent of the face below interface k (its normal is (-ty, tx))."""
+    if k == 0:
+        return 1.0, 0.0
+    c = w.cos[k - 1] * p.tilt_cos[k] - w.sin[k - 1] * p.tilt_sin[k]
+    s = w.sin[k - 1] * p.tilt_cos[k] + w.cos[k - 1] * p.tilt_sin[k]
+    return c, -s
+
+
+@kernel
+def end_of(p, w, q, k, end, kind):
+    """End of interface k in the configuration ``q``.
+
+    ``kind``: 1 a corner on the face, 0 the face's edge against the base, -1 whichever it is.
+
+    Returns
+    -------
+    Point (x, y), tangent (tx, ty), gap [m], how far the corner is beyond the edge [m], kind.
+    """
+    cx, cy = p.corner[k, end, 0], p.corner[k, end, 1]
+    c, s = w.cos[k], w.sin[k]
+    x = q[3 * k] + cx * c + cy * s
+    y = q[3 * k + 1] - cx * s + cy * c
+    if k == 0:
+        return x, y, 1.0, 0.0, y, -math.inf, 1
+    tx, ty = face_axis(p, w, k)
+    fx, fy = p.face[k, 0], p.face[k, 1]
+    ox = q[3 * k - 3] + fx * w.cos[k - 1] + fy * w.sin[k - 1]
+    oy = q[3 * k - 2] - fx * w.sin[k - 1] + fy * w.cos[k - 1]
+    side = 2 * end - 1
+    beyond = side * ((x - ox) * tx + (y - oy) * ty) - p.half[k]
+    if kind < 0:
+        kind = 1 if beyond <= 0.0 else 0
+    if kind == 1:
+        return x, y, tx, ty, -ty * (x - ox) + tx * (y - oy), beyond, 1
+    ex = ox + side * p.half[k] * tx
+    ey = oy + side * p.half[k] * ty
+    tx = c * p.tilt_cos[k] - s * p.tilt_sin[k]
+    ty = -(s * p.tilt_cos[k] + c * p.tilt_sin[k])
+    return ex, ey, tx, ty, -ty * (x - ex) + tx * (y - ey), beyond, 0
+
+
+@inlined_kernel
+def rate(p, q, v, k, x, y, dx, dy):
+    """Velocity of body k relative to what is below it, at (x, y) along (dx, dy) [m/s].
+
+    With accelerations for ``v`` the part of the relative acceleration that is linear in them.
+    """
+    found = dx * (v[3 * k] + v[3 * k + 2] * (y - q[3 * k + 1]))
+    found += dy * (v[3 * k + 1] - v[3 * k + 2] * (x - q[3 * k]))
+    if k > 0:
+        found -= dx * (v[3 * k - 3] + v[3 * k - 1] * (y - q[3 * k - 2]))
+        found -= dy * (v[3 * k - 2] - v[3 * k - 1] * (x - q[3 * k - 3]))
+    return found
+
+
+@inlined_kernel
+def bias(q, v, k, x, y, dx, dy, kind):
+    """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish."""
+    turn = v[3 * k + 2]
+    rx, ry = x - q[3 * k], y - q[3 * k + 1]
+    ax, ay = -turn * turn * rx, -turn * turn * ry
+    ux, uy = v[3 * k] + turn * ry, v[3 * k + 1] - turn * rx
+    owner = 0.0 if kind == 1 else turn
+    if k > 0:
+        below = v[3 * k - 1]
+        rx, ry = x - q[3 * k - 3], y - q[3 * k - 2]
+        ax += below * below * rx
+        ay += below * below * ry
+        ux -= v[3 * k - 3] + below * ry
+        uy -= v[3 * k - 2] - below * rx
+        if kind == 1:
+            owner = below
+    ax -= 2.0 * owner * uy
+    ay += 2.0 * owner * ux
+    return dx * ax + dy * ay
+
+
+@inlined_kernel
+def _fill(p, q, k, x, y, dx, dy, row):
+    row[3 * k] = dx
+    row[3 * k + 1] = dy
+    row[3 * k + 2] = dx * (y - q[3 * k + 1]) - dy * (x - q[3 * k])
+    if k > 0:
+        row[3 * k - 3] = -dx
+        row[3 * k - 2] = -dy
+        row[3 * k - 1] = dy * (x - q[3 * k - 3]) - dx * (y - q[3 * k - 2])
+    elif p.count > 1:
+        row[3] = 0.0
+        row[4] = 0.0
+        row[5] = 0.0
+
+
+@kernel
+def solve(p, w, q, v, ah, av, impact):
+    """Accelerations of the mode in ``w``, or velocities after an ``impact``, into ``w.out``.
+
+    Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.  ``look_at``
+    must have been called with ``q``.
+
+    Returns
+    -------
+    Whether the equations had a solution.
+    """
+    m = 0
+    size = 3 * p.count
+    for k in range(p.count):
+        friction = w.slides[k] * p.kinetic[k]
+        first = True
+        for end in range(2):
+            if w.closed[k, end] == 0:
+                continue
+            x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
+            _fill(p, q, k, x, y, -ty, tx, w.row[m])
+            w.owner[m] = 3 * k + end
+            right = -bias(q, v, k, x, y, -ty, tx, kind) if not impact else 0.0
+            if w.slides[k] != 0:
+                _fill(p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
+            else:
+                for d in range(size):
+                    w.column[m, d] = w.row[m, d]
+            w.matrix[m, 6] = right
+            m += 1
+            if first and w.slides[k] == 0:
+                _fill(p, q, k, x, y, tx, ty, w.row[m])
+                for d in range(size):
+                    w.column[m, d] = w.row[m, d]
+                w.owner[m] = 3 * k + 2
+                w.matrix[m, 6] = -bias(q, v, k, x, y, tx, ty, kind) if not impact else 0.0
+                m += 1
+            first = False
+    for k in range(p.count):
+        if impact:
+            w.out[3 * k] = v[3 * k]
+            w.out[3 * k + 1] = v[3 * k + 1]
+            w.out[3 * k + 2] = v[3 * k + 2]
+        else:
+            w.out[3 * k] = -ah
+            w.out[3 * k + 1] = -(p.g + av)
+            w.out[3 * k + 2] = 0.0
+        w.normal[k, 0] = 0.0
+        w.normal[k, 1] = 0.0
+        w.shear[k] = 0.0
+    for i in range(m):
+        total = w.matrix[i, 6]
+        for d in range(size):
+            total -= w.row[i, d] * w.out[d]
+        w.matrix[i, 6] = total
+        for j in range(m):
+            total = 0.0
+            for d in range(size):
+                total += w.row[i, d] * p.inverse[d] * w.column[j, d]
+            w.matrix[i, j] = total
+    if not _eliminate(w.matrix, m):
+        return False
+    for i in range(m):
+        force = w.matrix[i, 6]
+        k = w.owner[i] // 3
+        end = w.owner[i] - 3 * k
+        if end == 2:
+            w.shear[k] += force
+        else:
+            w.normal[k, end] = force
+            w.shear[k] -= w.slides[k] * p.kinetic[k] * force
+        for d in range(size):
+            w.out[d] += p.inverse[d] * w.column[i, d] * force
+    return True
+
+
+@kernel
+def _eliminate(a, m):
+    """Solve m equations whose right-hand side is column 6, in place; False if they are singular."""
+    for i in range(m):
+        best = i
+        for j in range(i + 1, m):
+            if abs(a[j, i]) > abs(a[best, i]):
+                best = j
+        if a[best, i] == 0.0:
+            return False
+        if best != i:
+            for j in range(i, m):
+                a[i, j], a[best, j] = a[best, j], a[i, j]
+            a[i, 6], a[best, 6] = a[best, 6], a[i, 6]
+        pivot = 1.0 / a[i, i]
+        for j in range(i + 1, m):
+            factor = a[j, i] * pivot
+            if factor != 0.0:
+                for c in range(i + 1, m):
+                    a[j, c] -= factor * a[i, c]
+                a[j, 6] -= factor * a[i, 6]
+    for i in range(m - 1, -1, -1):
+        total = a[i, 6]
+        for j in range(i + 1, m):
+            total -= a[i, j] * a[j, 6]
+        a[i, 6] = total / a[i, i]
+    return True

@@ -1,0 +1,267 @@
+"""One step between events, and the first event in it."""
+
+import math
+
+from rockfrag.rocking._compile import kernel
+from rockfrag.rocking.contact._solve import end_of, look_at, rate, solve
+
+SLACK, TOUCH = 1e-12, 1e-13
+"""Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;
+speeds over √(g b) and lengths over b [-]."""
+
+GAP, PRESS, EDGE = 0, 0, 2
+"""Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
+FRICTION, FALL = 4, 5
+"""... stick or slip, and the fall of the body above it."""
+
+
+@kernel
+def start_step(p, w):
+    """Take ``q``, ``v`` and ``a`` as the start of a step."""
+    for d in range(3 * p.count):
+        w.q0[d] = w.q[d]
+        w.v0[d] = w.v[d]
+        w.a0[d] = w.a[d]
+
+
+@kernel
+def take_step(p, w, h, ah, av, rise_h, rise_v, ledger):
+    """Go on by ``h`` [s] from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
+
+    The ground's accelerations rise from ``ah``, ``av`` by ``rise_h``, ``rise_v``.  With ``ledger`` the work of the
+    ground and of friction is added up.
+    """
+    size = 3 * p.count
+    for d in range(size):
+        w.kv[0, d] = w.v0[d]
+        w.ka[0, d] = w.a0[d]
+    work, rubbed = 0.0, 0.0
+    if ledger:
+        look_at(p, w, w.q0)
+        solve(p, w, w.q0, w.v0, ah, av, False)
+        one, two = _powers(p, w, w.q0, w.v0, ah, av)
+        work += 35.0 / 384.0 * one
+        rubbed += 35.0 / 384.0 * two
+    for stage in range(1, 7):
+        if stage == 1:
+            t = 0.2
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * 0.2 * w.ka[0, d]
+                w.q1[d] = w.q0[d] + h * 0.2 * w.kv[0, d]
+        elif stage == 2:
+            t = 0.3
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (0.075 * w.ka[0, d] + 0.225 * w.ka[1, d])
+                w.q1[d] = w.q0[d] + h * (0.075 * w.kv[0, d] + 0.225 * w.kv[1, d])
+        elif stage == 3:
+            t = 0.8
+            b0, b1, b2 = 44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d])
+                w.q1[d] = w.q0[d] + h * (b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d])
+        elif stage == 4:
+            t = 8.0 / 9.0
+            b0, b1 = 19372.0 / 6561.0, -25360.0 / 2187.0
+            b2, b3 = 64448.0 / 6561.0, -212.0 / 729.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (
+                    b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d]
+                )
+                w.q1[d] = w.q0[d] + h * (
+                    b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d]
+                )
+        elif stage == 5:
+            t = 1.0
+            b0, b1, b2 = 9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0
+            b3, b4 = 49.0 / 176.0, -5103.0 / 18656.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (
+                    b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d]
+                    + b4 * w.ka[4, d]
+                )  # fmt: skip
+                w.q1[d] = w.q0[d] + h * (
+                    b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d]
+                    + b4 * w.kv[4, d]
+                )  # fmt: skip
+        else:
+            t = 1.0
+            b0, b2, b3 = 35.0 / 384.0, 500.0 / 1113.0, 125.0 / 192.0
+            b4, b5 = -2187.0 / 6784.0, 11.0 / 84.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (
+                    b0 * w.ka[0, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d] + b4 * w.ka[4, d]
+                    + b5 * w.ka[5, d]
+                )  # fmt: skip
+                w.q1[d] = w.q0[d] + h * (
+                    b0 * w.kv[0, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d] + b4 * w.kv[4, d]
+                    + b5 * w.kv[5, d]
+                )  # fmt: skip
+        look_at(p, w, w.q1)
+        solve(p, w, w.q1, w.v1, ah + t * rise_h, av + t * rise_v, False)
+        for d in range(size):
+            w.kv[stage, d] = w.v1[d]
+            w.ka[stage, d] = w.out[d]
+        if ledger and 2 <= stage <= 5:
+            one, two = _powers(p, w, w.q1, w.v1, ah + t * rise_h, av + t * rise_v)
+            weight = 500.0 / 1113.0
+            if stage == 3:
+                weight = 125.0 / 192.0
+            elif stage == 4:
+                weight = -2187.0 / 6784.0
+            elif stage == 5:
+                weight = 11.0 / 84.0
+            work += weight * one
+            rubbed += weight * two
+    for d in range(size):
+        w.a1[d] = w.out[d]
+    return work * h, rubbed * h
+
+
+@kernel
+def _powers(p, w, q, v, ah, av):
+    """Power of the ground, and power lost to friction, with the shear in ``w`` [W]."""
+    work = 0.0
+    lost = 0.0
+    for k in range(p.count):
+        work -= p.mass[k] * (ah * v[3 * k] + av * v[3 * k + 1])
+        if w.slides[k] != 0:
+            end = 0 if w.closed[k, 0] == 1 else 1
+            x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+            lost -= w.shear[k] * rate(p, q, v, k, x, y, tx, ty)
+    return work, lost
+
+
+@kernel
+def least_margin(p, w, q, v):
+    """Least of all that must stay positive until the next event; ``w.fails`` says what is negative.
+
+    Contact forces are those in ``w``; ``look_at`` must have been called with ``q``.
+    """
+    least = math.inf
+    for k in range(p.count):
+        pressed = 0.0
+        some = False
+        for end in range(2):
+            w.fails[k, GAP + end] = 0
+            w.fails[k, EDGE + end] = 0
+            if w.closed[k, end] == 1:
+                some = True
+                pressed += w.normal[k, end]
+                margin = w.normal[k, end] / p.weight + SLACK
+                if k > 0:
+                    _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
+                    inside = (-beyond if w.kind[k, end] == 1 else beyond) / p.size + TOUCH
+                    if inside < 0.0:
+                        w.fails[k, EDGE + end] = 1
+                    least = min(least, inside)
+            else:
+                _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
+                margin = gap / p.size + TOUCH
+                if beyond < -2.0 * p.half[k]:
+                    least = min(least, (2.0 * p.half[k] + beyond) / p.size)
+            if margin < 0.0:
+                w.fails[k, GAP + end] = 1
+            least = min(least, margin)
+        w.fails[k, FRICTION] = 0
+        if some:
+            if w.slides[k] != 0:
+                end = 0 if w.closed[k, 0] == 1 else 1
+                x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+                margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + TOUCH
+            else:
+                margin = p.static[k] * pressed - abs(w.shear[k])
+                margin = margin / (p.weight * max(p.static[k], 1.0)) + SLACK
+            if margin < 0.0:
+                w.fails[k, FRICTION] = 1
+            least = min(least, margin)
+        turned = abs(q[3 * k + 2])
+        if k > 0:
+            turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
+        margin = 0.5 * math.pi - turned
+        w.fails[k, FALL] = 0
+        if k > 0 and off_the_edge(p, w, q, k):
+            w.fails[k, FALL] = 1
+        if margin < 0.0:
+            w.fails[k, FALL] = 1
+        least = min(least, margin)
+    return least
+
+
+@kernel
+def off_the_edge(p, w, q, k):
+    """Whether the base above interface k no longer reaches over the face below."""
+    for end in range(2):
+        _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, 1)
+        if beyond < -2.0 * p.half[k]:
+            return True
+    return False
+
+
+@kernel
+def interpolate(p, w, tau, h):
+    """Set ``q`` and ``v`` to the quintic polynomial through the step at its fraction ``tau``."""
+    t2 = tau * tau
+    t3 = t2 * tau
+    for d in range(3 * p.count):
+        q0, v0, a0 = w.q0[d], h * w.v0[d], 0.5 * h * h * w.a0[d]
+        v1, a1 = h * w.v1[d], 0.5 * h * h * w.a1[d]
+        rise = w.q1[d] - q0 - v0 - a0
+        turn = v1 - v0 - 2.0 * a0
+        bend = a1 - a0
+        c3 = 10.0 * rise - 4.0 * turn + bend
+        c4 = -15.0 * rise + 7.0 * turn - 2.0 * bend
+        c5 = 6.0 * rise - 3.0 * turn + bend
+        w.q[d] = q0 + v0 * tau + a0 * t2 + t3 * (c3 + tau * (c4 + tau * c5))
+        w.v[d] = (v0 + 2.0 * a0 * tau + t2 * (3.0 * c3 + tau * (4.0 * c4 + 5.0 * tau * c5))) / h
+
+
+@kernel
+def margin_at(p, w, tau, h, ah, av, rise_h, rise_v):
+    """Least margin at the fraction ``tau`` of the step."""
+    interpolate(p, w, tau, h)
+    look_at(p, w, w.q)
+    solve(p, w, w.q, w.v, ah + tau * rise_h, av + tau * rise_v, False)
+    return least_margin(p, w, w.q, w.v)
+
+
+@kernel
+def first_failure(p, w, low, at_low, high, at_high, h, ah, av, rise_h, rise_v):
+    """Fraction of the step just after the least margin has become negative, by regula falsi (Illinois)."""
+    moved = 0
+    for _ in range(100):
+        if high - low <= 1e-12:
+            break
+        tau = high - at_high * (high - low) / (at_high - at_low)
+        width = high - low
+        tau = min(max(tau, low + 1e-3 * width), high - 1e-3 * width)
+        tau = min(max(tau, low + 4e-13), high - 4e-13) if width > 1e-12 else 0.5 * (low + high)
+        value = margin_at(p, w, tau, h, ah, av, rise_h, rise_v)
+        if value >= 0.0:
+            low = tau
+            at_low = value
+            if moved == 1:
+                at_high *= 0.5
+            moved = 1
+        else:
+            high = tau
+            at_high = value
+            if moved == -1:
+                at_low *= 0.5
+            moved = -1
+    return high
+
+
+@kernel
+def comes_near(p, w):
+    """Whether a gap has narrowed at the start of the step and widens at its end, or slip likewise."""
+    for k in range(p.count):
+        for end in range(2):
+            if w.closed[k, end] == 0:
+                look_at(p, w, w.q0)
+                x, y, tx, ty, _, _, _ = end_of(p, w, w.q0, k, end, -1)
+                early = rate(p, w.q0, w.v0, k, x, y, -ty, tx)
+                look_at(p, w, w.q1)
+                x, y, tx, ty, _, _, _ = end_of(p, w, w.q1, k, end, -1)
+                if early < 0.0 and rate(p, w.q1, w.v1, k, x, y, -ty, tx) > 0.0:
+                    return True
+    return False
