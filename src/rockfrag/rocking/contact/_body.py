@@ -27,6 +27,7 @@ BODY = np.dtype(
         ("tilt_sin", F, (2,)),
         ("static", F, (2,)),
         ("kinetic", F, (2,)),
+        ("critical", F, (2, 2)),  # [body, side] its critical angle to the left, to the right [rad]
         ("standing", F, (6,)),  # x, y, θ of each body as it stands
         ("weight", F),  # of everything [N]: unit of forces
         ("size", F),  # half width of the uppermost body [m]: unit of lengths
@@ -78,6 +79,9 @@ WORK = np.dtype(
         ("work", F),
         ("rubbed", F),  # lost to friction
         ("struck", F),  # lost in impacts
+        ("peak", F, (2,)),  # largest |θ| over the critical angle of its sign, and ...
+        ("peak_speed", F, (2,)),  # ... largest |θ'| [rad/s] of each body
+        ("peak_slip", F, (2,)),  # largest |slip| of each interface [m]
         ("impacts", INT),
         ("slips", INT),  # times that an interface began to slide
         ("flights", INT),  # times that an interface opened at both ends
@@ -85,6 +89,20 @@ WORK = np.dtype(
         ("forced", INT),
         ("fallen", INT),
         ("resting", INT),
+    ]
+)
+
+OUTCOME = np.dtype(
+    [
+        ("fallen", INT),  # 0 none, 1 the lone block or the pedestal, 2 the statue
+        ("time", F),  # of the fall [s]
+        ("impacts", INT),
+        ("paradoxes", INT),
+        ("forced", INT),
+        ("peak", F, (2,)),
+        ("peak_speed", F, (2,)),
+        ("peak_slip", F, (2,)),
+        ("slip", F, (2,)),
     ]
 )
 
@@ -103,6 +121,7 @@ def contact_body(body: Body, friction: tuple[Friction, ...], g: float) -> np.voi
         p["inverse"][3 * k : 3 * k + 3] = 1 / block.mass, 1 / block.mass, 1 / block.centroidal_inertia
         for end, pole in enumerate((-1, 1)):
             p["corner"][k, end] = -arm(pole).x, -arm(pole).y
+            p["critical"][k, end] = math.atan2(-pole * arm(pole).x, arm(pole).y)
         p["static"][k], p["kinetic"][k] = friction[k]
     p["standing"][:2] = blocks[0].centre
     if not isinstance(body, Block):

@@ -35,6 +35,49 @@ CHANGE, IMPACT, PARADOX, FALLEN = 0.0, 1.0, 2.0, 3.0
 
 
 @entry_kernel
+def march_cases(
+    first, last, bodies, horizontal, vertical, offsets, dts, factors, substeps, free_samples, closing,
+    starts, outcome, history, events, w,
+):  # fmt: skip
+    """March the cases ``first`` to ``last`` of bodies × motions × scales, and keep their outcomes.
+
+    Parameters
+    ----------
+    bodies : (bodies,) BODY
+    horizontal, vertical : all motions end to end; ``offsets`` (motions + 1,) where each begins
+    factors : (motions, scales)
+    substeps, free_samples : (bodies, motions)
+    starts : (bodies, 2, 6)
+    outcome : (cases,) OUTCOME
+    history, events : of no rows
+    """
+    scales = factors.shape[1]
+    motions = factors.shape[0]
+    for case in range(first, last):
+        b = case // (motions * scales)
+        m = case // scales - b * motions
+        scale = factors[m, case - (b * motions + m) * scales]
+        begin, end = offsets[m], offsets[m + 1]
+        up = vertical[begin:end] if vertical.size > 0 else vertical
+        _, _, fall = march(
+            bodies[b], horizontal[begin:end], up, dts[m], scale, substeps[b, m], free_samples[b, m],
+            starts[b], closing, history, events, w,
+        )  # fmt: skip
+        out = outcome[case]
+        out.fallen = w.fallen
+        out.time = fall
+        out.impacts = w.impacts
+        out.paradoxes = w.paradoxes
+        out.forced = w.forced
+        for k in range(bodies[b].count):
+            out.peak[k] = w.peak[k]
+            out.peak_speed[k] = w.peak_speed[k]
+            out.peak_slip[k] = w.peak_slip[k]
+            look_at(bodies[b], w, w.q)
+            out.slip[k] = slip(bodies[b], w, k)
+
+
+@entry_kernel
 def march(
     p, horizontal, vertical, dt, scale, substeps, free_samples, start, closing, history, events, w
 ):
@@ -146,6 +189,7 @@ def march(
                     tau = 1.0
             w.work += work
             w.rubbed += rubbed
+            _track(p, w)
             if w.fallen > 0:
                 fall = (i + tau) * dt
                 break
@@ -177,7 +221,20 @@ def _begin(p, w, start):
             w.kind[k, end] = 0
             w.touching[k, end] = 0
     w.work = w.rubbed = w.struck = 0.0
+    for k in range(2):
+        w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
     w.impacts = w.slips = w.flights = w.paradoxes = w.forced = w.fallen = w.resting = 0
+
+
+@kernel
+def _track(p, w):
+    """Keep the largest rotations, angular velocities and slips."""
+    for k in range(p.count):
+        theta = w.q[3 * k + 2]
+        limit = p.critical[k, 1] if theta > 0.0 else p.critical[k, 0]
+        w.peak[k] = max(w.peak[k], abs(theta) / limit)
+        w.peak_speed[k] = max(w.peak_speed[k], abs(w.v[3 * k + 2]))
+        w.peak_slip[k] = max(w.peak_slip[k], abs(slip(p, w, k)))
 
 
 @kernel
@@ -376,10 +433,12 @@ def _note(p, w, time, kind, loss, events, count):
 
 @kernel
 def slip(p, w, k):
-    """Displacement along interface k of the corner that carries, from where it stood at first [m]."""
+    """Displacement along interface k of the corner that carries, from where it stood at first [m].
+
+    ``look_at`` must have been called with ``w.q``.
+    """
     relative = w.q[3 * k + 2] - (w.q[3 * k - 1] if k > 0 else 0.0)
     end = 1 if relative >= 0.0 else 0
-    look_at(p, w, w.q)
     x, _, _, _, _, beyond, _ = end_of(p, w, w.q, k, end, 1)
     if k == 0:
         return x - p.standing[0] - p.corner[0, end, 0]
