@@ -72,7 +72,6 @@ WORK = np.dtype(
         ("old_slides", INT, (2,)),
         ("best_closed", INT, (2, 2)),
         ("best_slides", INT, (2,)),
-        ("trial", F, (6,)),
         # margins of rest, linear in the two accelerations
         ("rest", F, (8, 3)),
         # ledgers [J] and counts

@@ -26,6 +26,9 @@ from rockfrag.rocking.contact._step import (
 MOST_EVENTS = 300
 """Events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
 
+MOST_IDLE = 30
+"""Events on the spot after which a step is taken without looking for more."""
+
 HISTORY = 22
 """Columns of a history: q (6), v (6), slip (2), normal force (2), shear (2), work, rubbed, struck, mode."""
 
@@ -113,6 +116,7 @@ def march(
     known_rest = False
     done = 1
     fall = math.nan
+    idle = 0
     for i in range(n - 1 + free_samples):
         left, right = _at(horizontal, i, scale, n), _at(horizontal, i + 1, scale, n)
         low, high = 0.0, 0.0
@@ -150,7 +154,13 @@ def march(
             start_step(p, w)
             work, rubbed = take_step(p, w, h, ah, av, rise_h, rise_v, ledger)
             at_end = least_margin(p, w, w.q1, w.v1)
-            when = _event_in_step(p, w, at_end, h, ah, av, rise_h, rise_v)
+            when = 2.0
+            if idle <= MOST_IDLE:
+                when = _event_in_step(p, w, at_end, h, ah, av, rise_h, rise_v)
+            else:
+                # events that do not let time go on: leave them behind
+                idle = 0
+                w.forced += 1
             if when > 1.0:
                 for d in range(3 * p.count):
                     w.q[d] = w.q1[d]
@@ -178,6 +188,7 @@ def march(
                         w.v[d] = w.v0[d]
                 project(p, w)
                 tau += when * step
+                idle = idle + 1 if when < 1e-9 else 0
                 met += 1
                 coarser = closing * 10.0 ** (met // MOST_EVENTS)
                 if met >= MOST_EVENTS:

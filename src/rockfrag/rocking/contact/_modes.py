@@ -11,7 +11,9 @@ from rockfrag.rocking.contact._solve import bias, end_of, look_at, rate, solve
 
 CONSISTENT = 1e-11
 """Violation below which a mode is consistent: forces over the weight, accelerations over g [-]."""
-STILL = 1e-12
+UNSOLVED = 1e-6
+"""Relative motion of a closed end beyond which the equations of a mode were singular but for rounding."""
+STILL = 1e-11
 """Share of √(g b) below which a speed is rounding."""
 
 
@@ -37,11 +39,13 @@ def project(p, w):
         end = 0 if w.closed[k, 0] == 1 else 1
         look_at(p, w, q)
         x, y, tx, ty, gap, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
-        normal = rate(p, q, v, k, x, y, -ty, tx)
-        along = rate(p, q, v, k, x, y, tx, ty) if w.slides[k] == 0 else 0.0
         for body in range(k, p.count):
             q[3 * body] += gap * ty
             q[3 * body + 1] -= gap * tx
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+        normal = rate(p, q, v, k, x, y, -ty, tx)
+        along = rate(p, q, v, k, x, y, tx, ty) if w.slides[k] == 0 else 0.0
+        for body in range(k, p.count):
             v[3 * body] -= along * tx - normal * ty
             v[3 * body + 1] -= along * ty + normal * tx
     w.resting = 0
@@ -77,14 +81,16 @@ def _violation(p, w, v, impact, force, motion):
         for end in range(2):
             if w.touching[k, end] == 0:
                 continue
+            x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
+            apart = rate(p, w.q, w.out, k, x, y, -ty, tx)
+            if not impact:
+                apart += bias(w.q, v, k, x, y, -ty, tx, kind)
             if w.closed[k, end] == 1:
                 worst = max(worst, -w.normal[k, end] / force)
                 pressed += w.normal[k, end]
+                if not abs(apart) < UNSOLVED * motion:
+                    return math.inf
             else:
-                x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
-                apart = rate(p, w.q, w.out, k, x, y, -ty, tx)
-                if not impact:
-                    apart += bias(w.q, v, k, x, y, -ty, tx, kind)
                 worst = max(worst, -apart / motion)
         if w.closed[k, 0] == 0 and w.closed[k, 1] == 0:
             continue
@@ -248,12 +254,12 @@ def strike(p, w, ah, av, closing, push):
         mass += p.mass[k]
         scale = max(scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2]))
     _search(p, w, ah, av, True, mass * scale, scale, False)
-    for _ in range(4):
-        if not _shut_weak(p, w, ah, av, closing):
-            break
-        solve(p, w, w.q, w.v, ah, av, True)
     for d in range(3 * p.count):
         w.v[d] = w.out[d]
+    while _shut_weak(p, w, ah, av, closing):
+        solve(p, w, w.q, w.v, ah, av, True, False)
+        for d in range(3 * p.count):
+            w.v[d] = w.out[d]
     project(p, w)
     w.struck += before - kinetic_energy(p, w)
     w.impacts += 1
@@ -261,32 +267,22 @@ def strike(p, w, ah, av, closing, push):
 
 @kernel
 def _shut_weak(p, w, ah, av, closing):
-    """Close the ends that part so slowly after an impact that they would only chatter."""
+    """Close the ends that part so slowly after an impact that they would only chatter; whether there are any."""
     weak = False
     for k in range(p.count):
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
-                x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
-                if rate(p, w.q, w.out, k, x, y, -ty, tx) < closing:
-                    weak = True
+                weak = weak or approach(p, w, k, end) < closing
     if not weak:
         return False
-    for d in range(3 * p.count):
-        w.trial[d] = w.out[d]
-    solve(p, w, w.q, w.trial, ah, av, False)
+    solve(p, w, w.q, w.v, ah, av, False)
     found = False
     for k in range(p.count):
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
-                if rate(p, w.q, w.trial, k, x, y, -ty, tx) < closing:
-                    pull = rate(p, w.q, w.out, k, x, y, -ty, tx)
-                    pull += bias(w.q, w.trial, k, x, y, -ty, tx, kind)
-                    if pull < 0.0:
-                        w.closed[k, end] = 2  # below
-                        found = True
-    for k in range(p.count):
-        for end in range(2):
-            if w.closed[k, end] == 2:
-                w.closed[k, end] = 1
+                pull = rate(p, w.q, w.out, k, x, y, -ty, tx) + bias(w.q, w.v, k, x, y, -ty, tx, kind)
+                if pull < 0.0 and rate(p, w.q, w.v, k, x, y, -ty, tx) < closing:
+                    w.closed[k, end] = 1
+                    found = True
     return found

@@ -108,8 +108,11 @@ def _fill(p, q, k, x, y, dx, dy, row):
 
 
 @kernel
-def solve(p, w, q, v, ah, av, impact):
+def solve(p, w, q, v, ah, av, impact, rough=True):
     """Accelerations of the mode in ``w``, or velocities after an ``impact``, into ``w.out``.
+
+    Without ``rough`` sliding contacts have no friction: the velocities nearest to ``v`` in kinetic energy that keep
+    the mode.
 
     Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.  ``look_at``
     must have been called with ``q``.
@@ -121,7 +124,7 @@ def solve(p, w, q, v, ah, av, impact):
     m = 0
     size = 3 * p.count
     for k in range(p.count):
-        friction = w.slides[k] * p.kinetic[k]
+        friction = w.slides[k] * p.kinetic[k] if rough else 0.0
         first = True
         for end in range(2):
             if w.closed[k, end] == 0:

@@ -552,7 +552,7 @@ class _Run:
                 InterfaceMode(tuple(sorted({*m.closed, *(s for i, s in weak if i == k)})), m.slides)
                 for k, m in enumerate(mode)
             )
-            solution = model.solve(self.q, self.v, mode, contacts, None)
+            solution = model.solve(self.q, solution.rates, mode, contacts, None, rough=False)
         self.v = solution.rates
         self.mode = mode
         self._forget()

@@ -208,11 +208,13 @@ class Model:
         mode: Mode,
         contacts: dict[End, Contact],
         load: tuple[float, float] | None,
+        rough: bool = True,
     ) -> Solution:
         """Accelerations and forces of a mode under the ground's acceleration; impulses if there is none.
 
         An impact has M v⁺ = M v + (impulses) and closed ends that no longer move apart; between impacts
-        M q̈ = f + (forces) and closed ends that do not accelerate apart.
+        M q̈ = f + (forces) and closed ends that do not accelerate apart.  Without ``rough`` sliding contacts have
+        no friction: the velocities nearest to v in kinetic energy that keep the mode.
         """
         n = 3 * self.count
         forces: list[Array] = []
@@ -223,7 +225,7 @@ class Model:
             for side in closed:
                 c = contacts[k, side]
                 normal, tangent = self.row(q, k, c, c.normal), self.row(q, k, c, c.tangent)
-                friction = slides * self.friction[k].kinetic if slides else 0.0
+                friction = slides * self.friction[k].kinetic if rough else 0.0
                 forces.append(normal - friction * tangent)
                 rows.append(normal)
                 right.append(0.0 if load is None else -self.bias(q, v, k, c, c.normal))
