@@ -13,6 +13,7 @@ import numpy as np
 
 from rockfrag.rocking import Block, Body
 
+
 def body_table(body: Body) -> np.ndarray:
     """Mass, inertia, corners and top edges from the centre, tilt of the base and of the top, start (x, y)."""
     if isinstance(body, Block):
@@ -34,7 +35,10 @@ def body_table(body: Body) -> np.ndarray:
         base_tilt = tops[k - 1][1] if k else 0.0
         row += [base_tilt, lean]
         if k == 0:
-            row += [body.centre.x if isinstance(body, Block) else blocks[0].centre.x, blocks[0].centre.y]
+            row += [
+                body.centre.x if isinstance(body, Block) else blocks[0].centre.x,
+                blocks[0].centre.y,
+            ]
         else:
             pole, own = body.interface_pole(1), body.statue_arm(1)
             row += [pole.x + own.x, pole.y + own.y]
@@ -42,7 +46,7 @@ def body_table(body: Body) -> np.ndarray:
     return np.array(rows)
 
 
-@numba.njit(cache=True)
+@numba.njit
 def _candidates(table, q, points, axes, gaps, below):
     """Contact points, axis angles (of the face), gaps and the body above; number of them."""
     n = 0
@@ -81,7 +85,7 @@ def _candidates(table, q, points, axes, gaps, below):
     return n
 
 
-@numba.njit(cache=True)
+@numba.njit
 def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q, v, rows):
     """March; fills rows (samples, 6 bodies) with q, v at samples.
 
@@ -175,7 +179,7 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
     return 0, math.nan, last + tail
 
 
-@numba.njit(cache=True)
+@numba.njit
 def _apart(table, q):
     """Whether the statue's base no longer lies over the pedestal's top."""
     tl = q[2] + table[0, 11]

@@ -21,7 +21,11 @@ BODY = np.dtype(
         ("inertia", F, (2,)),
         ("inverse", F, (6,)),  # 1/m, 1/m, 1/I of each body
         ("corner", F, (2, 2, 2)),  # [body, end] of its base from its centre, x and y [m]
-        ("face", F, (2, 2)),  # [interface] middle of the face below from the centre of the body below
+        (
+            "face",
+            F,
+            (2, 2),
+        ),  # [interface] middle of the face below from the centre of the body below
         ("half", F, (2,)),  # [interface] half width of the face below; infinite for the ground
         ("tilt_cos", F, (2,)),  # [interface] tilt of face and base as all stand
         ("tilt_sin", F, (2,)),
@@ -42,7 +46,11 @@ WORK = np.dtype(
         ("a", F, (6,)),
         ("closed", INT, (2, 2)),  # [interface, end] the mode: closed ends ...
         ("slides", INT, (2,)),  # ... and the sign of slip, 0 where an interface sticks
-        ("kind", INT, (2, 2)),  # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
+        (
+            "kind",
+            INT,
+            (2, 2),
+        ),  # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
         ("normal", F, (2, 2)),  # forces, or impulses
         ("shear", F, (2,)),
         ("out", F, (6,)),  # accelerations, or velocities after an impact
@@ -110,17 +118,22 @@ def contact_body(body: Body, friction: tuple[Friction, ...], g: float) -> np.voi
     """Return the record ``BODY`` of a block or a stack with the friction of its interfaces."""
     p: np.void = np.zeros(1, BODY)[0]
     if isinstance(body, Block):
-        blocks, arms = [body], [body.arm]
+        blocks, arms = [body], [[body.arm(pole) for pole in (-1, 1)]]
     else:
-        blocks, arms = [body.pedestal, body.statue], [body.pedestal.arm, body.statue_arm]
+        blocks = [body.pedestal, body.statue]
+        arms = [[arm(pole) for pole in (-1, 1)] for arm in (body.pedestal.arm, body.statue_arm)]
     p["count"], p["g"] = len(blocks), g
     p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
-    for k, (block, arm) in enumerate(zip(blocks, arms, strict=True)):
+    for k, (block, pair) in enumerate(zip(blocks, arms, strict=True)):
         p["mass"][k], p["inertia"][k] = block.mass, block.centroidal_inertia
-        p["inverse"][3 * k : 3 * k + 3] = 1 / block.mass, 1 / block.mass, 1 / block.centroidal_inertia
-        for end, pole in enumerate((-1, 1)):
-            p["corner"][k, end] = -arm(pole).x, -arm(pole).y
-            p["critical"][k, end] = math.atan2(-pole * arm(pole).x, arm(pole).y)
+        p["inverse"][3 * k : 3 * k + 3] = (
+            1 / block.mass,
+            1 / block.mass,
+            1 / block.centroidal_inertia,
+        )
+        for end, arm in enumerate(pair):
+            p["corner"][k, end] = -arm.x, -arm.y
+            p["critical"][k, end] = math.atan2((1 - 2 * end) * arm.x, arm.y)
         p["static"][k], p["kinetic"][k] = friction[k]
     p["standing"][:2] = blocks[0].centre
     if not isinstance(body, Block):
@@ -128,8 +141,8 @@ def contact_body(body: Body, friction: tuple[Friction, ...], g: float) -> np.voi
         top = np.array([math.sin(pedestal.lean), math.cos(pedestal.lean)]) * pedestal.height
         p["face"][1], p["half"][1] = top - pedestal.centre, pedestal.b
         p["tilt_cos"][1], p["tilt_sin"][1] = math.cos(pedestal.lean), math.sin(pedestal.lean)
-        pole, own = body.interface_pole(1), body.statue_arm(1)
-        p["standing"][3:5] = pole.x + own.x, pole.y + own.y
+        foot, own = body.interface_pole(1), body.statue_arm(1)
+        p["standing"][3:5] = foot.x + own.x, foot.y + own.y
     p["weight"] = g * sum(block.mass for block in blocks)
     p["size"] = blocks[-1].b
     p["speed"] = math.sqrt(g * blocks[-1].b)
@@ -142,7 +155,9 @@ def working_memory() -> np.void:
     return work
 
 
-def posed(p: np.void, theta: NDArray[np.float64], omega: NDArray[np.float64]) -> NDArray[np.float64]:
+def posed(
+    p: np.void, theta: NDArray[np.float64], omega: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Coordinates and velocities, shape (2, 6), of bodies turned about the corners that this leaves them."""
     start = np.zeros((2, 6))
     standing = p["standing"]
@@ -158,10 +173,10 @@ def posed(p: np.void, theta: NDArray[np.float64], omega: NDArray[np.float64]) ->
         pole = standing[3 * k : 3 * k + 2] + corner
         speed = np.zeros(2)
         if k:
-            arm = turned(*(pole - standing[:2]), below[0])
+            arm = turned(pole[0] - standing[0], pole[1] - standing[1], below[0])
             pole = start[0, :2] + arm
             speed = start[1, :2] + below[1] * np.array([arm[1], -arm[0]])
-        arm = -turned(*corner, theta[k])
+        arm = -turned(corner[0], corner[1], theta[k])
         start[0, 3 * k : 3 * k + 2] = pole + arm
         start[1, 3 * k : 3 * k + 2] = speed + omega[k] * np.array([arm[1], -arm[0]])
         start[0, 3 * k + 2], start[1, 3 * k + 2] = theta[k], omega[k]

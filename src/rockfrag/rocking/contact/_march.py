@@ -112,7 +112,14 @@ def march(
                     closing, True, False, events, 0)  # fmt: skip
     fresh = True  # the acceleration in w.a is not that of this state and mode
     if keeps:
-        _keep(p, w, 0, _at(horizontal, 0, scale, n), _at(vertical, 0, scale, n) if up else 0.0, history)
+        _keep(
+            p,
+            w,
+            0,
+            _at(horizontal, 0, scale, n),
+            _at(vertical, 0, scale, n) if up else 0.0,
+            history,
+        )
     known_rest = False
     done = 1
     fall = math.nan

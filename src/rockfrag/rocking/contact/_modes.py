@@ -9,8 +9,9 @@ import math
 from rockfrag.rocking._compile import kernel
 from rockfrag.rocking.contact._solve import bias, end_of, look_at, rate, solve
 
-CONSISTENT = 1e-11
-"""Violation below which a mode is consistent: forces over the weight, accelerations over g [-]."""
+CONSISTENT = 2e-13
+"""Violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
+slack of events, so that a mode that has just failed is not."""
 UNSOLVED = 1e-6
 """Relative motion of a closed end beyond which the equations of a mode were singular but for rounding."""
 STILL = 1e-11
@@ -20,10 +21,11 @@ STILL = 1e-11
 @kernel
 def is_full_stick(p, w):
     """Whether all interfaces are closed at both ends and stick."""
+    stuck = 0
     for k in range(p.count):
-        if w.closed[k, 0] == 0 or w.closed[k, 1] == 0 or w.slides[k] != 0:
-            return False
-    return True
+        if w.closed[k, 0] == 1 and w.closed[k, 1] == 1 and w.slides[k] == 0:
+            stuck += 1
+    return stuck == p.count
 
 
 @kernel
@@ -281,7 +283,9 @@ def _shut_weak(p, w, ah, av, closing):
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
-                pull = rate(p, w.q, w.out, k, x, y, -ty, tx) + bias(w.q, w.v, k, x, y, -ty, tx, kind)
+                pull = rate(p, w.q, w.out, k, x, y, -ty, tx) + bias(
+                    w.q, w.v, k, x, y, -ty, tx, kind
+                )
                 if pull < 0.0 and rate(p, w.q, w.v, k, x, y, -ty, tx) < closing:
                     w.closed[k, end] = 1
                     found = True

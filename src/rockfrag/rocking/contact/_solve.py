@@ -111,8 +111,8 @@ def _fill(p, q, k, x, y, dx, dy, row):
 def solve(p, w, q, v, ah, av, impact, rough=True):
     """Accelerations of the mode in ``w``, or velocities after an ``impact``, into ``w.out``.
 
-    Without ``rough`` sliding contacts have no friction: the velocities nearest to ``v`` in kinetic energy that keep
-    the mode.
+    Without ``rough`` sliding contacts have no friction: the velocities nearest to ``v`` in kinetic energy that
+    keep the mode.
 
     Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.  ``look_at``
     must have been called with ``q``.

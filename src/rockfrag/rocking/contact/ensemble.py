@@ -104,7 +104,9 @@ def overturns_with_friction(
         _, upward, _ = listed(body_list, list(vertical), dts.tolist(), None)
         for i, (one, other) in enumerate(zip(values, upward, strict=True)):
             if one.size != other.size:
-                raise InputError(f"vertical[{i}]: {other.size} samples for {one.size} horizontal ones.")
+                raise InputError(
+                    f"vertical[{i}]: {other.size} samples for {one.size} horizontal ones."
+                )
         up = np.concatenate(upward)
     table = np.zeros(len(body_list), BODY)
     starts = np.zeros((len(body_list), 2, 6))

@@ -47,7 +47,7 @@ def interface_frictions(body: Body, friction: FrictionInput) -> tuple[Friction, 
     elif isinstance(body, Block):
         given = [friction]
     else:
-        if not isinstance(friction, Sequence) or isinstance(friction, str) or len(friction) != 2:
+        if not isinstance(friction, (list, tuple)) or len(friction) != 2:
             raise InputError(
                 f"friction: a stack takes (ground, interface), each a coefficient or a pair (static, "
                 f"kinetic), got {friction!r}."
@@ -59,8 +59,10 @@ def interface_frictions(body: Body, friction: FrictionInput) -> tuple[Friction, 
 
 def _one(name: str, value: object) -> Friction:
     pair = (value, value) if isinstance(value, (int, float, np.number)) else value
-    if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
-        raise InputError(f"friction of the {name}: expected a coefficient or a pair, got {value!r}.")
+    if not isinstance(pair, (list, tuple)) or len(pair) != 2:
+        raise InputError(
+            f"friction of the {name}: expected a coefficient or a pair, got {value!r}."
+        )
     for number in pair:
         known = isinstance(number, (int, float, np.number)) and not isinstance(number, bool)
         if not known or math.isnan(number) or number < 0:

@@ -39,8 +39,8 @@ RTOL, ATOL = 1e-10, 1e-13
 SLACK = 1e-12
 TOUCH = 1e-13
 
-# a mode that violates its inequalities by less than this is consistent [-]
-CONSISTENT = 1e-11
+# a mode that violates its inequalities by less than this is consistent [-]; less than SLACK
+CONSISTENT = 2e-13
 
 # a contact that parts at less than this share of √(g b) after an impact, and would fall shut again, is closed
 CLOSING = 1e-6
@@ -158,7 +158,13 @@ def simulate_reference(
 
 class _Run:
     def __init__(
-        self, model: Model, motions: Array, dt: float, theta: list[float], omega: list[float], closing: float
+        self,
+        model: Model,
+        motions: Array,
+        dt: float,
+        theta: list[float],
+        omega: list[float],
+        closing: float,
     ) -> None:
         self.model, self.motions, self.dt, self.closing = model, motions, dt, closing * model.speed
         self.q, self.v = model.posed(theta, omega)
@@ -179,19 +185,21 @@ class _Run:
         for i in range(math.ceil(end / self.dt * (1 - 1e-12)) + 1):
             self.start = i * self.dt
             self.now = self.motions[:, i] if i < last else np.zeros(2)
-            self.slope = np.diff(self.motions[:, i : i + 2])[:, 0] / self.dt if i < last else np.zeros(2)
+            self.slope = (
+                np.diff(self.motions[:, i : i + 2])[:, 0] / self.dt if i < last else np.zeros(2)
+            )
             if i in (0, last):
                 self._handle(0.0, set())
             rows.append(self._row())
-            if self.fallen or (duration is None and i >= last and self._resting()):
+            if self._done() or (duration is None and i >= last and self._resting()):
                 break
             self._interval()
-            if self.fallen:
+            if self._done():
                 break
         values = np.array(rows)
         n = 3 * self.model.count
         return ContactResponse(
-            time=np.arange(len(rows)) * self.dt,
+            time=np.arange(len(rows), dtype=np.float64) * self.dt,
             position=values[:, :n],
             velocity=values[:, n : 2 * n],
             slip=values[:, 2 * n : 2 * n + self.model.count],
@@ -201,6 +209,9 @@ class _Run:
             overturning_time=self.events[-1].time if self.fallen else math.nan,
             energy=values[:, -5:],
         )
+
+    def _done(self) -> bool:
+        return self.fallen > 0
 
     def _row(self) -> list[float]:
         m, n = self.model, self.model.count
@@ -262,7 +273,6 @@ class _Run:
         return np.concatenate([v, found.rates, [work, lost]])
 
     def _move(self, t: float) -> float:
-        n = 3 * self.model.count
         y = np.concatenate([self.q, self.v, [self.work, self.friction_loss]])
         solver = DOP853(
             self._rates, t, y, self.dt, rtol=RTOL, atol=ATOL, max_step=self.longest,
@@ -316,9 +326,7 @@ class _Run:
     # --------------------------------------------------------------- watching
 
     def _contacts(self, q: Array) -> dict[End, Contact]:
-        return {
-            (k, s): self.model.contact(q, k, s, self.kind.get((k, s))) for k, s in self.ends
-        }
+        return {(k, s): self.model.contact(q, k, s, self.kind.get((k, s))) for k, s in self.ends}
 
     def _closed(self, end: End) -> bool:
         return end[1] in self.mode[end[0]].closed
@@ -386,7 +394,9 @@ class _Run:
                     roots = {
                         key: time
                         if values[key] <= 0
-                        else float(brentq(lambda t, key=key: watched(t)[key], time, stop, xtol=1e-16))  # type: ignore[misc]
+                        else float(
+                            brentq(lambda t, key=key: watched(t)[key], time, stop, xtol=1e-16)
+                        )
                         for key in failing
                     }
                     when = min(roots.values())
@@ -444,7 +454,9 @@ class _Run:
         if any(self._approach(self.q, self.v, end) < -1e-13 * model.speed for end in touching):
             loss = self._impact(t, touching)
             kind = "impact"
-        exclude = old if kind == "change" and any(key[0] in ("press", "stick") for key in keys) else None
+        exclude = (
+            old if kind == "change" and any(key[0] in ("press", "stick") for key in keys) else None
+        )
         if not self._settle(t, touching, exclude):
             loss += self._impact(t, touching, push=True)
             kind = "paradox"
@@ -509,9 +521,7 @@ class _Run:
     def _ends_of(self, touching: list[End]) -> list[tuple[int, ...]]:
         return [tuple(s for i, s in touching if i == k) for k in range(self.model.count)]
 
-    def _choose(
-        self, scored: list[tuple[float, Mode, Solution]]
-    ) -> tuple[float, Mode, Solution]:
+    def _choose(self, scored: list[tuple[float, Mode, Solution]]) -> tuple[float, Mode, Solution]:
         """Choose the first consistent mode, or the one that violates least."""
         return min(scored, key=lambda x: max(x[0], CONSISTENT))
 
@@ -562,7 +572,12 @@ class _Run:
         return loss
 
     def _weak(
-        self, t: float, touching: list[End], mode: Mode, solution: Solution, contacts: dict[End, Contact]
+        self,
+        t: float,
+        touching: list[End],
+        mode: Mode,
+        solution: Solution,
+        contacts: dict[End, Contact],
     ) -> list[End]:
         """Ends that part so slowly that they would only chatter."""
         model, found = self.model, []
@@ -611,7 +626,11 @@ class _Run:
         if exclude is not None and min(x[0] for x in scored) > 1e-7:
             solution = model.solve(self.q, self.v, exclude, contacts, load)
             scored.append(
-                (self._violation(exclude, solution, contacts, slow, units, load, limits), exclude, solution)
+                (
+                    self._violation(exclude, solution, contacts, slow, units, load, limits),
+                    exclude,
+                    solution,
+                )
             )
         violation, self.mode, _ = self._choose(scored)
         self._forget()

@@ -83,17 +83,22 @@ class Model:
     def __init__(self, body: Body, friction: tuple[Friction, ...], g: float) -> None:
         self.g, self.friction = g, friction
         if isinstance(body, Block):
-            blocks, arms, self.tilt = [body], [body.arm], [0.0]
+            blocks, self.tilt = [body], [0.0]
+            arms = [[body.arm(s) for s in FULL]]
             self.face = [(Vector(0.0, 0.0), math.inf)]
         else:
             pedestal = body.pedestal
-            blocks, arms = [pedestal, body.statue], [pedestal.arm, body.statue_arm]
+            blocks = [pedestal, body.statue]
+            arms = [[arm(s) for s in FULL] for arm in (pedestal.arm, body.statue_arm)]
             self.tilt = [0.0, pedestal.lean]
             top = Vector(0.0, pedestal.height).turned(pedestal.lean).minus(pedestal.centre)
             self.face = [(Vector(0.0, 0.0), math.inf), (top, pedestal.b)]
         self.count = len(blocks)
         # corners of each base, from the centre of the standing body
-        self.corner = [{s: Vector(0.0, 0.0).minus(arm(s)) for s in FULL} for arm in arms]
+        self.corner = [
+            {s: Vector(0.0, 0.0).minus(arm) for s, arm in zip(FULL, pair, strict=True)}
+            for pair in arms
+        ]
         self.mass = np.array(
             [m for block in blocks for m in (block.mass, block.mass, block.centroidal_inertia)]
         )
@@ -113,7 +118,6 @@ class Model:
             relative = theta[k] - (theta[k - 1] if k else 0.0)
             turning = omega[k] - (omega[k - 1] if k else 0.0)
             side = 1 if (relative or turning) >= 0 else -1
-            below, _, _ = self.frame(q, k)
             if k:
                 lower = q[3 * k - 3 : 3 * k - 1]
                 arm = self._standing_pole(k, side) - self.standing[3 * k - 3 : 3 * k - 1]
@@ -129,7 +133,8 @@ class Model:
         return q, v
 
     def _standing_pole(self, k: int, side: int) -> Array:
-        return self.standing[3 * k : 3 * k + 2] + np.array(self.corner[k][side])
+        foot: Array = self.standing[3 * k : 3 * k + 2] + np.array(self.corner[k][side])
+        return foot
 
     # -------------------------------------------------------------- geometry
 
@@ -270,10 +275,11 @@ class Model:
                     ways = [moves[k]] if moves[k] else [0, 1, -1]
                     of_interface += [InterfaceMode(subset, way) for way in ways]
             choices.append(of_interface)
-        for mode in sorted(itertools.product(*choices), key=lambda m: sum(len(i[0]) for i in m)):
-            yield mode
+        yield from sorted(itertools.product(*choices), key=lambda m: sum(len(i[0]) for i in m))
 
-    def stick_margin(self, k: int, solution: Solution, closed: tuple[int, ...], limit: float) -> float:
+    def stick_margin(
+        self, k: int, solution: Solution, closed: tuple[int, ...], limit: float
+    ) -> float:
         """µ N - |T| of an interface that sticks [N], or over µ where that is more than 1."""
         pressed = sum(solution.normal[k, side] for side in closed)
         return (limit * pressed - abs(solution.tangential[k])) / max(limit, 1.0)

@@ -65,7 +65,8 @@ class ContactResponse:
         Table over time [J]: ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_friction``,
         ``lost_impacts``, and ``residual``, which is zero but for rounding.
     normal_force, friction_force
-        Forces of each interface on the block above it, across and along the face that carries [N], shape (n, blocks).
+        Forces of each interface on the block above it, across and along the face that carries [N],
+        shape (n, blocks).
     impacts
         Number of impacts.
     paradoxes

@@ -60,14 +60,15 @@ def simulate_with_friction(
     vertical
         Vertical acceleration, upwards [m/s²], shape (n,).
     theta0, omega0
-        Rotations [rad] and angular velocities [rad/s] at the start, about the corners that these leave: a number, or
-        (pedestal, statue).
+        Rotations [rad] and angular velocities [rad/s] at the start, about the corners that these leave: a
+        number, or (pedestal, statue).
     g
         Acceleration of gravity [m/s²].
     step
         Largest product of the frequency parameter and the step [-].
     closing
-        Parting speed over √(g b) below which a contact that would fall shut again stays closed after an impact [-].
+        Parting speed over √(g b) below which a contact that would fall shut again stays closed after an
+        impact [-].
 
     Raises
     ------

@@ -1,0 +1,188 @@
+"""What friction and flight must and must not do, whatever the body and the motion."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rockfrag import read_motion
+from rockfrag.rocking import Block, Stack
+from rockfrag.rocking.contact import overturns_with_friction, simulate_with_friction
+
+from .cases import (
+    DT,
+    T1,
+    P,
+    as_friction,
+    random_block,
+    random_frictions,
+    random_motion,
+    random_stack,
+)
+
+seeds = st.integers(0, 10**6)
+
+
+def random_case(seed: int) -> tuple[Block | Stack, np.ndarray, np.ndarray, object]:
+    """Body, both motions, friction."""
+    rng = np.random.default_rng(seed)
+    body = random_block(rng) if rng.uniform() < 0.5 else random_stack(rng)
+    motion, up = random_motion(rng), 0.5 * random_motion(rng)
+    return body, motion, up, as_friction(random_frictions(rng, body))
+
+
+def energies(body: Block | Stack) -> float:
+    """Weight times height: unit of energy [J]."""
+    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.statue)
+    return 9.81 * sum(block.mass * block.h for block in blocks)
+
+
+def first_events(events: object, count: int) -> list[float]:
+    return list(events["time"][:count])
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds)
+def test_energy_is_what_the_ground_gave_less_what_impacts_and_friction_took(seed: int) -> None:
+    body, motion, up, friction = random_case(seed)
+    response = simulate_with_friction(body, motion, DT, friction=friction, vertical=up)
+    table = response.energy
+    unit = max(energies(body), float(table["input"].abs().max()))
+    assert table["residual"].abs().max() < 1e-8 * unit
+    assert np.diff(table["lost_friction"]).min() > -1e-9 * unit
+    assert response.events["loss"].min() > -1e-9 * unit
+
+
+@settings(max_examples=25, deadline=None)
+@given(seeds)
+def test_forces_push_and_friction_keeps_its_limit(seed: int) -> None:
+    body, motion, up, friction = random_case(seed)
+    response = simulate_with_friction(body, motion, DT, friction=friction, vertical=up)
+    limits = np.atleast_1d(friction)
+    weight = 9.81 * body.mass
+    assert response.normal_force.min() >= -1e-8 * weight
+    assert (np.abs(response.friction_force) <= limits * response.normal_force + 1e-8 * weight).all()
+
+
+@settings(max_examples=15, deadline=None)
+@given(seeds)
+def test_the_mirror_image_moves_as_the_mirror_image(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    block = Block(0.3, rng.uniform(0.4, 1.2), 10.0, cg_offset=rng.uniform(-0.03, 0.03))
+    mirrored = Block(0.3, block.height, 10.0, cg_offset=-block.cg_offset)
+    motion, up, mu = random_motion(rng), 0.5 * random_motion(rng), rng.uniform(0.2, 0.8)
+    one = simulate_with_friction(block, motion, DT, friction=mu, vertical=up)
+    other = simulate_with_friction(mirrored, -motion, DT, friction=mu, vertical=up)
+    n = np.searchsorted(one.time, [*first_events(one.events, 8), math.inf][-2])
+    np.testing.assert_allclose(one.theta[:n], -other.theta[:n], atol=1e-9)
+    np.testing.assert_allclose(one.slip[:n], -other.slip[:n], atol=1e-9)
+
+
+@settings(max_examples=15, deadline=None)
+@given(seeds, st.floats(0.2, 5.0))
+def test_a_larger_model_moves_alike_in_longer_time(seed: int, ratio: float) -> None:
+    """Lengths times λ, times times √λ, the same accelerations."""
+    rng = np.random.default_rng(seed)
+    mus = (float(rng.uniform(0.2, 0.8)), float(rng.uniform(0.2, 0.8)))
+    motion, up = random_motion(rng), 0.5 * random_motion(rng)
+
+    def scaled(factor: float) -> Stack:
+        return Stack(
+            Block(0.5 * factor, 0.3 * factor, 50 * factor**3),
+            Block(0.2 * factor, 0.6 * factor, 9 * factor**3),
+        )
+
+    one = simulate_with_friction(scaled(1.0), motion, DT, friction=mus, vertical=up)
+    other = simulate_with_friction(
+        scaled(ratio), motion, DT * math.sqrt(ratio), friction=mus, vertical=up
+    )
+    n = min(
+        np.searchsorted(one.time, [*first_events(one.events, 8), math.inf][-2]), len(other.time)
+    )
+    np.testing.assert_allclose(one.theta[:n], other.theta[:n], atol=1e-7)
+    np.testing.assert_allclose(one.slip[:n], other.slip[:n] / ratio, atol=1e-7)
+
+
+@settings(max_examples=15, deadline=None)
+@given(seeds)
+def test_a_later_motion_is_followed_later(seed: int) -> None:
+    body, motion, up, friction = random_case(seed)
+    wait = np.zeros(37)
+    one = simulate_with_friction(body, motion, DT, friction=friction, vertical=up)
+    other = simulate_with_friction(
+        body, np.append(wait, motion), DT, friction=friction, vertical=np.append(wait, up)
+    )
+    n = np.searchsorted(one.time, [*first_events(one.events, 8), math.inf][-2])
+    np.testing.assert_allclose(one.theta[:n], other.theta[37 : n + 37], atol=1e-9)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seeds)
+def test_below_b_over_h_nothing_rocks_whatever_the_horizontal_motion(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    block = Block(0.3, rng.uniform(0.2, 1.5), 10.0)
+    mu = rng.uniform(0.1, 0.999) * block.b / block.h
+    motion = 30 * rng.standard_normal(300)
+    response = simulate_with_friction(block, motion, DT, friction=mu)
+    assert np.abs(response.slip).max() > 0
+    assert (response.theta == 0).all()
+    assert not response.overturned
+
+
+def test_without_friction_nothing_rocks_and_nothing_falls() -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        stack = Stack(Block(0.5, 0.4, 80.0), Block(0.2, 0.8, 9.0))
+        motion = random_motion(rng)
+        response = simulate_with_friction(stack, motion, DT, friction=(0.0, 0.0))
+        assert np.abs(response.theta).max() < 1e-12
+        assert not response.overturned
+        # in a frame at rest nothing moves: neither on the other
+        assert np.ptp(response.slip[:, 1]) < 1e-12
+        assert np.ptp(response.slip[:, 0]) > 1e-3
+
+
+def test_the_slenderest_motion_of_the_thesis_cannot_rock_t1_at_a_friction_of_three_tenths(
+    shared: object,
+) -> None:
+    """Slenderness 3 needs µ > 1/3 to rise, at any amplitude."""
+    records = sorted(shared.glob("records/*.dat"))  # type: ignore[attr-defined]
+    assert len(records) == 4
+    motions = [read_motion(path) for path in records]
+    result = overturns_with_friction(
+        T1,
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        np.linspace(0.5, 4.0, 8),
+        friction=[0.3],
+    )
+    assert result.peak_slip.max() > 0.01
+    assert result.peak_rotation.max() == 0
+    assert not result.overturned.any()
+
+
+def test_verdicts_do_not_depend_on_the_number_of_threads() -> None:
+    rng = np.random.default_rng(4)
+    bodies = [random_block(rng), random_stack(rng), Stack(P, T1)]
+    motions = [random_motion(rng) for _ in range(3)]
+    kwargs = {"friction": [0.4, (0.4, 0.6), (0.5, 0.5)], "vertical": motions[::-1]}
+    one, two = (
+        overturns_with_friction(bodies, motions, DT, [0.7, 1.0, 1.4], threads=threads, **kwargs)
+        for threads in (1, 2)
+    )
+    np.testing.assert_array_equal(one.overturning_time, two.overturning_time)
+    np.testing.assert_array_equal(one.slip, two.slip)
+    assert one.overturned.any() and not one.overturned.all()
+
+
+def test_verdicts_of_an_ensemble_are_those_of_the_histories() -> None:
+    rng = np.random.default_rng(8)
+    bodies = [random_block(rng) for _ in range(4)] + [random_stack(rng) for _ in range(4)]
+    motions = [random_motion(rng) for _ in range(3)]
+    frictions = [as_friction(random_frictions(rng, body)) for body in bodies]
+    result = overturns_with_friction(bodies, motions, DT, [1.0], friction=frictions)
+    for i, body in enumerate(bodies):
+        for j, motion in enumerate(motions):
+            response = simulate_with_friction(body, motion, DT, friction=frictions[i])
+            assert response.overturned == result.overturned[i, j, 0]
