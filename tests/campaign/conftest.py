@@ -49,7 +49,10 @@ def laboratory(tmp_path_factory: pytest.TempPathFactory) -> Laboratory:
             }
         )
     result = overturns([BLOCK], list(motions.values()), DT, [1.0])
-    table = pd.DataFrame(rows).assign(overturned=result.overturned[0, :, 0].astype(int))
+    table = pd.DataFrame(rows).assign(
+        overturned=result.overturned[0, :, 0].astype(int),
+        rocked=(result.peak_rotation[0, :, 0] > 0).astype(int),
+    )
     assert 0.2 < table["overturned"].mean() < 0.8
     table.to_csv(folder / "synthetic_tests.csv", index=False)
     np.savez(folder / "synthetic_motions.npz", **motions)

@@ -104,6 +104,16 @@ def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(
         assert (tmp_path / "figures" / f"{name}.svg").stat().st_size > 1000
 
 
+def test_whether_it_rocked_is_compared_where_the_laboratory_noted_it(
+    tmp_path: Path, laboratory: Laboratory
+):
+    columns = {name: name for name in ("test", "motion", "overturned", "rocked")}
+    path = configured(tmp_path, laboratory, campaign__columns={**columns, "group": "input"})
+    rocking = run(path, tmp_path)["rocking"]
+    assert rocking["right"].iloc[0] > 0.9
+    assert "Whether the object rocked at all" in (tmp_path / "report.html").read_text()
+
+
 def test_without_measures_the_motions_are_measured(tmp_path: Path, laboratory: Laboratory):
     tests = run(without_measures(configured(tmp_path, laboratory)), tmp_path)["tests"]
     peaks = [np.abs(motion).max() / 9.81 for motion in laboratory.motions.values()]

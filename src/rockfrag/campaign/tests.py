@@ -15,6 +15,9 @@ from rockfrag.fragility.tests_file import read_columns, read_titles
 MEASURED = "overturned"
 """Column of what the laboratory saw."""
 
+NOTED = ("rocked", "slid")
+"""Columns of what a laboratory may have noted besides."""
+
 
 @dataclass(frozen=True)
 class Campaign:
@@ -61,7 +64,8 @@ def read_campaign(
     columns
         Its columns: ``test`` and ``motion``; either ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the
         largest peak survived and the one that overturned, which make two tests; ``group`` where tests of one
-        input motion share a name, else the motion; ``amplitude_g`` where motions are scaled to a peak.
+        input motion share a name, else the motion; ``amplitude_g`` where motions are scaled to a peak; ``rocked``
+        and ``slid`` (yes or no) and ``which_way`` (text) where the laboratory noted them.
     measures
         For each intensity measure the columns and numbers whose product it is.
     other_codes
@@ -77,9 +81,9 @@ def read_campaign(
     peaks = [columns[key] for key in ("amplitude_g", "lower_g", "upper_g") if key in columns]
     raw = read_columns(
         path,
-        labels=[columns[key] for key in ("test", "motion", "group") if key in columns],
+        labels=[columns[key] for key in ("test", "motion", "group", "which_way") if key in columns],
         positive=[*(one for recipe in recipes for one in recipe if isinstance(one, str)), *peaks],
-        verdicts=[columns["overturned"]] if "overturned" in columns else [],
+        verdicts=[columns[key] for key in (MEASURED, *NOTED) if key in columns],
     )
     tests = pd.DataFrame(
         {
@@ -94,6 +98,11 @@ def read_campaign(
     for name, recipe in measures.items():
         factors = [raw[one] if isinstance(one, str) else one for one in recipe]
         tests[name] = math.prod(factors)
+    for key in NOTED:
+        if key in columns:
+            tests[key] = raw[columns[key]].astype(bool)
+    if "which_way" in columns:
+        tests["which_way"] = raw[columns["which_way"]]
     tests = _with_verdicts(tests, raw, columns, source)
     return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
 

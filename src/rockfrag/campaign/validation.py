@@ -105,6 +105,7 @@ def cross_validate(
     folds: int,
     repeats: int,
     seed: int,
+    asked: Bools | None = None,
 ) -> Validated:
     """Let trials that are plausible by the tests of other motions vote on each test.
 
@@ -120,9 +121,12 @@ def cross_validate(
         Number of folds, and of random divisions into folds.
     seed
         Of the divisions.
+    asked
+        What the plausible trials vote on, if not the verdicts that they are chosen by, shape (trials, tests).
     """
     rng = np.random.default_rng(seed)
     right = verdicts == measured
+    answers = verdicts if asked is None else asked
     votes = np.empty((repeats, len(measured)))
     plausible = np.empty((repeats, folds), dtype=np.int64)
     for repeat in range(repeats):
@@ -131,5 +135,5 @@ def cross_validate(
             chosen_by = fold != number
             voters = plausible_trials(right[:, chosen_by], groups[chosen_by])
             plausible[repeat, number] = voters.sum()
-            votes[repeat, ~chosen_by] = verdicts[voters][:, ~chosen_by].mean(axis=0)
+            votes[repeat, ~chosen_by] = answers[voters][:, ~chosen_by].mean(axis=0)
     return Validated(votes, plausible)

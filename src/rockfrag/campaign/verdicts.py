@@ -18,7 +18,7 @@ def simulate_tests(
     motions: Sequence[Motion],
     threads: int | None = None,
     done: Callable[[int], None] = lambda count: None,
-) -> NDArray[np.bool_]:
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Simulate each test under each trial.
 
     Parameters
@@ -34,9 +34,9 @@ def simulate_tests(
 
     Returns
     -------
-    Whether the object overturns, shape (trials, tests).
+    Whether the object overturns, and whether it rocks at all, each of shape (trials, tests).
     """
-    verdicts = np.zeros((len(trials.bodies), len(motions)), dtype=bool)
+    overturned, rocked = np.zeros((2, len(trials.bodies), len(motions)), dtype=bool)
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]
         result = overturns(
@@ -47,6 +47,7 @@ def simulate_tests(
             restitution=trials.restitution,
             threads=threads,
         )
-        verdicts[:, first : first + len(batch)] = result.overturned[:, :, 0]
+        overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
+        rocked[:, first : first + len(batch)] = result.peak_rotation[:, :, 0] > 0
         done(first + len(batch))
-    return verdicts
+    return overturned, rocked

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from markupsafe import Markup
 
 from rockfrag.files import write_text
 from rockfrag.fragility.observations import name_and_unit
@@ -213,8 +214,22 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
             table_html(
                 shown, columns, "Verdicts of all tests, and the difference on the same tests."
             ),
+            *_rocking(tables["rocking"]),
         ],
     )
+
+
+def _rocking(rocking: pd.DataFrame) -> list[Markup]:
+    """Whether the object rocked at all, where the laboratory noted it."""
+    if rocking.empty:
+        return []
+    shown = rocking.assign(right_text=[_percent(row) for row in rocking.to_dict("records")])
+    columns = (
+        Column("right_text", "Right", numeric=True),
+        Column("false_alarms", "Rocked in the simulation only", 1),
+        Column("missed", "Rocked in the laboratory only", 1),
+    )
+    return [table_html(shown, columns, "Whether the object rocked at all, simulated and noted.")]
 
 
 def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -390,10 +405,18 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
         Column("alpha_deg", "Critical angle [°]", 1),
         Column("alpha_lower_deg", "5 % of scans", 1),
         Column("alpha_upper_deg", "95 % of scans", 1),
+        Column("trials", "Trials near it", 0),
+        Column("width_cm", "Their base [cm]", 1),
+        Column("overturned_percent", "Overturn in [% of tests]", 0),
+        Column("right_percent", "Right, in sample [%]", 0),
     )
     parts.append(
         table_html(
-            contact,
+            contact.assign(
+                width_cm=100 * contact["width_m"],
+                overturned_percent=100 * contact["overturned"],
+                right_percent=100 * contact["right"],
+            ),
             contact_columns,
             "The least critical angle by contact tolerance; below zero the object could not stand so.",
         )

@@ -10,6 +10,7 @@ TABLES = (
     "tests",
     "trials",
     "agreement",
+    "rocking",
     "fragility",
     "regions",
     "conditioning",

@@ -43,7 +43,7 @@ def campaign_tables(job: Job[CampaignStudy]) -> Results:
     campaign, motions = _campaign_with_motions(job)
     thing = object_of(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
-    verdicts = simulate_tests(trials, motions, job.threads)
+    verdicts, rocked = simulate_tests(trials, motions, job.threads)
     tests = campaign.tests
     measured = tests[MEASURED].to_numpy()
     groups = pd.factorize(tests["group"])[0]
@@ -55,11 +55,12 @@ def campaign_tables(job: Job[CampaignStudy]) -> Results:
     yield "tests", judged_tests(tests, validated, measured)
     yield "trials", _judged_trials(trials, verdicts, measured, groups)
     yield "agreement", _agreement(study, campaign, validated, groups)
+    yield "rocking", _rocking(study, campaign, verdicts, rocked, groups)
     yield "fragility", _fragility(study, campaign, validated, groups)
     first, second = (*campaign.measures, campaign.measures[0])[:2]
     yield "regions", by_region(tests, first, second, validated.verdict, measured)
     yield "conditioning", _conditioning(job, campaign, thing, validated, groups)
-    yield "contact", _contact(study, thing)
+    yield "contact", _contact(study, thing, trials, verdicts, measured)
     yield "footprint", _footprint(study, thing, trials, verdicts == measured, groups)
 
 
@@ -172,6 +173,26 @@ def _agreement(
     return table
 
 
+def _rocking(
+    study: CampaignStudy, campaign: Campaign, verdicts: Any, rocked: Any, groups: Any
+) -> pd.DataFrame:
+    """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
+    columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
+    if "rocked" not in campaign.tests:
+        return pd.DataFrame(columns=columns)
+    found = cross_validate(
+        verdicts,
+        campaign.tests[MEASURED].to_numpy(),
+        groups,
+        folds=study.folds,
+        repeats=study.repeats,
+        seed=study.seed,
+        asked=rocked,
+    )
+    noted = campaign.tests["rocked"].to_numpy()
+    return pd.DataFrame([agreement_row(OURS, found.verdicts, noted, groups, study.confidence)])
+
+
 def _fragility(
     study: CampaignStudy, campaign: Campaign, validated: Validated, groups: Any
 ) -> pd.DataFrame:
@@ -211,7 +232,7 @@ def _conditioning(
         "as configured, fewer trials": study.conditioning,
         **study.varied_conditioning,
     }.items():
-        verdicts = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
+        verdicts, _ = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
         found = _validated(study, verdicts, measured, groups)
         rows.append(
             {
@@ -226,14 +247,20 @@ def _conditioning(
 SCANS = 50
 
 
-def _contact(study: CampaignStudy, thing: Shape | Block) -> pd.DataFrame:
-    """How the base depends on the contact tolerance: the least critical angle, with scans repeated."""
+def _contact(
+    study: CampaignStudy, thing: Shape | Block, trials: Trials, verdicts: Any, measured: Any
+) -> pd.DataFrame:
+    """How base and verdicts depend on the contact tolerance; the critical angle with scans repeated."""
     columns = [
         "contact_tolerance_mm",
         "worst_direction_deg",
         "alpha_deg",
         "alpha_lower_deg",
         "alpha_upper_deg",
+        "trials",
+        "width_m",
+        "overturned",
+        "right",
     ]
     if isinstance(thing, Block):
         return pd.DataFrame(columns=columns, dtype=float)
@@ -241,7 +268,11 @@ def _contact(study: CampaignStudy, thing: Shape | Block) -> pd.DataFrame:
     scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
     rng = np.random.default_rng(study.seed)
     rows = []
-    for tolerance in np.geomspace(low, high, 8):
+    tolerances = np.geomspace(low, high, 8)
+    tried = trials.table["contact_tolerance_mm"].to_numpy()
+    nearest = np.abs(np.log(tried[:, None] / tolerances)).argmin(axis=1)
+    width = (trials.table["left_m"] + trials.table["right_m"]).to_numpy()
+    for number, tolerance in enumerate(tolerances):
         try:
             direction, angle = thing.worst_direction(tolerance / 1e3)
         except InputError:
@@ -252,7 +283,18 @@ def _contact(study: CampaignStudy, thing: Shape | Block) -> pd.DataFrame:
             else [angle]
         )
         limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
-        rows.append([tolerance, direction, np.degrees(angle), *limits])
+        near = nearest == number
+        found = (
+            [
+                near.sum(),
+                width[near].mean(),
+                verdicts[near].mean(),
+                (verdicts[near] == measured).mean(),
+            ]
+            if near.any()
+            else [0, float("nan"), float("nan"), float("nan")]
+        )
+        rows.append([tolerance, direction, np.degrees(angle), *limits, *found])
     return pd.DataFrame(rows, columns=columns)
 
 
