@@ -1,0 +1,165 @@
+"""What a reader learns first: what the thesis reports, what the model gives, why, and what would.
+
+Sentences are made of tables alone, so that every number in them can be looked up there.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from rockfrag.report.part import Finding
+from rockfrag.report.sections.explanation import departures
+from rockfrag.report.wording import counted, estimate, listed, of_all, sentence
+from rockfrag.shaketable.readings import READING
+from rockfrag.thesis.statements.floors import FIFTH, FLOORS, GROUND, THIRD
+from rockfrag.thesis.statements.statement import Finding as Evidence
+
+REPORTED = (
+    "The thesis reports that its towers overturn at a higher acceleration atop the pedestal than without "
+    "it on the ground floor, significantly so, and at a slightly lower one on the 3rd and 5th floors; it "
+    "prints no ratios."
+)
+"""Sections 4.3, 4.4 and 5 of the thesis."""
+
+BEYOND_CHANCE = 0.05
+"""Level of the false discovery rate at which a departure counts as changing the ratio [-]."""
+
+_HEADLINES = {
+    Evidence.FOR: "The thesis reports a gain on the ground floor, and the model of pure rocking reproduces it",
+    Evidence.AGAINST: "The thesis reports a gain on the ground floor that the model of pure rocking does "
+    "not reproduce",
+    Evidence.OPEN: "The thesis reports a gain on the ground floor; these simulations leave open whether the "
+    "model of pure rocking gives one",
+}
+
+
+def first_page(
+    effects: pd.DataFrame,
+    claims: pd.DataFrame,
+    explanation: pd.DataFrame | None = None,
+    wide: pd.DataFrame | None = None,
+) -> list[Finding]:
+    """Say what the thesis reports, what the simulations of a study give, and what would give an effect.
+
+    Parameters
+    ----------
+    effects
+        Effects of the pedestal in the study's simulations, as
+        :func:`rockfrag.stages.pedestal.pedestal_tables` returns them.
+    claims
+        The ledger of the study, columns of `rockfrag.thesis.statements.COLUMNS`.
+    explanation
+        Effects of departures from the ideal model, see `rockfrag.pedestal.explanation.explain`.
+    wide
+        Effects in a study of many more earthquakes, to be set beside.
+    """
+    here = effects[effects["reading"] == READING]
+    found = [_reported(here, claims.set_index("number"))]
+    if explanation is not None and len(explanation):
+        found.append(_what_would(explanation))
+    if wide is not None and len(wide):
+        found.append(_beside(wide[wide["reading"] == READING]))
+    return found
+
+
+def _reported(effects: pd.DataFrame, claims: pd.DataFrame) -> Finding:
+    """Say what the thesis reports beside what the model gives, and the ledger's words for it."""
+    on_floors = {row["level"]: row for row in _rows(effects, "floor")}
+    words = claims["verdict"].to_dict()
+    if set(FLOORS) <= set(on_floors):
+        ratios = listed([f"{floor} {_ratio(on_floors[floor])}" for floor in FLOORS])
+        pairs = counted(sum(int(on_floors[floor]["pairs"]) for floor in FLOORS), "pair")
+        given = f"gives a ratio P/NP of {ratios}, over {pairs} and all floors together {_whole(effects)}"
+        headline = _HEADLINES[Evidence(claims["finding"].to_dict()[35])]
+    else:
+        given = f"gives a ratio P/NP of {_whole(effects)}, without the thesis’s floors"
+        headline = "The thesis reports an effect of the pedestal that depends on the floor"
+    stated = {GROUND: words[35], THIRD: words[36], FIFTH: words[37]}
+    verdicts = ", ".join(f"{floor} {word}" for floor, word in stated.items())
+    return Finding(
+        headline,
+        f"{REPORTED} The model of the same towers as rigid blocks that rock and do nothing else {given} "
+        f"(95 % intervals over earthquakes). What the thesis says of each floor: {verdicts}. A simulation "
+        "cannot contradict a laboratory: where the two differ, something acted there that the model leaves out."
+        + _why(claims),
+    )
+
+
+def _why(claims: pd.DataFrame) -> str:
+    """Why the pedestal matters so little in the model, where the simulations show it (C12)."""
+    if claims["estimate"].to_dict().get(12) != 1:
+        return ""
+    return (
+        " In the model the tower’s landings lift the pedestal so briefly that it stands still again before "
+        "the next one after every landing looked at."
+    )
+
+
+def _what_would(explanation: pd.DataFrame) -> Finding:
+    """Say which departures change the ratio beyond chance, and which have the thesis's pattern."""
+    whole = departures(explanation)
+    changing = whole[whole["p_bh"] < BEYOND_CHANCE]
+    patterned = [row["name"] for row in whole.to_dict("records") if _has_pattern(explanation, row)]
+    text = (
+        f"{sentence(of_all(len(changing), len(whole), 'departure'))} from the ideal model, tried one at a "
+        "time, change P/NP over all floors beyond chance with all of them counted"
+    )
+    if len(changing):
+        strong = [f"{row['name']} {_ratio(row)}" for row in changing.to_dict("records")]
+        text += f": {listed(strong)}"
+    if patterned:
+        headline = "Some departures from the ideal model have the thesis’s pattern"
+        text += (
+            f". With intervals above one on the ground floor and below one on both floors above: "
+            f"{listed(patterned)}."
+        )
+    else:
+        headline = "No departure from the ideal model tried has the thesis’s pattern"
+        text += (
+            ". None has intervals above one on the ground floor and below one on both floors above: what "
+            "acts alike on every floor does not give opposite signs there."
+        )
+    return Finding(headline, text)
+
+
+def _has_pattern(explanation: pd.DataFrame, departure: Mapping[Any, Any]) -> bool:
+    """Whether a departure's intervals have the thesis's signs on every floor."""
+    same = (explanation["factor"] == departure["factor"]) & (
+        explanation["level"] == departure["level"]
+    )
+    floors = explanation[same].set_index("floor")
+    if not set(FLOORS) <= set(floors.index):
+        return False
+    above = [float(floors.loc[floor, "ratio_upper"]) for floor in (THIRD, FIFTH)]
+    return float(floors.loc[GROUND, "ratio_lower"]) > 1 and max(above) < 1
+
+
+def _beside(wide: pd.DataFrame) -> Finding:
+    """Say what the same model gives for many more earthquakes."""
+    row = _rows(wide, "whole")[0]
+    within = bool(row["equivalent"])
+    headline = (
+        "With many more earthquakes the model’s pedestal still makes no difference"
+        if within
+        else "With many more earthquakes the model’s pedestal makes a difference"
+    )
+    return Finding(
+        headline,
+        f"Over {counted(int(row['pairs']), 'pair')} from {counted(int(row['units']), 'earthquake')} on the "
+        f"ground P/NP is {_ratio(row)}"
+        + (", so a change of 10 % or more is excluded." if within else "."),
+    )
+
+
+def _rows(effects: pd.DataFrame, scope: str) -> list[dict[Any, Any]]:
+    return effects[effects["scope"] == scope].to_dict("records")
+
+
+def _whole(effects: pd.DataFrame) -> str:
+    rows = _rows(effects, "whole")
+    return _ratio(rows[0]) if rows else "no pair with both amplitudes known"
+
+
+def _ratio(row: Mapping[Any, Any]) -> str:
+    return estimate(row["ratio"], row["lower"], row["upper"], 3)

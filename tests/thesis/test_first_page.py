@@ -1,0 +1,133 @@
+"""The words of the first page: every number in them is one of the tables."""
+
+import re
+
+import pandas as pd
+import pytest
+
+from rockfrag.pedestal.explanation import explain
+from rockfrag.pedestal.simulated_explanation import REFERENCE
+from rockfrag.shaketable.readings import READING
+from rockfrag.stages.pedestal import pedestal_tables
+from rockfrag.thesis.first_page import first_page
+from rockfrag.thesis.specimens import SLENDERNESS
+from rockfrag.thesis.statements import Evidence, ledger
+
+from .conftest import build
+
+WORDS_WITH_DIGITS = ("3rd", "5th", "F3", "F5", "95 %", "10 %")
+"""Names, and levels that the rules state."""
+
+
+def effects_of(tests: pd.DataFrame) -> pd.DataFrame:
+    return pedestal_tables(tests.assign(reading=READING), 1, SLENDERNESS)["effects"]
+
+
+def claims_of(tests: pd.DataFrame, settled: float = 1.0) -> pd.DataFrame:
+    claims = ledger(Evidence(tests, "simulated"))
+    c12 = claims.iloc[[0]].assign(number=12, estimate=settled)
+    return pd.concat([c12, claims], ignore_index=True)
+
+
+def departing(floors: dict[str, float]) -> pd.DataFrame:
+    """Effects of an explanation whose one departure changes P/NP on the floors by so much."""
+    reference = build(noise=0.005, seed=1)
+    wide = reference.pivot_table(
+        index=["object", "event", "floor", "motion"], columns="pedestal", values="amplitude_g"
+    ).reset_index()
+    wide["ratio"] = wide["P"] / wide["NP"]
+    departed = wide.assign(ratio=wide["ratio"] * wide["floor"].map(floors))
+    return explain(
+        pd.concat(
+            [
+                wide.assign(factor="statue_restitution", level=REFERENCE, reference=True),
+                departed.assign(factor="statue_restitution", level="0.9", reference=False),
+            ]
+        )
+    )
+
+
+def said(findings) -> str:
+    return " ".join(f"{one.headline}. {one.text}" for one in findings)
+
+
+def as_printed(row: pd.Series, lower: str = "lower", upper: str = "upper") -> str:
+    return f"{row['ratio']:.3f} [{row[lower]:.3f}, {row[upper]:.3f}]"
+
+
+def unexplained(words: str, facts: list[str]) -> list[str]:
+    """Numbers that are left when the facts, each worded from its table here, are struck out."""
+    for fact in sorted([*facts, *WORDS_WITH_DIGITS], key=len, reverse=True):
+        words = words.replace(fact, "")
+    return re.findall(r"\d+(?:\.\d+)?", words)
+
+
+def facts_of(effects: pd.DataFrame) -> list[str]:
+    here = effects[(effects["reading"] == READING) & effects["scope"].isin(["whole", "floor"])]
+    return [as_printed(row) for _, row in here.iterrows()]
+
+
+@pytest.mark.parametrize("ground", [-0.2, 0.0, 0.2])
+def test_every_number_of_the_words_stands_in_the_tables(ground):
+    tests = build(lambda o, e, floor: ground if floor == "GF" else -0.04, noise=0.03, step=0.05)
+    effects, claims = effects_of(tests), claims_of(tests)
+    explanation = departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
+    wide = effects_of(build(events=[f"E{k}" for k in range(9)], noise=0.02))
+    words = said(first_page(effects, claims, explanation, wide))
+
+    departure = explanation[(explanation["level"] == "0.9") & (explanation["floor"] == "all")]
+    facts = facts_of(effects) + facts_of(wide)
+    facts += [as_printed(row, "ratio_lower", "ratio_upper") for _, row in departure.iterrows()]
+    facts += [f"{len(tests) // 2} pairs", f"{9 * 3 * 3} pairs", "9 earthquakes"]
+    facts += ["× 0.9", "the one departure"]
+    assert unexplained(words, facts) == []
+
+
+def test_a_number_that_is_not_in_the_tables_is_found():
+    tests = build(noise=0.03)
+    words = said(first_page(effects_of(tests), claims_of(tests)))
+    assert unexplained(
+        words.replace("36 pairs", "37 pairs"), [*facts_of(effects_of(tests)), "36 pairs"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("ground", "words"),
+    [(0.3, "reproduces it"), (0.0, "does not reproduce"), (-0.3, "does not reproduce")],
+)
+def test_the_headline_is_the_ledger_s_finding(ground, words):
+    tests = build(lambda o, e, floor: ground if floor == "GF" else 0.0, noise=0.02)
+    assert words in first_page(effects_of(tests), claims_of(tests))[0].headline
+
+
+def test_what_the_simulations_leave_open_is_called_open():
+    tests = build(noise=0.4, seed=2)
+    found = first_page(effects_of(tests), claims_of(tests))[0]
+    assert "leave open" in found.headline and "GF open" in found.text
+
+
+def test_the_pattern_is_named_only_with_intervals_on_its_side():
+    tests = build(noise=0.03)
+    effects, claims = effects_of(tests), claims_of(tests)
+
+    def headline(floors):
+        return first_page(effects, claims, departing(floors))[1].headline
+
+    assert headline({"GF": 1.2, "F3": 0.9, "F5": 0.9}).startswith("Some departures")
+    assert headline({"GF": 1.2, "F3": 0.9, "F5": 1.0}).startswith("No departure")
+    assert headline({"GF": 1.2, "F3": 1.2, "F5": 1.2}).startswith("No departure")
+
+
+def test_why_is_said_only_where_the_simulations_show_it():
+    tests = build(noise=0.03)
+    effects = effects_of(tests)
+    assert "lift the pedestal" in said(first_page(effects, claims_of(tests, 1.0)))
+    assert "lift the pedestal" not in said(first_page(effects, claims_of(tests, 0.98)))
+
+
+def test_a_study_without_the_floors_says_what_it_has():
+    tests = build(noise=0.03)
+    tests = tests[tests["floor"] == "GF"].assign(floor="ground")
+    found = first_page(effects_of(tests), claims_of(tests))[0]
+    assert "depends on the floor" in found.headline
+    assert "without the thesis’s floors" in found.text and "36 pairs" not in found.text
