@@ -15,6 +15,7 @@ from rockfrag.thesis.statements.setting import (
     EXACT,
     Floats,
     Setting,
+    below,
     bisect,
     jump,
     listed,
@@ -106,8 +107,7 @@ def c4(setting: Setting) -> Result:
                 worst = max(worst, abs(found / law[name] - 1))
     return Result(
         Finding.FOR if worst < EXACT else Finding.AGAINST,
-        f"e = {listed(law)}; largest relative difference of a simulated impact {worst:.1e}",
-        worst,
+        f"e = {listed(law)}; largest relative difference of a simulated impact {below(worst)}",
     )
 
 
@@ -193,7 +193,7 @@ def c6(setting: Setting) -> Result:
     return Result(
         Finding.FOR if min(ratios.values()) > 1 and law < 1e-6 else Finding.AGAINST,
         f"period from 0.9 over that from 0.2: {listed(ratios, '.2f')}; largest difference from eq. 2.20 "
-        f"{law:.1e}",
+        f"{below(law, 1e-6)}",
         min(ratios.values()),
     )
 
@@ -343,7 +343,7 @@ def c20(setting: Setting) -> Result:
     return Result(
         Finding.FOR if moved == 0 and slope < 0 and law < EXACT else Finding.AGAINST,
         f"largest rotation below the threshold {moved:g} rad; slope at most {slope:.3f} m g R per rad; "
-        f"difference from the law {law:.1e} m g R",
+        f"difference from the law {below(law)} m g R",
         slope,
         unit="m g R/rad",
     )

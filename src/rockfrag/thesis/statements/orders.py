@@ -14,6 +14,7 @@ from rockfrag.pedestal.power import power_note
 from rockfrag.thesis.statements.evidence import Evidence
 from rockfrag.thesis.statements.statement import Finding, Kind, Result, statement
 from rockfrag.thesis.statements.verdicts import (
+    LEVEL,
     ONE_INTERVAL,
     SEEN,
     SEVERAL_INTERVALS,
@@ -96,8 +97,10 @@ def order(parts: Parts, basis: str, *, unit: str = "event", more: str = "") -> R
     notes = [more] if more else []
     if finding is Finding.OPEN:
         notes.append(power_note(one, unit))
-    elif finding is Finding.AGAINST and one.mean > 0:
-        notes.append(f"a change of {SEEN:.0%} or more is excluded")
+    elif finding is Finding.AGAINST and known(one.p_below(0.0)) * len(parts) >= LEVEL:
+        notes.append(
+            f"not shown to be of the other sign, but one of {SEEN:.0%} or more is excluded"
+        )
     return Result(
         finding,
         _listed(parts, decisive),

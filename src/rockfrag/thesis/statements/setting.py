@@ -223,3 +223,11 @@ def same_block(one: Block, other: Block) -> bool:
 def listed(values: Mapping[str, float], form: str = ".3f") -> str:
     """Names with their figures, for a sentence."""
     return ", ".join(f"{name} {value:{form}}" for name, value in values.items())
+
+
+def below(value: float, limit: float = EXACT) -> str:
+    """A difference that should be rounding: only that it is below the limit, or how large it is.
+
+    Its digits differ between processors, and a report must not.
+    """
+    return f"below {limit:.0e}" if abs(value) < limit else f"{value:.1e}"

@@ -13,6 +13,7 @@ from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.thesis.statements.setting import (
     EXACT,
     Setting,
+    below,
     jump,
     listed,
     require_thesis_specimens,
@@ -362,9 +363,8 @@ def c13(setting: Setting) -> Result:
     holds = gain <= EXACT and kink == 0 and residual < 1e-6
     return Result(
         Finding.FOR if holds else Finding.AGAINST,
-        f"largest change of energy in an impact {gain:+.1e}; largest jump of velocity without one "
-        f"{kink:.1e} rad/s; largest unexplained energy {residual:.1e} of the largest there is",
-        gain,
+        f"energy gained in an impact {below(max(gain, 0.0))} of what there was; largest jump of velocity "
+        f"without one {kink:g} rad/s; largest unexplained energy {below(residual, 1e-6)} of the largest",
         remark=f"{setting.where}; in a history {float(np.median(loss)):.2g} J are lost on the median",
     )
 
@@ -411,8 +411,7 @@ def c22(setting: Setting) -> Result:
     )
     return Result(
         Finding.FOR if worst < EXACT else Finding.AGAINST,
-        f"largest relative difference {worst:.1e}",
-        worst,
+        f"largest relative difference {below(worst)}",
     )
 
 
