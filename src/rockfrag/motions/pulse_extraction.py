@@ -85,11 +85,12 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
     energy = _energy(velocity)
     if energy[-1] <= 0 or periods.size == 0:
         return NO_PULSE
-    period, cycles = _best_of(velocity, motion.dt, periods)
+    gain, period, cycles = _best_of(velocity, motion.dt, periods)
     step = math.log(PERIOD_RATIO)
     longest = motion.time[-1] / cycles
     refined = minimize_scalar(
-        lambda x: -best_place(velocity, energy, motion.dt, math.exp(x), cycles, 0.0)[0],
+        # near the best period no place explains less than half as much
+        lambda x: -best_place(velocity, energy, motion.dt, math.exp(x), cycles, gain / 2)[0],
         bounds=(math.log(period) - step, min(math.log(period) + step, math.log(longest))),
         method="bounded",
         options={"xatol": 1e-4},
@@ -128,8 +129,8 @@ def _periods(motion: Motion) -> Floats:
     return np.geomspace(shortest, longest, count)
 
 
-def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float]:
-    """Period and cycles, of those that are tried, of the pulse that explains most."""
+def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float, float]:
+    """What the best of the pulses that are tried explains [m²/s²], its period and its cycles."""
     best = (0.0, 0.0, 0.0)
     # long pulses first: they cost little and leave few places at which a short one could explain more
     for every, some in groupby(periods[::-1], lambda T: max(1, int(T / (SAMPLES_PER_PERIOD * dt)))):
@@ -146,7 +147,7 @@ def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float
             best = max(best, (every * gain, float(period), cycles))
             # a shorter window of the same samples holds no more
             hopeless = length if gain == 0 else hopeless
-    return best[1:]
+    return best
 
 
 def _energy(velocity: Floats) -> Floats:

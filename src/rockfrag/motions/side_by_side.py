@@ -81,9 +81,9 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     """
     damping = checked_damping(damping)
     peaks = np.empty(periods.size)
-    pga = motion.pga
+    to_come = _still_to_come(motion.acceleration)
     for group in _groups(periods.tobytes(), damping, motion.dt, True):
-        peaks[group.which] = _exact(group, motion.acceleration, pga)
+        peaks[group.which] = _exact(group, motion.acceleration, to_come)
     return peaks
 
 
@@ -95,7 +95,7 @@ def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float)
     motion, periods, damping
         As of :func:`peak_displacements`; the damping is not zero and below critical.
     """
-    acceleration, pga = motion.acceleration, motion.pga
+    acceleration, to_come = motion.acceleration, _still_to_come(motion.acceleration)
     slope = float(np.abs(np.diff(acceleration, append=0.0)).max()) / motion.dt
     square = (2 * math.pi / periods) ** 2
     psa = np.zeros(periods.size)
@@ -105,27 +105,27 @@ def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float)
     bound = np.sqrt(square) * velocity * 2 / (1 - _decay(damping)) * (1 + 1e-9)
     for group in _groups(periods.tobytes(), damping, motion.dt, False):
         psa[group.which], bound[group.which] = _bounds(
-            group, acceleration, square[group.which], pga, slope
+            group, acceleration, square[group.which], to_come, slope
         )
     bounds = [float(bound[group.which].max()) for group in groups]
     # from the highest bound on
     for i in np.argsort(bounds)[::-1]:
         if bounds[i] >= psa.max():
             which = groups[i].which
-            psa[which] = square[which] * _exact(groups[i], acceleration, pga)
+            psa[which] = square[which] * _exact(groups[i], acceleration, to_come)
     return int(np.argmax(psa))
 
 
-def _exact(group: _Group, acceleration: Floats, pga: float) -> Floats:
+def _exact(group: _Group, acceleration: Floats, to_come: Floats) -> Floats:
     """Sd of a group [m]."""
     table = group.table.copy()
-    table[_ADDED : _ADDED + LANES] *= pga
-    _march(acceleration, _still_to_come(acceleration), group.quiet, group.step, group.parts, table)
+    table[_ADDED : _ADDED + LANES] *= to_come[0]
+    _march(acceleration, to_come, group.quiet, group.step, group.parts, table)
     return table[_LARGEST : _LARGEST + group.which.size]
 
 
 def _bounds(
-    group: _Group, acceleration: Floats, square: Floats, pga: float, slope: float
+    group: _Group, acceleration: Floats, square: Floats, to_come: Floats, slope: float
 ) -> tuple[Floats, Floats]:
     """PSA at the samples of a group and a bound of it between them [m/s²].
 
@@ -133,9 +133,9 @@ def _bounds(
     free vibration that only decays.
     """
     table = group.table.copy()
-    _march_free(acceleration, _still_to_come(acceleration), group.quiet, group.step, table)
+    _march_free(acceleration, to_come, group.quiet, group.step, table)
     size = group.which.size
-    forced = pga + square * table[_PER_S : _PER_S + size] * slope
+    forced = to_come[0] + square * table[_PER_S : _PER_S + size] * slope
     free = square * np.sqrt(table[_FREE : _FREE + size])
     return square * table[_LARGEST : _LARGEST + size], (forced + free) * (1 + 1e-9)
 
