@@ -1,0 +1,101 @@
+"""The direction of a horizontal motion that overturns a body with the least shaking."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.motions.rotation import rotate
+from rockfrag.motions.time_base import common_time
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.parameters import Restitution
+from rockfrag.rocking.thresholds import find_thresholds
+from rockfrag.units import STANDARD_GRAVITY
+
+DIRECTIONS_DEG = tuple(range(0, 360, 10))
+"""Directions that are tried [degrees]: all around, for opposite ones are not alike to a body that leans."""
+
+
+@dataclass(frozen=True)
+class WorstDirection:
+    """How a body's first overturning depends on the direction of the motion.
+
+    Attributes
+    ----------
+    angle_deg
+        Angle from the first component towards the second that overturns the body with the least scale;
+        NaN if none does.
+    motion
+        The motion in that direction, unscaled; in the first component's direction if none overturns.
+    table
+        A row per direction: ``angle_deg``, ``first_overturning`` (least scale, NaN if the body stands)
+        and ``peak_g`` of the unscaled motion.
+    """
+
+    angle_deg: float
+    motion: Motion
+    table: pd.DataFrame
+
+
+def worst_direction(
+    body: Body,
+    first: Motion,
+    second: Motion,
+    highest: float,
+    *,
+    directions_deg: Sequence[float] = DIRECTIONS_DEG,
+    tolerance: float = 0.005,
+    smallest_window: float = 0.05,
+    restitution: Restitution | None = None,
+) -> WorstDirection:
+    """Find the direction in which two components overturn a body that rocks in one plane.
+
+    The record is scaled as a whole: its components keep their ratio. A body that may turn about a
+    vertical axis chooses its plane itself, and this is its worst case.
+
+    Parameters
+    ----------
+    body
+        The body; its plane is turned into each direction.
+    first, second
+        Perpendicular components of one record; they are brought to common times.
+    highest
+        Largest scale that is tried [-].
+    directions_deg
+        Angles from the first component towards the second [degrees].
+    tolerance, smallest_window, restitution
+        As of :func:`rockfrag.rocking.thresholds.find_thresholds`.
+
+    Raises
+    ------
+    InputError
+        If the components do not fit together, no direction is given, or a number is not usable.
+    """
+    if not len(directions_deg):
+        raise InputError("worst_direction: directions_deg is empty; give at least one angle.")
+    one, other = common_time([first, second])
+    motions = [rotate(one, other, angle) for angle in directions_deg]
+    found = find_thresholds(
+        body,
+        [motion.acceleration for motion in motions],
+        one.dt,
+        highest,
+        tolerance=tolerance,
+        smallest_window=smallest_window,
+        restitution=None if restitution is None else [restitution],
+    ).table
+    table = pd.DataFrame(
+        {
+            "angle_deg": [float(angle) for angle in directions_deg],
+            "first_overturning": found.sort_values("motion")["first_overturning"].to_numpy(),
+            "peak_g": [motion.pga / STANDARD_GRAVITY for motion in motions],
+        }
+    )
+    scales = table["first_overturning"]
+    if scales.isna().all():
+        return WorstDirection(float("nan"), motions[0], table)
+    worst = int(np.nanargmin(scales.to_numpy()))
+    return WorstDirection(float(table["angle_deg"][worst]), motions[worst], table)

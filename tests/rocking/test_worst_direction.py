@@ -1,0 +1,41 @@
+"""The worst direction of a record for a body is that of its strongest shaking, where shaking is straight."""
+
+import numpy as np
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.worst_direction import worst_direction
+
+
+def straight(angle_deg):
+    """Two components of a motion along one line, a few pulses long."""
+    t = np.arange(0, 4, 0.01)
+    pulse = 3.0 * np.sin(2 * np.pi * t) * np.exp(-(((t - 2) / 0.8) ** 2))
+    angle = np.radians(angle_deg)
+    return Motion(pulse * np.cos(angle), 0.01, "a"), Motion(pulse * np.sin(angle), 0.01, "b")
+
+
+@pytest.mark.parametrize("angle", [20, 60, 110])
+def test_a_straight_motion_is_worst_along_its_line(angle):
+    first, second = straight(angle)
+    found = worst_direction(Block(0.3, 1.2, 100.0), first, second, 6.0)
+    assert (found.angle_deg - angle) % 180 == 0
+    assert found.motion.pga == pytest.approx(
+        np.hypot(first.acceleration, second.acceleration).max()
+    )
+    across = found.table.set_index("angle_deg").loc[(angle + 90) % 360, "first_overturning"]
+    assert np.isnan(across)
+
+
+def test_a_body_that_stands_in_all_directions_has_no_worst_one():
+    first, second = straight(30)
+    found = worst_direction(Block(0.6, 1.2, 100.0), first, second, 0.1)
+    assert np.isnan(found.angle_deg)
+    assert found.table["first_overturning"].isna().all()
+
+
+def test_no_direction_is_no_question():
+    with pytest.raises(InputError, match="directions_deg is empty"):
+        worst_direction(Block(0.3, 1.2, 100.0), *straight(0), 2.0, directions_deg=())
