@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.fragility.censored import Brackets, bracket_interval, fit_brackets
+from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.intervals import interval_over_motions, verdict_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.observations import outcomes_from_table
@@ -107,7 +109,7 @@ def swept(capacities):
         ([0.3], True, False),  # one motion
         ([9.0, 9.0], False, False),  # all survive
         ([0.01, 0.02], False, False),  # all overturn at once
-        ([0.3, 0.3, 0.3], True, False),  # all in one step
+        ([0.3, 0.3, 0.3], True, True),  # all in one step
         ([0.01, 9.0], False, False),  # nothing between never and at once
         ([0.3, 0.9], True, True),  # two motions
         ([0.3, 0.32, 0.5, 9.0], True, True),
@@ -138,3 +140,40 @@ def test_bootstraps_with_few_groups_and_limits_over_motions_of_shared_events_war
     assert interval_over_motions(shared).over == "event"
     assert not interval_over_motions(shared).warnings
     assert "come from 4 events" in interval_over_motions(shared, over="motion").warnings[0]
+
+
+def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
+    table = fragility_table(swept([0.3, 0.3, 0.3, 0.3]))
+    levels = np.geomspace(0.1, 1.0, 12)
+    step = levels[levels <= 0.3].max(), levels[levels > 0.3].min()
+    row = table[table["estimator"] == "first_overturning"].iloc[0]
+    assert (row["theta_lower"], row["theta_upper"]) == pytest.approx(step)
+    assert row["beta_lower"] == 0 < row["beta"] <= row["beta_upper"] < 0.3
+    assert row["interval_method"] == "common step"
+    assert "in one step of the amplitude" in row["warnings"]
+
+
+def test_beta_lies_within_its_limits_under_separation_too():
+    """One value parts survived from overturned: the data allow any small β."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        peaks = np.exp(rng.normal(np.log(0.4), 0.4, 8))
+        table = pd.DataFrame(
+            {"pga_g": peaks, "overturned": peaks > np.median(peaks), "motion": np.arange(8) // 2}
+        )
+        found = fit_cloud(table, "pga_g")
+        assert "penalised" in found.fit.method
+        assert found.interval.beta[0] == 0 or np.isnan(found.interval.beta[0])
+        assert not found.fit.beta > found.interval.beta[1]
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_beta_of_four_events_lies_within_its_limits(seed):
+    rng = np.random.default_rng([7, seed])
+    brackets_at = np.exp(rng.normal(np.log(0.4), 0.3, 4))
+    levels = np.geomspace(0.05, 2.0, 80)
+    place = np.searchsorted(levels, brackets_at)
+    names = np.array([f"e{k}" for k in range(4)], dtype=object)
+    data = Brackets(levels[place - 1], levels[place], names, names)
+    fit, interval = fit_brackets(data), bracket_interval(data)
+    assert interval.beta[0] <= fit.beta <= interval.beta[1]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from statsmodels.stats.multitest import multipletests
 
-from rockfrag.pedestal.cluster_means import t_estimate
+from rockfrag.pedestal.cluster_means import Estimate, t_estimate
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.power import detectable_ratio, power_note, power_of_t, units_needed
@@ -34,6 +34,14 @@ def test_detectable_change_has_the_power_by_definition():
     effect = t_estimate([0.1, -0.05, 0.08, 0.02])
     ratio = detectable_ratio(effect)
     assert power_of_t(ratio, effect.sd, effect.units) == pytest.approx(0.8, abs=1e-6)
+
+
+@pytest.mark.parametrize(("pairs_an_event", "percent"), [(9, 10.0), (3, 17.9)])
+def test_four_events_show_what_the_documentation_says(pairs_an_event, percent):
+    """0.134 per pair and no other scatter: the test is t over four means, not over 36 pairs."""
+    sd = 0.134 / math.sqrt(pairs_an_event)
+    effect = Estimate(0.0, sd / 2, 4, -1.0, 1.0, 1.0)
+    assert 100 * (detectable_ratio(effect) - 1) == pytest.approx(percent, abs=0.05)
 
 
 def test_units_needed_are_the_fewest_with_the_power():

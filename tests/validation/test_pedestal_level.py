@@ -1,10 +1,8 @@
 """How often tests of the pedestal's effect call nothing something, in the thesis's crossed design.
 
 36 pairs: 3 objects under 12 motions, 3 floors of each of 4 events. d = event + motion + pair, all
-with mean zero, so that every rejection is false. The table in ``docs/validation-pedestal.md`` is what
-this file prints:
-
-    python tests/validation/test_pedestal_level.py
+with mean zero, so that every rejection is false. The tables in ``docs/validation-pedestal.md``
+are written by these tests.
 """
 
 import math
@@ -21,6 +19,9 @@ from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.mixed import EFFECT, fit_mixed
 from rockfrag.pedestal.multiplicity import holm
 from rockfrag.pedestal.permutation import wilcoxon_exact
+from rockfrag.pedestal.power import power_of_t
+
+from .documented import document
 
 SEED = 20261121
 DATA_SETS = 20_000
@@ -140,48 +141,59 @@ def further(design: str) -> dict[str, float]:
     }
 
 
-def tables() -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Both tables of the documentation."""
-    first = pd.DataFrame({design: levels(design) for design in DESIGNS}).T
-    second = pd.DataFrame(
+@pytest.fixture(scope="module")
+def alarms() -> pd.DataFrame:
+    """Share of false rejections of each test in every design."""
+    found = pd.DataFrame({design: levels(design) for design in DESIGNS}).T
+    document("validation-pedestal.md", "false alarms", found.reset_index(names="design"))
+    return found
+
+
+@pytest.fixture(scope="module")
+def decisions() -> pd.DataFrame:
+    """Share of false findings of the other decisions, by design."""
+    found = pd.DataFrame(
         {design: further(design) for design in ("pairs only", "motions", "events and motions")}
     )
-    return first, second
-
-
-def markdown(table: pd.DataFrame, head: str) -> str:
-    rows = [[head, *table.columns], ["---"] * (len(table.columns) + 1)]
-    rows += [
-        [str(name), *("" if np.isnan(v) else f"{v:.3f}" for v in row)]
-        for name, row in zip(table.index, table.to_numpy(), strict=True)
-    ]
-    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+    document("validation-pedestal.md", "decisions", found.reset_index(names="decision"))
+    return found
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("design", [name for name in DESIGNS if name not in BEYOND])
-def test_chosen_test_holds_its_level(design):
-    assert 0.03 <= levels(design)[CHOSEN] <= 0.07
+def test_chosen_test_holds_its_level(alarms, design):
+    assert 0.03 <= alarms.loc[design, CHOSEN] <= 0.07
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("design", BEYOND)
-def test_chosen_test_stays_near_its_level_beyond_the_normal(design):
-    assert levels(design)[CHOSEN] <= 0.09
+def test_chosen_test_stays_near_its_level_beyond_the_normal(alarms, design):
+    assert alarms.loc[design, CHOSEN] <= 0.09
 
 
 @pytest.mark.slow
-def test_naive_test_on_36_pairs_does_not():
-    assert levels("events and motions")["t, 36 pairs"] > 0.14
+def test_naive_test_on_36_pairs_does_not(alarms):
+    assert alarms.loc["events and motions", "t, 36 pairs"] > 0.14
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("design", ["pairs only", "motions", "events and motions"])
-def test_other_decisions_hold_their_level(design):
-    found = further(design)
+def test_other_decisions_hold_their_level(decisions, design):
+    found = decisions[design]
     assert found["difference of two floors, t over events"] < 0.07
     assert found["any of 3 floors, Holm"] < 0.07
     assert found["equivalence shown at a true change of 10 %"] < 0.07
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("units", "sd", "ratio"), [(4, 0.05, 1.10), (4, 0.09, 1.18), (19, 0.05, 1.04)]
+)
+def test_power_is_that_of_the_test_that_is_made(units, sd, ratio):
+    """t over the means of events, not over pairs: what is printed is what simulated data show."""
+    rng = np.random.default_rng(SEED)
+    p = p_of_t(math.log(ratio) + sd * rng.normal(size=(DATA_SETS, units)))
+    assert power_of_t(ratio, sd, units) == pytest.approx(np.mean(p < 0.05), abs=0.01)
 
 
 @pytest.mark.slow
@@ -203,8 +215,3 @@ def test_fast_formula_is_the_package_s_own_test():
     assert floors == pytest.approx(
         p_of_t(d.mean(axis=3)[:, :, 0] - d.mean(axis=3)[:, :, 1]), rel=1e-9
     )
-
-
-if __name__ == "__main__":
-    one, two = tables()
-    print(markdown(one, "design"), markdown(two, "decision"), sep="\n\n")

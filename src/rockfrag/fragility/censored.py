@@ -21,6 +21,7 @@ from rockfrag.fragility.intervals import (
     WeightedFit,
     population,
     resampled_interval,
+    step_limits,
 )
 from rockfrag.fragility.lognormal import (
     LEAST_SLOPE,
@@ -229,7 +230,7 @@ def bracket_interval(
     """
     over, notes = population(brackets.motion, brackets.event, over)
     fit, groups = bracket_fitter(brackets, over)
-    return resampled_interval(
+    found = resampled_interval(
         fit,
         groups,
         over=over,
@@ -239,6 +240,9 @@ def bracket_interval(
         replicates=replicates,
         seed=seed,
     )
+    if found.method == "none" and groups > 1 and brackets.n_overturned:
+        return step_limits(found, float(brackets.lower.max()), float(brackets.upper.min()))
+    return found
 
 
 def bracket_log_scores(brackets: Brackets, weights: Floats) -> Floats:

@@ -46,7 +46,8 @@ class Interval:
     level
         Two-sided confidence level, for example 0.90.
     method
-        ``percentile``, ``bca`` or ``jackknife``, or ``none``.
+        ``percentile``, ``bca`` or ``jackknife``; ``common step`` where all capacities lie in one step
+        (:func:`step_limits`); or ``none``.
     groups
         Number of independent groups that were resampled.
     over
@@ -75,7 +76,7 @@ class Interval:
     def band(self, im: ArrayLike) -> tuple[Floats, Floats]:
         """Pointwise limits of P(overturn | IM) at each ``im`` > 0, two arrays of shape (n,)."""
         x = np.log(np.atleast_1d(np.asarray(im, dtype=np.float64)))
-        if self.method == "none":
+        if not len(self.replicates):
             return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
         predictors = self.replicates[:, :1] + self.replicates[:, 1:] * x
         centre = self.estimate[0] + self.estimate[1] * x
@@ -202,8 +203,47 @@ def interval_over_motions(
         link=link,
     )
     apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0)[0]
+    if not apart:
+        return found
+    if found.method == "none" and groups > 1 and 0 < outcomes.n_overturned < outcomes.n:
+        survived = outcomes.im[outcomes.overturned < outcomes.trials].max()
+        fell = outcomes.im[outcomes.overturned > 0].min()
+        return step_limits(found, float(survived), float(fell))
     # separated tests allow any small β, whatever the penalised refits say
-    return replace(found, beta=(0.0, found.beta[1])) if apart and found.method != "none" else found
+    return replace(found, beta=(0.0, found.beta[1])) if found.method != "none" else found
+
+
+def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
+    """Limits where the capacities of all groups lie in one step, so that resampling shows no scatter.
+
+    The median of k capacities lies between the ends of the step unless all are on one side of it, whose
+    probability is 2^(1-k). β is at most that at which k capacities still fall into one step with the
+    probability that the level leaves over.
+
+    Parameters
+    ----------
+    nothing
+        The interval without limits, which tells groups and level.
+    lower, upper
+        Ends of the step; without two finite ends above zero there are no limits.
+    """
+    if not 0 < lower < upper < np.inf or nothing.estimate[1] < LEAST_SLOPE:
+        return nothing
+    share = (1.0 - nothing.level) ** (1.0 / nothing.groups)
+    beta = np.log(upper / lower) / (2.0 * float(stats.norm.ppf(0.5 + 0.5 * share)))
+    beta = max(beta, 1.0 / nothing.estimate[1])
+    sure = 1.0 - 2.0 ** (1 - nothing.groups)
+    note = (
+        f"All {nothing.groups} {nothing.over}s overturn in one step of the amplitude: θ lies within the "
+        f"step (with {sure:.0%} confidence), and β below {beta:.3f} is not resolved."
+    )
+    return replace(
+        nothing,
+        theta=(lower, upper),
+        beta=(0.0, float(beta)),
+        method="common step",
+        warnings=(*nothing.warnings[:-1], note),
+    )
 
 
 def bootstrap_draws(groups: int, replicates: int, seed: int) -> NDArray[np.int64]:
@@ -252,7 +292,8 @@ def resampled_interval(
     own = float(_beta(estimate[None, :])[0])
     if method == "jackknife":
         theta, beta = _jackknife_limits(estimate, deleted, level)
-        beta = (min(beta[0], own), max(beta[1], own))
+        # to more digits than two ways of fitting agree to
+        beta = (min(beta[0], own * (1 - 1e-9)), max(beta[1], own * (1 + 1e-9)))
         return Interval(
             theta, beta, level, method, groups, over, _pair(estimate), deleted, link, notes
         )

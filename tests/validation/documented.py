@@ -1,0 +1,28 @@
+"""Tables of the documentation, written by the tests that compute them."""
+
+from pathlib import Path
+
+import pandas as pd
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+
+
+def markdown(table: pd.DataFrame, digits: int = 3) -> str:
+    """The table as Markdown, numbers with so many digits and gaps for what is missing."""
+    rows = [[str(name) for name in table.columns], ["---"] * len(table.columns)]
+    rows += [
+        ["" if pd.isna(v) else f"{v:.{digits}f}" if isinstance(v, float) else str(v) for v in row]
+        for row in table.itertuples(index=False, name=None)
+    ]
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+
+def document(file: str, name: str, table: pd.DataFrame, digits: int = 3) -> None:
+    """Put a table between the marks ``<!-- name -->`` and ``<!-- end of name -->`` of a document."""
+    path = DOCS / file
+    text = path.read_text(encoding="utf-8")
+    head, tail = f"<!-- {name} -->", f"<!-- end of {name} -->"
+    before, _, rest = text.partition(head)
+    _, found, after = rest.partition(tail)
+    assert found, f"{file} has no place for the table {name}"
+    path.write_text(f"{before}{head}\n{markdown(table, digits)}\n{tail}{after}", encoding="utf-8")
