@@ -67,7 +67,7 @@ class LogHandler(LogHandlerBase):
             self._begin(record.__dict__)
         elif event == LogEvent.JOB_FINISHED:
             self._finish(int(record.job_id))  # type: ignore[attr-defined]
-        elif event == LogEvent.JOB_ERROR:
+        elif event == LogEvent.JOB_ERROR or str(record.msg).startswith("RuleException"):
             # the job itself has said what is wrong, and where its log is
             self.failed = True
         elif hasattr(record, "report"):

@@ -199,5 +199,4 @@ STAGE = Stage(
         *(["explanation/inversion"] if _asks_for_an_effect(study) else []),
     ),
     settings=("explanation", "bodies", "amplitudes", "protocol", "seed"),
-    parallel=True,
 )

@@ -1,0 +1,301 @@
+"""What can be known before the first job is said before it, in one short sentence."""
+
+import hashlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from rockfrag.cli import main
+from rockfrag.errors import InputError
+from rockfrag.files import distinct_file_names, file_name
+from rockfrag.fragility.sweeps import scale_power
+from rockfrag.motions.measures import measure_motion
+from rockfrag.records.motion import Motion
+from rockfrag.schema import read_schema
+from rockfrag.study.configurations import read_specimens
+from rockfrag.study.loading import load_any, load_study
+from rockfrag.yaml_file import read_yaml
+
+from .conftest import study_content, write_study
+from .test_measured_table import write_example, write_synthetic
+from .test_run import ROOT, snakemake
+
+
+def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
+    """What check-config says of a wrong configuration."""
+    assert main(["check-config", str(path)]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.count("\n") == 1
+    assert len(shown.err) <= 501
+    assert "Traceback" not in shown.err
+    return shown.err
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("? [1, 2]\n: 3\n", "a key must be a word"),
+        ("? {a: 1}\n: 3\n", "a key must be a word"),
+        ("study: " + "[" * 2000 + "]" * 2000 + "\n", "nested too deeply"),
+        ("a: &a [1, 2]\nb: [*a, *a]\n", "line 2, column 5: the alias *a"),
+        ("study: 2020-13-45\n", "key"),
+        ("study: !!python/object:os.system x\n", "could not determine a constructor"),
+        ("? " + "x" * 5000 + "\n: 1\n", "is not known"),
+        ("study: " + "x" * 5000 + "\n", "key"),
+    ],
+)
+def test_a_file_that_is_wrong_yaml_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, words: str
+):
+    path = tmp_path / "study.yaml"
+    path.write_text(text)
+    assert words in said(capsys, path)
+
+
+def test_an_alias_bomb_is_refused_at_once(tmp_path: Path):
+    lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+    lines += [f"a{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 9) + "]" for i in range(1, 12)]
+    (tmp_path / "bomb.yaml").write_text("\n".join(lines))
+    with pytest.raises(InputError, match="alias"):
+        read_yaml(tmp_path / "bomb.yaml")
+
+
+def test_dates_and_numbers_as_keys_are_texts(tmp_path: Path):
+    path = tmp_path / "building.yaml"
+    path.write_text("floors: {1: 1, 2.5: 2}\nname: 1976-05-06\n")
+    assert read_yaml(path) == {"floors": {"1": 1, "2.5": 2}, "name": "1976-05-06"}
+
+
+@pytest.mark.parametrize("key", ["building", "shaker"])
+def test_a_building_or_shaker_that_is_no_text_is_refused(
+    study_folder: Path, capsys: pytest.CaptureFixture[str], key: str
+):
+    (study_folder / "other.yaml").write_bytes(b"name: \xff\xfe\n")
+    path = write_study(study_folder, {**study_content(), key: "other.yaml"})
+    assert "other.yaml: is not UTF-8" in said(capsys, path)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"seed": 1.0}, "key seed: expected a whole number"),
+        ({"study": "tiny\n"}, "key study"),
+        ({"title": "two\nlines"}, "key title: expected one line"),
+        (
+            {"fragility": {"measures": ["PGA"], "confidence": 0.9}},
+            "fragility.measures[0]: expected one",
+        ),
+        ({"fragility": {"measures": ["d5_95_s"], "confidence": 0.9}}, "found d5_95_s"),
+        ({"compare_with": "someone"}, "compare_with"),
+    ],
+)
+def test_values_that_would_fail_in_a_job_are_refused(
+    study_folder: Path, capsys: pytest.CaptureFixture[str], change: dict, words: str
+):
+    assert words in said(capsys, write_study(study_folder, {**study_content(), **change}))
+
+
+def test_every_measure_that_a_study_may_ask_for_is_measured_and_grows_with_the_amplitude():
+    items = read_schema("study")["properties"]["fragility"]["properties"]["measures"]["items"]
+    wave = Motion([0.0, 1.0, -1.0, 0.5] * 200, 0.01, "wave")
+    measured = list(measure_motion(wave))
+    assert set(items["enum"]) <= set(measured)
+    assert all(scale_power(name) > 0 for name in items["enum"])
+
+
+def test_null_is_the_same_as_no_building(study_folder: Path):
+    study = load_study(write_study(study_folder, {**study_content(), "building": None}))
+    assert study.building is None
+    assert study.floors == {"ground": 0}
+
+
+def test_without_a_table_of_configurations_each_block_stands_alone(study_folder: Path):
+    content = {**study_content(), "bodies": {"specimens": "specimens.csv", "use": ["T1", "T2"]}}
+    study = load_study(write_study(study_folder, content))
+    assert [one.name for one in study.configurations] == ["T1", "T2"]
+    assert not study.has_pairs
+
+
+def test_an_absent_record_is_named(study_folder: Path, capsys: pytest.CaptureFixture[str]):
+    (study_folder / "record3.txt").unlink()
+    assert "record3.txt" in said(capsys, study_folder / "study.yaml")
+
+
+def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(
+    study_folder: Path, capsys: pytest.CaptureFixture[str]
+):
+    (study_folder / "record3.txt").write_text("no record at all\n")
+    sentence = said(capsys, study_folder / "study.yaml")
+    assert "motion 3" in sentence
+    done = snakemake(study_folder, "--cores", "1", "--logger", "rockfrag")
+    assert done.returncode != 0
+    assert "motion 3" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (study_folder / "results").exists()
+
+
+def test_a_record_that_is_not_the_one_of_its_digest_is_named(
+    study_folder: Path, capsys: pytest.CaptureFixture[str]
+):
+    wrong = hashlib.sha256(b"another").hexdigest()
+    table = study_folder / "motions.csv"
+    table.write_text(table.read_text().replace("record3.txt,,", f"record3.txt,{wrong},"))
+    assert "SHA-256" in said(capsys, study_folder / "study.yaml")
+
+
+def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_doubted(
+    study_folder: Path, capsys: pytest.CaptureFixture[str]
+):
+    record = study_folder / "record3.txt"
+    rows = [line.split() for line in record.read_text().splitlines()]
+    record.write_text("\n".join(f"{t} {981 * float(a):.4f}" for t, a in rows) + "\n")
+    assert main(["check-config", "--quiet", str(study_folder / "study.yaml")]) == 0
+    doubt = capsys.readouterr().err
+    assert doubt.startswith("warning: ")
+    assert "m/s²" in doubt
+    assert "motion 3" in doubt
+
+
+@pytest.mark.parametrize(
+    "columns",
+    [{"overturned": "fell"}, {"overturned": "overturned", "event": "quake"}],
+)
+def test_a_column_that_a_measured_table_lacks_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], columns: dict
+):
+    write_synthetic(tmp_path)
+    sentence = said(capsys, write_example(tmp_path, "synthetic.csv", columns=columns))
+    assert "expected a column of" in sentence
+    assert "pga_g" in sentence
+    with pytest.raises(InputError, match=r"measures\.pgv_cm_s\[0\]"):
+        load_any(write_example(tmp_path, "synthetic.csv", measures={"pgv_cm_s": ["pgv"]}))
+
+
+def test_a_study_does_not_overwrite_the_results_of_another(
+    study_folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.chdir(study_folder)
+    other = study_folder / "other.yaml"
+    other.write_text((study_folder / "study.yaml").read_text())
+    owner = study_folder / "results" / "tiny" / "configuration.txt"
+    owner.parent.mkdir(parents=True)
+    owner.write_text("study.yaml\n")
+    assert "holds the results of study.yaml" in said(capsys, other)
+    assert main(["check-config", "study.yaml"]) == 0
+
+
+SAME_BLOCK = (
+    "name,width_cm,height_cm,mass_g\nA,35,120,180000\n",
+    "name,width_m,height_m,mass_kg\nA,0.35,1.2,180\n",
+    "name;width;height;mass\nA;35 cm;1200 mm;0.18 t\n",
+    "name\twidth_mm\theight_cm\tmass\nA\t350\t120\t180 kg\n",
+)
+
+
+@pytest.mark.parametrize("table", SAME_BLOCK)
+def test_blocks_are_the_same_in_whatever_unit_and_separator(tmp_path: Path, table: str):
+    path = tmp_path / "bodies.csv"
+    path.write_text(table)
+    block = read_specimens(path)["A"]
+    assert (block.width, block.height, block.mass) == (0.35, 1.2, 180.0)
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("name,width_cm,height_cm,mass_g\nA,35,120,180\n", "12.2 kg/m³"),
+        ("name,width_m,height_m,mass_kg\nA,35,120,180\n", "0.0122 kg/m³"),
+        ("name,width_m,width_cm,height_m,mass_kg\nA,0.35,35,1.2,180\n", "twice"),
+        ("name,width,height_m,mass_kg\nA,35,1.2,180\n", "without a unit"),
+        ("name,width_m,height_m,mass_kg\nA,35 kg,1.2,180\n", "expected a length"),
+    ],
+)
+def test_a_block_with_a_wrong_unit_is_refused_with_the_number(
+    tmp_path: Path, table: str, words: str
+):
+    path = tmp_path / "bodies.csv"
+    path.write_text(table)
+    with pytest.raises(InputError) as caught:
+        read_specimens(path)
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "---", "a\nb", "x" * 300, "\x00"])
+def test_names_that_cannot_be_files_are_refused(name: str):
+    with pytest.raises(InputError, match="expected a name"):
+        file_name(name)
+
+
+def test_names_become_files_that_stay_in_their_folder_and_apart():
+    made = {
+        n: file_name(n) for n in ("P&T1", "../T1", "T1/2", "T{x}", "-rf", ".hid", "像一", "像二")
+    }
+    assert made["P&T1"] == "P-T1"
+    assert len(set(made.values())) == len(made)
+    for one in made.values():
+        assert not set(one) & set("/\\{}")
+        assert one[0] not in ".-"
+    for first, second in (("T/1", "T:1"), ("T1", "t1")):
+        with pytest.raises(InputError, match="share a file name"):
+            distinct_file_names([first, second])
+
+
+def test_a_file_whose_name_the_workflow_cannot_use_is_refused(
+    study_folder: Path, capsys: pytest.CaptureFixture[str]
+):
+    (study_folder / "record3.txt").rename(study_folder / "record{3}.txt")
+    table = study_folder / "motions.csv"
+    table.write_text(table.read_text().replace("record3.txt", "record{3}.txt"))
+    assert "curly brackets" in said(capsys, study_folder / "study.yaml")
+
+
+def test_a_failed_job_is_one_sentence_and_the_path_of_its_log(
+    study_folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    # a machine whose numba cannot be imported, which no check of the study can see
+    (study_folder / "sitecustomize.py").write_text("import sys\nsys.modules['numba'] = None\n")
+    monkeypatch.setenv("PYTHONPATH", str(study_folder))
+    done = snakemake(
+        study_folder, "--cores", "1", "--logger", "rockfrag", "--workflow-profile", "none"
+    )
+    assert done.returncode != 0
+    assert "Traceback" not in done.stderr
+    last = re.fullmatch(r"(\w+) failed: .*numba.* \(log: (.*)\)", done.stderr.splitlines()[-1])
+    assert last is not None, done.stderr
+    assert last[2] == f"results/tiny/logs/{last[1]}.log"
+    assert "Traceback" in (study_folder / last[2]).read_text()
+    lines = done.stderr.splitlines()[:-1]
+    assert all(line.startswith("[") for line in lines)
+
+
+def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
+    program = (
+        "import importlib.util as util, sys\n"
+        "find = util.find_spec\n"
+        "util.find_spec = lambda name, *rest: None if name == 'rockfrag' else find(name, *rest)\n"
+        "from snakemake.cli import main\n"
+        "main()\n"
+    )
+    done = subprocess.run(
+        [
+            *(sys.executable, "-c", program, "--snakefile", str(ROOT / "Snakefile"), "--dry-run"),
+            *("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml")),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert "results/tiny/report.html" in done.stdout + done.stderr
+    assert "rule study" in done.stdout + done.stderr
+
+
+def test_the_schema_is_one_file_for_everything_that_yaml_says():
+    kinds = yaml.safe_load((ROOT / "src" / "rockfrag" / "schema.json").read_text())["$defs"]
+    assert {"study", "measured_table", "building", "shaker"} <= set(kinds)
