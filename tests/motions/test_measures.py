@@ -1,6 +1,7 @@
 """The table of measures: a row per motion, units in the names."""
 
 import math
+import weakref
 
 import numpy as np
 import pytest
@@ -75,6 +76,24 @@ def test_motion_of_zeros_has_nan_where_nothing_is_defined():
 
 def test_motion_of_one_sample_is_measured():
     assert m.measure_motion(Motion([1.0], 0.01, "one"))["pga_g"] == pytest.approx(1 / G)
+
+
+def test_motions_are_taken_one_at_a_time(named):
+    seen: list[weakref.ref] = []
+    most = 0
+
+    def arriving():
+        nonlocal most
+        for seed in range(5):
+            motion = named(f"motion {seed}", seed)
+            seen.append(weakref.ref(motion))
+            most = max(most, sum(one() is not None for one in seen))
+            yield motion
+            del motion
+
+    assert len(m.measure_motions(arriving())) == 5
+    # the one that is measured and the one that comes
+    assert most <= 2
 
 
 def test_motions_of_one_name_are_refused(named):

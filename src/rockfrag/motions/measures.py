@@ -124,10 +124,14 @@ def rocking_measures(motion: Motion, alpha: float, p: float) -> dict[str, float]
         If the angle or the frequency parameter is not positive.
     """
     p = positive("rocking_measures", "p", p, "1/s")
+    return _rocking(motion, strongest_pulse(motion).period, alpha, p)
+
+
+def _rocking(motion: Motion, pulse_period: float, alpha: float, p: float) -> dict[str, float]:
     return {
         "uplift_ratio": intensity.uplift_ratio(motion, alpha),
         "velocity_ratio": intensity.velocity_ratio(motion, alpha, p),
-        "frequency_ratio": intensity.frequency_ratio(strongest_pulse(motion).period, p),
+        "frequency_ratio": intensity.frequency_ratio(pulse_period, p),
     }
 
 
@@ -150,8 +154,9 @@ def measure_rocking(
     """
     return pd.DataFrame(
         [
-            {"name": motion.name, "block": block, **rocking_measures(motion, alpha, p)}
+            {"name": motion.name, "block": block, **_rocking(motion, pulse_period, alpha, p)}
             for motion in motions
+            for pulse_period in [strongest_pulse(motion).period]
             for block, (alpha, p) in blocks.items()
         ],
         columns=["name", "block", "uplift_ratio", "velocity_ratio", "frequency_ratio"],
