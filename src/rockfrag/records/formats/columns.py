@@ -68,7 +68,9 @@ def _recognise(lines: list[str], name: str) -> bool:
     timed = any(_TIME.match(title) for title in titles)
     return (
         len(rows) >= _MIN_ROWS
-        and all(is_row(line) and width_of(line) == len(titles) for line in rows)
+        and all(is_row(line) for line in rows)
+        # a last row that is cut short is told with its line
+        and {width_of(line) for line in rows[:-1]} == {len(titles)}
         and len(titles) > (2 if timed else 1)
         and not (len(titles) == 2 and any(_SPECTRA.search(title) for title in titles))
     )
