@@ -10,6 +10,7 @@ from rockfrag.pedestal.simulated_explanation import REFERENCE
 from rockfrag.shaketable.readings import READING
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.thesis.first_page import first_page
+from rockfrag.thesis.pattern import departures_by_floor, expected_by_chance
 from rockfrag.thesis.specimens import SLENDERNESS
 from rockfrag.thesis.statements import Evidence, ledger
 
@@ -116,6 +117,15 @@ def test_the_pattern_is_named_only_with_intervals_on_its_side():
     assert headline({"GF": 1.2, "F3": 0.9, "F5": 0.9}).startswith("Some departures")
     assert headline({"GF": 1.2, "F3": 0.9, "F5": 1.0}).startswith("No departure")
     assert headline({"GF": 1.2, "F3": 1.2, "F5": 1.2}).startswith("No departure")
+
+
+def test_signs_of_means_come_by_chance_and_intervals_do_not():
+    means = departures_by_floor(departing({"GF": 1.001, "F3": 0.999, "F5": 0.999})).iloc[0]
+    assert means["signs"] or not means["beyond_chance"]
+    clear = departures_by_floor(departing({"GF": 1.2, "F3": 0.8, "F5": 0.8})).iloc[0]
+    assert clear["signs"] and clear["beyond_chance"]
+    # three signs come out right in one of eight cases
+    assert expected_by_chance(32) == 4
 
 
 def test_why_is_said_only_where_the_simulations_show_it():

@@ -9,9 +9,9 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.report.part import Finding
-from rockfrag.report.sections.explanation import departures
 from rockfrag.report.wording import counted, estimate, listed, of_all, sentence
 from rockfrag.shaketable.readings import READING
+from rockfrag.thesis.pattern import departures_by_floor
 from rockfrag.thesis.statements.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag.thesis.statements.statement import Finding as Evidence
 
@@ -70,7 +70,7 @@ def _reported(effects: pd.DataFrame, claims: pd.DataFrame) -> Finding:
     if set(FLOORS) <= set(on_floors):
         ratios = listed([f"{floor} {_ratio(on_floors[floor])}" for floor in FLOORS])
         pairs = counted(sum(int(on_floors[floor]["pairs"]) for floor in FLOORS), "pair")
-        given = f"gives a ratio P/NP of {ratios}, over {pairs} and all floors together {_whole(effects)}"
+        given = f"gives a ratio P/NP of {ratios}, over all {pairs} together {_whole(effects)}"
         headline = _HEADLINES[Evidence(claims["finding"].to_dict()[35])]
     else:
         given = f"gives a ratio P/NP of {_whole(effects)}, without the thesis’s floors"
@@ -98,9 +98,9 @@ def _why(claims: pd.DataFrame) -> str:
 
 def _what_would(explanation: pd.DataFrame) -> Finding:
     """Say which departures change the ratio beyond chance, and which have the thesis's pattern."""
-    whole = departures(explanation)
+    whole = departures_by_floor(explanation)
     changing = whole[whole["p_bh"] < BEYOND_CHANCE]
-    patterned = [row["name"] for row in whole.to_dict("records") if _has_pattern(explanation, row)]
+    patterned = list(whole.loc[whole["beyond_chance"], "name"])
     text = (
         f"{sentence(of_all(len(changing), len(whole), 'departure'))} from the ideal model, tried one at a "
         "time, change P/NP over all floors beyond chance with all of them counted"
@@ -121,18 +121,6 @@ def _what_would(explanation: pd.DataFrame) -> Finding:
             "acts alike on every floor does not give opposite signs there."
         )
     return Finding(headline, text)
-
-
-def _has_pattern(explanation: pd.DataFrame, departure: Mapping[Any, Any]) -> bool:
-    """Whether a departure's intervals have the thesis's signs on every floor."""
-    same = (explanation["factor"] == departure["factor"]) & (
-        explanation["level"] == departure["level"]
-    )
-    floors = explanation[same].set_index("floor")
-    if not set(FLOORS) <= set(floors.index):
-        return False
-    above = [float(floors.loc[floor, "ratio_upper"]) for floor in (THIRD, FIFTH)]
-    return float(floors.loc[GROUND, "ratio_lower"]) > 1 and max(above) < 1
 
 
 def _beside(wide: pd.DataFrame) -> Finding:
