@@ -105,6 +105,8 @@ def effects(lower: float, ratio: float, upper: float, **changes: object) -> pd.D
         "equivalent": False,
         "detectable_ratio": 1.2,
         "at_bound": 0,
+        "tied": 0,
+        "resolution_ratio": 1.0,
         **changes,
     }
     return pd.DataFrame([row])
@@ -140,6 +142,12 @@ def test_without_an_interval_it_is_said_why():
 def test_pairs_that_give_a_bound_only_are_counted():
     (found,) = pedestal_effect(effects(1.05, 1.2, 1.4, at_bound=3))
     assert "3 of which with one test that gives a bound only" in found.text
+
+
+def test_what_the_steps_hide_is_said():
+    (found,) = pedestal_effect(effects(0.98, 1.0, 1.02, tied=30, resolution_ratio=1.05))
+    assert "30 of 36 pairs overturned in the same step" in found.text
+    assert "below 5.0 % are hidden" in found.text
 
 
 def test_without_any_pair_the_effect_is_not_known():
@@ -184,5 +192,6 @@ def test_survival_windows_are_counted_over_the_sweeps_that_overturn():
     found = windows_found(windows(2, 0), tests)
     assert found.headline == "1 of 2 overturning sweeps has survival windows"
     assert "2.00 times" in found.text
+    assert windows_found(windows(0, 0), tests).headline == "No sweep has survival windows"
     assert "everything overturned" in windows_found(windows(0, 0), tests).text
     assert windows_found(windows(0).assign(first_upper=NAN), tests).headline == "No sweep overturns"

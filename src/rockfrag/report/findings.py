@@ -134,7 +134,10 @@ def windows_found(windows: pd.DataFrame, tests: pd.DataFrame) -> Finding:
     verb = "has" if with_windows == 1 or len(fallen) == 1 else "have"
     headline = f"{sentence(share)} {verb} survival windows"
     if with_windows == 0:
-        return Finding(headline, "Above the first overturning amplitude everything overturned.")
+        return Finding(
+            "No sweep has survival windows",
+            "Above the first overturning amplitude everything overturned.",
+        )
     text = (
         "There are amplitudes that are survived above one that overturns, so the amplitude found "
         "depends on how it is raised."
@@ -183,7 +186,8 @@ def pedestal_effect(effects: pd.DataFrame) -> list[Finding]:
             )
         ]
     row = here.to_dict("records")[0]
-    found = [Finding(_headline(row), f"{_ratio_sentence(row)} {_meaning(row)}".strip())]
+    words = (_ratio_sentence(row), _meaning(row), _steps(row))
+    found = [Finding(_headline(row), " ".join(word for word in words if word))]
     others = whole[whole["reading"] != READING].to_dict("records")
     if others:
         listing = "; ".join(
@@ -228,6 +232,17 @@ def _ratio_sentence(row: Mapping[Any, Any]) -> str:
     return (
         f"{text}, the same over {units}: the steps of the amplitudes show no scatter, "
         "so there is no interval."
+    )
+
+
+def _steps(row: Mapping[Any, Any]) -> str:
+    """What the steps of the amplitudes leave open, where pairs overturned in the same step."""
+    tied, pairs = int(row["tied"]), int(row["pairs"])
+    if tied == 0 or not row["resolution_ratio"] > 1:
+        return ""
+    return (
+        f"{sentence(of_all(tied, pairs, 'pair'))} overturned in the same step; effects below "
+        f"{100 * (row['resolution_ratio'] - 1):.1f} % are hidden by the steps."
     )
 
 

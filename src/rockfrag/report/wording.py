@@ -9,6 +9,9 @@ import pandas as pd
 MOST_LISTED = 8
 """More names than this are not listed in a sentence, but counted."""
 
+_FAR = 1000.0
+"""A limit so many times off its estimate is none."""
+
 LONGEST_NAME = 24
 """Longer names are cut in figures, where they would push everything else aside."""
 
@@ -36,10 +39,12 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     if not math.isfinite(value):
         return "–"
     middle = number(value, decimals)
-    if not has_interval(lower, upper, decimals):
+    low, high = (
+        number(limit, decimals) if value / _FAR < limit < value * _FAR else "open"
+        for limit in (lower, upper)
+    )
+    if low == high or not has_interval(lower, upper, decimals):
         return middle
-    low = number(lower, decimals) if math.isfinite(lower) and lower > 0 else "open"
-    high = number(upper, decimals) if math.isfinite(upper) else "open"
     return f"{middle} [{low}, {high}]"
 
 

@@ -6,6 +6,7 @@ from rockfrag.report.sections.bodies import BODIES
 from rockfrag.report.sections.building import BUILDING
 from rockfrag.report.sections.comparisons import COMPARISONS
 from rockfrag.report.sections.explanation import EXPLANATION
+from rockfrag.report.sections.floor_curves import FLOOR_CURVES
 from rockfrag.report.sections.fragility import FRAGILITY
 from rockfrag.report.sections.measured import MEASURED
 from rockfrag.report.sections.measures import MEASURES
@@ -19,6 +20,7 @@ PARTS: tuple[Part, ...] = (
     COMPARISONS,
     PEDESTAL,
     FRAGILITY,
+    FLOOR_CURVES,
     MEASURES,
     VALIDITY,
     EXPLANATION,

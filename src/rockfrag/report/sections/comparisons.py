@@ -20,6 +20,7 @@ _COLUMNS = (
 
 def _section(results: Results) -> Section | None:
     tests, means = results.tests, results.table("mean_amplitudes")
+    words = mean_sentence(means)
     figures = [_by_object(results)]
     if tests["floor"].nunique() > 1:
         figures.append(_by_floor(results))
@@ -27,6 +28,7 @@ def _section(results: Results) -> Section | None:
         figures.append(_scatter(results))
     if len(tests) < 2:
         return None
+    means = means[means["mean_g"].notna()]
     whole = means[means["by"] == "configuration"].assign(what=lambda t: t["configuration"])
     floors = means[means["by"] == "floor"].assign(
         what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
@@ -37,7 +39,7 @@ def _section(results: Results) -> Section | None:
     return Section(
         "comparisons",
         "Objects, floors and sides compared",
-        [mean_sentence(means)],
+        [words],
         [*figures, *tables],
     )
 

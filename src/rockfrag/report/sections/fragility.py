@@ -1,6 +1,9 @@
 """Fragility curves: figures by object, and a table per measure and reading."""
 
+import math
+from collections.abc import Hashable, Mapping
 from functools import partial
+from typing import Any
 
 import pandas as pd
 from markupsafe import Markup
@@ -9,7 +12,7 @@ from rockfrag.files import file_name
 from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import decimals_of, estimates, number
+from rockfrag.report.wording import decimals_of, estimates, listed, number, probability
 
 
 def _section(results: Results) -> Section:
@@ -24,9 +27,11 @@ def _section(results: Results) -> Section:
         [
             "Lognormal curves: the probability to overturn is Φ(ln(IM/θ)/β). Mean probability "
             "counts every amplitude, survival windows included; first and always overturning take "
-            f"one amplitude a motion. Intervals are of {level}, and resample earthquakes or motions, "
-            "not amplitudes; “open” is a limit that the data do not set.",
-            *([f"Some readings give no curve: {', '.join(without)}."] if without else []),
+            f"one amplitude a motion. Intervals are {level} intervals that resample earthquakes or motions, "
+            "not amplitudes; “open” is a limit that the data do not set. A small p says that the tests "
+            "do not lie on such a curve; the last column says how many times the median would be "
+            "without the earthquake or motion on which it leans most.",
+            *([f"There is not a curve of every reading for {listed(without)}."] if without else []),
             *notes,
         ],
         [*_figures(results, curves), *_tables(curves[known], level)],
@@ -87,15 +92,26 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
         shown = rows.assign(
             theta_text=estimates(rows, ("theta", "theta_lower", "theta_upper")),
             beta_text=estimates(rows, ("beta", "beta_lower", "beta_upper")),
+            p_text=[probability(p) for p in rows["p_fit"]],
+            lean_text=[_lean(row) for row in rows.to_dict("records")],
         )
         columns = (
             Column("configuration", "Configuration"),
             Column("theta_text", f"Median θ [{unit}]", numeric=True),
             Column("beta_text", "Dispersion β", numeric=True),
+            Column("p_text", "p of the fit", numeric=True),
+            Column("lean_text", "Leans on"),
         )
         caption = f"{measure}, {str(reading).replace('_', ' ')}: with {level} intervals."
         tables.append(table_html(shown, columns, caption))
     return tables
+
+
+def _lean(row: Mapping[Hashable, Any]) -> str:
+    """Group without which the median would change most, and by what factor."""
+    if not row["influential"] or not math.isfinite(row["influence"]):
+        return "–"
+    return f"{row['influential']} (× {number(row['influence'], 2)})"
 
 
 FRAGILITY = Part(("fragility", "fragility_bands", "fragility_bins"), _section)

@@ -23,8 +23,7 @@ def _section(results: Results) -> Section:
     ]
     words = [
         "Measures compared by how well they predict the first overturning amplitude of each "
-        "motion, over all floors. Curves in measures of the ground motion stand as NRML for "
-        "OpenQuake and as SimCenter tables in the folder exports; floors are not in them."
+        "motion, over all floors."
     ]
     if none:
         words.append(f"No measure can be recommended for {', '.join(none)}.")

@@ -1,0 +1,40 @@
+"""Fragility on each floor in the peak of that floor's own motion, for rocking and for overturning."""
+
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import Part, Results, Section
+from rockfrag.report.wording import estimates, listed
+
+_COLUMNS = (
+    Column("configuration", "Configuration"),
+    Column("floor", "Floor"),
+    Column("state", "State"),
+    Column("im", "Measure"),
+    Column("theta_text", "Median θ [g]", numeric=True),
+    Column("beta_text", "Dispersion β", numeric=True),
+)
+
+
+def _section(results: Results) -> Section | None:
+    curves = results.table("fragility_floors")
+    shown = curves[(curves["measure"] == "pga_g") & curves["theta"].notna()]
+    files = sorted(path.name for path in (results.folder / "exports").glob("*") if path.is_file())
+    if shown.empty:
+        return None
+    shown = shown.assign(
+        theta_text=estimates(shown, ("theta", "theta_lower", "theta_upper")),
+        beta_text=estimates(shown, ("beta", "beta_lower", "beta_upper")),
+    )
+    words = [
+        "On each floor by itself, in the peak acceleration of that floor. Curves in other measures "
+        "are in the table fragility_floors."
+    ]
+    if files:
+        words.append(f"For other programs they stand in the folder exports: {listed(files)}.")
+    level = f"{100 * results.study.fragility.confidence:g} %"
+    caption = f"Curves by floor, with {level} intervals where there are any."
+    return Section(
+        "floor_curves", "Fragility by floor", words, [table_html(shown, _COLUMNS, caption)]
+    )
+
+
+FLOOR_CURVES = Part(("fragility_floors",), _section)
