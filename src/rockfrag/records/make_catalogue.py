@@ -35,7 +35,7 @@ _SUFFIXES = tuple(
 """How names of files end that name the component: ``CLS000``, ``ISE-WE``, ``EW2``, ``_N``, ``120111``."""
 
 _AMERICAN_DATE = re.compile(r"\b(?P<m>\d{1,2})/(?P<d>\d{1,2})/(?P<y>\d{4}|\d{2})\b")
-_ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})\b")
+_ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})(?!\d)")
 
 
 @dataclass(frozen=True)
