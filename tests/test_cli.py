@@ -140,3 +140,30 @@ def test_a_reader_that_has_had_enough_is_no_error(record: Path):
         run.stdout.close()
         assert run.stderr.read() == ""
         assert run.wait(120) == 0
+
+
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [
+        ("m/s2", ["0.399 m/s²", "start rocking", "in g, multiply it by 9.81"]),
+        ("g", []),
+    ],
+)
+def test_a_motion_that_looks_as_if_in_another_unit_is_doubted(
+    record: Path, unit: str, words: list[str], capsys: pytest.CaptureFixture[str]
+):
+    assert main(["simulate", str(record), "--unit", unit, "--body", "0.1", "1", "20"]) == 0
+    shown = capsys.readouterr().err
+    assert (shown == "") == (not words)
+    for word in words:
+        assert word in shown
+
+
+def test_a_motion_in_cm_s2_is_doubted(
+    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    rows = [line.split() for line in record.read_text().splitlines()]
+    other = tmp_path / "gal.txt"
+    other.write_text("".join(f"{t} {981 * float(a):.3f}\n" for t, a in rows))
+    assert main(["simulate", str(other), "--unit", "m/s2", "--body", "1", "1", "900"]) == 0
+    assert "in cm/s², divide it by 100" in capsys.readouterr().err

@@ -13,7 +13,7 @@ from rockfrag.record_commands import add_record_commands
 from rockfrag.units import quantity
 
 if TYPE_CHECKING:
-    from rockfrag.rocking import Block
+    from rockfrag.rocking import Block, Body
 
 MOST_EVENTS = 30
 """Lines of the pattern history that are printed unless all are asked for."""
@@ -86,6 +86,7 @@ def _parser() -> argparse.ArgumentParser:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
+    from rockfrag.motions.scaling import scale_to_pga
     from rockfrag.records.read import read_motion
     from rockfrag.rocking import Stack, simulate
     from rockfrag.units import STANDARD_GRAVITY
@@ -98,7 +99,9 @@ def _simulate(options: argparse.Namespace) -> int:
     if options.pga is not None:
         if options.pga <= 0:
             raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
-        acceleration = acceleration * (options.pga * STANDARD_GRAVITY / motion.pga)
+        acceleration = scale_to_pga(motion, options.pga).acceleration
+    if doubt := _acceleration_doubt(float(abs(acceleration).max()), body):
+        print(f"warning: {options.record}: {doubt}", file=sys.stderr)
     restitution = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution, restitution)
@@ -139,8 +142,25 @@ def _block(option: str, given: Sequence[str]) -> "Block":
     except InputError as error:
         raise InputError(f"{option}: {error}") from None
     if doubt := size_warning(width, height):
-        warnings.warn(f"{option}: {doubt}", stacklevel=2)
+        print(f"warning: {option}: {doubt}", file=sys.stderr)
     return block
+
+
+def _acceleration_doubt(peak: float, body: "Body") -> str:
+    """Say that the motion looks as if it were in another unit, or return an empty text."""
+    from rockfrag.plausibility import LEAST_PEAK, peak_warning
+    from rockfrag.rocking import Block
+    from rockfrag.units import STANDARD_GRAVITY
+
+    if 0 < peak < LEAST_PEAK:
+        return ""  # `simulate` itself says so
+    arms = (
+        [body.arm(pole) for pole in (1, -1)]
+        if isinstance(body, Block)
+        else [arm(pole) for arm in (body.common_arm, body.statue_arm) for pole in (1, -1)]
+    )
+    # thesis eq. 2.1 and 2.21 to 2.25: the least acceleration that opens a contact
+    return peak_warning(peak, min(abs(arm.x) / arm.y for arm in arms) * STANDARD_GRAVITY)
 
 
 def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]

@@ -1,6 +1,7 @@
 """What looks like a mistake of unit: densities no solid has, sizes and accelerations out of range."""
 
 from rockfrag.errors import InputError
+from rockfrag.units import STANDARD_GRAVITY
 
 DENSITIES = (20.0, 22_600.0)
 """Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
@@ -14,6 +15,9 @@ LARGEST_SIZE = 20.0
 
 LARGEST_PEAK = 50.0
 """No accelerometer has recorded a larger ground acceleration [m/s²]; floors hardly feel more."""
+
+LARGEST_IN_G = 2.0
+"""Peaks of more than this many g are rare: a number above it is hardly one of g."""
 
 LEAST_PEAK = 0.05
 """A motion whose peak is below this [m/s²] moves nothing that stands."""
@@ -68,14 +72,16 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
         Least acceleration at which any of the bodies starts to rock [m/s²]. A motion that falls short
         of it, and would not if it were in g, is doubtful too.
     """
-    from rockfrag.units import STANDARD_GRAVITY
-
     if peak > LARGEST_PEAK:
         return (
             f"the peak acceleration is {peak:.3g} m/s², {peak / STANDARD_GRAVITY:.3g} g; if the motion "
             "is in cm/s², divide it by 100"
         )
-    doubtful = least_uplift is not None and peak < least_uplift <= peak * STANDARD_GRAVITY
+    doubtful = (
+        least_uplift is not None
+        and peak <= LARGEST_IN_G
+        and peak < least_uplift <= peak * STANDARD_GRAVITY
+    )
     if 0 < peak < LEAST_PEAK or doubtful:
         short = f", less than the {least_uplift:.3g} m/s² that start rocking" if doubtful else ""
         return (

@@ -1,10 +1,15 @@
 """Steps that scale a motion: its amplitude to a measure, its time by a similitude factor."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import not_negative, positive
 from rockfrag.motions.intensity import arias, pga, pgv, spectral_acceleration
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+
+Floats = NDArray[np.float64]
 
 
 def scale(motion: Motion, factor: float) -> Motion:
@@ -24,6 +29,19 @@ def scale(motion: Motion, factor: float) -> Motion:
     """
     factor = positive("step scale", "factor", factor)
     return motion.after("scale", motion.acceleration * factor, factor=factor)
+
+
+def factors_to_pga(motion: Motion, pga_g: Floats) -> Floats:
+    """Factors [-] that scale a motion to peak accelerations [g], in the shape in which these come.
+
+    Raises
+    ------
+    InputError
+        If the motion is zero throughout.
+    """
+    if motion.pga <= 0:
+        _factor("factors_to_pga", motion, 1.0, motion.pga)
+    return pga_g * STANDARD_GRAVITY / motion.pga
 
 
 def scale_to_pga(motion: Motion, pga_g: float) -> Motion:

@@ -14,12 +14,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.mass_bias import ratio_bias
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.parameters import Restitution
-from rockfrag.units import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -261,7 +261,7 @@ def ladder_amplitudes(
     -------
     Amplitudes [g], shape (bodies, motions); NaN where nothing or everything was survived.
     """
-    scales = np.array([ladder_g * STANDARD_GRAVITY / motion.pga for motion in motions])
+    scales = np.array([factors_to_pga(motion, ladder_g) for motion in motions])
     fell = overturns(
         bodies,
         [motion.acceleration for motion in motions],

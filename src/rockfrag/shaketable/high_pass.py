@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
+from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Body
 from rockfrag.shaketable.readings import always_overturning, first_overturning
 from rockfrag.shaketable.shaker import FILTER_ORDER
-from rockfrag.units import STANDARD_GRAVITY
 
 
 def filter_effect(
@@ -53,7 +53,7 @@ def filter_effect(
         list(bodies.values()),
         [filtered.acceleration for _, _, filtered in shaken],
         [filtered.dt for _, _, filtered in shaken],
-        [amplitudes_g * STANDARD_GRAVITY / filtered.pga for _, _, filtered in shaken],
+        [factors_to_pga(filtered, amplitudes_g) for _, _, filtered in shaken],
         threads=threads,
     )
     rows = []

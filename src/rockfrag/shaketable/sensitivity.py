@@ -16,13 +16,12 @@ from rockfrag.building.floors import respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
 from rockfrag.errors import InputError
-from rockfrag.motions.scaling import scale
+from rockfrag.motions.scaling import factors_to_pga, scale
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Body
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
-from rockfrag.units import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -190,7 +189,7 @@ class _Ground:
             [specimen.body for specimen in self.specimens],
             [motion.acceleration],
             motion.dt,
-            self.amplitudes_g * STANDARD_GRAVITY / motion.pga,
+            factors_to_pga(motion, self.amplitudes_g),
             threads=self.threads,
         )
         bodies = np.array(["", "pedestal", "statue"])

@@ -10,7 +10,6 @@ from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
-from rockfrag.units import STANDARD_GRAVITY
 
 FALLEN = ("", "pedestal", "statue")
 
@@ -60,10 +59,11 @@ def sweep(
     ``overturning_time_s``, ``peak_rotation_statue``, ``peak_rotation_pedestal`` (|θ| over the
     critical angle), ``impacts``, ``closest_approach`` (small where the verdict nearly flipped).
     """
+    from rockfrag.motions.scaling import factors_to_pga
     from rockfrag.rocking import overturns
 
     values = amplitudes.values_g
-    scales = np.array([values * STANDARD_GRAVITY / motion.pga for motion in motions])
+    scales = np.array([factors_to_pga(motion, values) for motion in motions])
     result = overturns(
         [configuration.body],
         [motion.acceleration for motion in motions],

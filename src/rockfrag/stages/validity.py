@@ -7,7 +7,6 @@ import pandas as pd
 
 from rockfrag.records.motion import Motion
 from rockfrag.study.configurations import Configuration
-from rockfrag.units import STANDARD_GRAVITY
 
 
 def validity_table(
@@ -31,6 +30,7 @@ def validity_table(
     ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have jumped) and
     ``closest_approach`` (how near the response came to an unstable equilibrium).
     """
+    from rockfrag.motions.scaling import scale_to_pga
     from rockfrag.rocking import simulate
 
     bodies = {one.name: one.body for one in configurations}
@@ -38,9 +38,9 @@ def validity_table(
     rows = []
     for test in known.to_dict("records"):
         motion = motions[test["motion"]]
-        scale = test["amplitude_g"] * STANDARD_GRAVITY / motion.pga
+        shaken = scale_to_pga(motion, test["amplitude_g"])
         body = bodies[test["configuration"]]
-        response = simulate(body, motion.acceleration * scale, motion.dt)
+        response = simulate(body, shaken.acceleration, shaken.dt)
         rows.append(
             (
                 float(np.max(response.friction_demand)),

@@ -19,14 +19,16 @@ def check_records(study: Study) -> list[str]:
     """
     from pathlib import Path
 
-    from rockfrag.records.catalogue import load_motion
+    from rockfrag.motions.directions import motion_of_row
 
     warnings = []
     folder = study.catalogue_file.parent
     for row in study.catalogue[study.catalogue["source"] == "folder"].to_dict("records"):
         where = f"{study.catalogue_file}, motion {row['name']}"
         try:
-            motion = load_motion({str(k): v for k, v in row.items()}, folder, Path(RECORDS_FOLDER))
+            motion = motion_of_row(
+                {str(k): v for k, v in row.items()}, folder, Path(RECORDS_FOLDER)
+            )
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
         if motion.pga == 0:

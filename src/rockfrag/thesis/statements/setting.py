@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
 from rockfrag.stages.bodies import uplift_accelerations
@@ -98,7 +99,7 @@ class Setting:
     def histories(self) -> list[Response]:
         """Every stack under every motion of the sample at each amplitude of `PEAKS_G`."""
         return [
-            simulate(stack, one.acceleration * (peak * STANDARD_GRAVITY / one.pga), one.dt)
+            simulate(stack, scale_to_pga(one, peak).acceleration, one.dt)
             for stack in self.assemblies.values()
             for one in self.sample
             for peak in PEAKS_G
