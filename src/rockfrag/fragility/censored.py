@@ -241,7 +241,8 @@ def bracket_interval(
         seed=seed,
     )
     if found.method == "none" and groups > 1 and brackets.n_overturned:
-        return step_limits(found, float(brackets.lower.max()), float(brackets.upper.min()))
+        # neighbouring steps touch, so the brackets may share no more than a point: all of them count
+        return step_limits(found, float(brackets.lower.min()), float(brackets.upper.max()))
     return found
 
 

@@ -214,18 +214,18 @@ def interval_over_motions(
 
 
 def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
-    """Limits where the capacities of all groups lie in one step, so that resampling shows no scatter.
+    """Limits where the capacities of all groups lie in one step or two that touch: no scatter is seen.
 
-    The median of k capacities lies between the ends of the step unless all are on one side of it, whose
-    probability is 2^(1-k). β is at most that at which k capacities still fall into one step with the
-    probability that the level leaves over.
+    The median of k capacities lies between the ends of the steps unless all are on one side of it, whose
+    probability is 2^(1-k). β is at most that at which k capacities still fall between these ends with
+    the probability that the level leaves over.
 
     Parameters
     ----------
     nothing
         The interval without limits, which tells groups and level.
     lower, upper
-        Ends of the step; without two finite ends above zero there are no limits.
+        Ends of the step or steps; without two finite ends above zero there are no limits.
     """
     if not 0 < lower < upper < np.inf or nothing.estimate[1] < LEAST_SLOPE:
         return nothing
@@ -234,8 +234,8 @@ def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
     beta = max(beta, 1.0 / nothing.estimate[1])
     sure = 1.0 - 2.0 ** (1 - nothing.groups)
     note = (
-        f"All {nothing.groups} {nothing.over}s overturn in one step of the amplitude: θ lies within the "
-        f"step (with {sure:.0%} confidence), and β below {beta:.3f} is not resolved."
+        f"All {nothing.groups} {nothing.over}s overturn in one step of the amplitude or in two that touch: "
+        f"θ lies within them (with {sure:.0%} confidence), and β below {beta:.3f} is not resolved."
     )
     return replace(
         nothing,
