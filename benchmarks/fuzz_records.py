@@ -2,8 +2,9 @@
 
     python benchmarks/fuzz_records.py --mutations 10000 --seed 1
 
-Each damaged input must be read or refused with an :class:`InputError` of at most 500 characters, within two
-seconds of processor time (those of the clock depend on what else the machine does). Prints the number of inputs and what went wrong; exit status 1 if anything did.
+Each damaged input must be read or refused with an :class:`InputError` of at most 500 characters, within
+two seconds of processor time (those of the clock depend on what else the machine does). Prints the
+number of inputs and what went wrong; exit status 1 if anything did.
 """
 
 import argparse
