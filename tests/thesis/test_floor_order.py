@@ -82,3 +82,10 @@ def test_tables_without_all_floors_or_pairs_are_refused():
         floor_margins(table[table["floor"] != "F5"])
     with pytest.raises(InputError, match="with and without pedestal"):
         floor_margins(table[table["pedestal"] == "NP"])
+
+
+def test_a_tower_that_is_missing_leaves_its_statements_without_a_margin():
+    table = table_of()
+    margins = floor_margins(table[table["object"] != "T3"])
+    assert {name for name, margin in margins.items() if math.isnan(margin)} == {"C38", "C39", "C40"}
+    assert margins["C35"] == pytest.approx(math.log(1.1))

@@ -6,6 +6,7 @@ A margin is the least of the differences of logarithms that a statement says are
 following a statement along an axis of assumptions.
 """
 
+import math
 from collections.abc import Mapping
 
 import pandas as pd
@@ -16,7 +17,7 @@ from rockfrag.rocking.bodies import Block
 from rockfrag.thesis.statements import STATEMENTS as ALL_STATEMENTS
 from rockfrag.thesis.statements import Evidence, Undecidable
 from rockfrag.thesis.statements.floors import floor_steps
-from rockfrag.thesis.statements.orders import ORDERS, margin
+from rockfrag.thesis.statements.orders import ORDERS, Differences, margin
 
 STATEMENTS: Mapping[str, str] = {
     f"C{number}": ALL_STATEMENTS[number].text for number in range(34, 45)
@@ -39,22 +40,31 @@ def floor_margins(
 
     Returns
     -------
-    Margin [-] by number of statement. ``order`` is that of the thesis's order of the floors for lone
-    towers, ground highest and 3rd lowest: the smaller of the steps from F3 to F5 and from F5 to GF.
+    Margin [-] by number of statement; NaN where the tests cannot speak about it, such as of a tower that
+    is not among them. ``order`` is that of the thesis's order of the floors for lone towers, ground
+    highest and 3rd lowest: the smaller of the steps from F3 to F5 and from F5 to GF.
 
     Raises
     ------
     InputError
-        If a floor or one of the pairs is missing.
+        If a floor is missing, or no object was tested with and without pedestal.
     """
     evidence = Evidence(tests, "simulated", bodies=bodies)
     try:
-        margins = {name: margin(ORDERS[int(name[1:])](evidence)) for name in STATEMENTS}
-        return margins | {"order": margin(floor_steps(evidence))}
+        steps = floor_steps(evidence)
     except (Undecidable, TooFewUnitsError) as reason:
         raise InputError(
             f"tests: {reason}; the statements about floors need all of them."
         ) from None
+    margins = {name: _margin(ORDERS[int(name[1:])], evidence) for name in STATEMENTS}
+    return margins | {"order": margin(steps)}
+
+
+def _margin(differences: Differences, evidence: Evidence) -> float:
+    try:
+        return margin(differences(evidence))
+    except (Undecidable, TooFewUnitsError):
+        return math.nan
 
 
 TIE = 1e-9

@@ -101,11 +101,11 @@ def floor_statements(margins: pd.DataFrame, axis: str, reading: str) -> Figure:
     labels = list(dict.fromkeys(chosen["label"]))
     values = [f"{value:g}" for value in dict.fromkeys(chosen["value"])]
     table = chosen.pivot_table(index="statement", columns="label", values="margin")
-    table = table.loc[list(STATEMENTS), labels]
+    table = table.reindex(index=list(STATEMENTS), columns=labels)
     with figure_style():
         figure = new_figure(PAGE_WIDTH, 3.8)
         axes = figure.subplots()
-        largest = 100 * max(0.1, float(np.abs(table.to_numpy()).max()))
+        largest = 100 * max(0.1, float(np.nanmax(np.abs(table.to_numpy()), initial=0.0)))
         image = axes.imshow(
             100 * table.to_numpy(),
             norm=SymLogNorm(linthresh=1, vmin=-largest, vmax=largest),
