@@ -158,3 +158,14 @@ def test_a_still_block_stays_where_it_is() -> None:
     response = simulate_with_friction(T1, STILL, 0.01, friction=0.3)
     assert len(response.events) == 1
     assert not response.overturned and np.abs(response.slip).max() < 1e-15
+
+
+def test_a_statue_as_wide_as_its_pedestal_rocks_on_the_edge_without_leaving_it() -> None:
+    body = Stack(Block(0.3, 0.2, 30.0), Block(0.3, 0.7, 20.0))
+    motion = 5.0 * np.sin(np.linspace(0.0, 2 * math.pi, 101))
+    response = simulate_with_friction(body, motion, 0.01, friction=5.0)
+    # at 1.5 s it is lying down and does slide off
+    early = response.events[response.events["time"] < 1.0]
+    modes = {mode for to in early["to"] for mode in to}
+    assert "rocks left" in modes
+    assert "flies" not in modes

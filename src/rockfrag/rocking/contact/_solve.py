@@ -4,6 +4,10 @@ import math
 
 from rockfrag.rocking._compile import inlined_kernel, kernel
 
+AT_EDGE = 1e-9
+"""A corner counts as over the face until it is this share of the half width beyond the edge: bases as wide as
+their face stand on it and not on its edges."""
+
 
 @inlined_kernel
 def look_at(p, w, q):
@@ -46,7 +50,7 @@ def end_of(p, w, q, k, end, kind):
     side = 2 * end - 1
     beyond = side * ((x - ox) * tx + (y - oy) * ty) - p.half[k]
     if kind < 0:
-        kind = 1 if beyond <= 0.0 else 0
+        kind = 1 if beyond <= AT_EDGE * p.size else 0
     if kind == 1:
         return x, y, tx, ty, -ty * (x - ox) + tx * (y - oy), beyond, 1
     ex = ox + side * p.half[k] * tx

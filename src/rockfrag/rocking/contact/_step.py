@@ -3,7 +3,7 @@
 import math
 
 from rockfrag.rocking._compile import kernel
-from rockfrag.rocking.contact._solve import end_of, look_at, rate, solve
+from rockfrag.rocking.contact._solve import AT_EDGE, end_of, look_at, rate, solve
 
 SLACK, TOUCH = 1e-12, 1e-13
 """Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;
@@ -148,9 +148,10 @@ def least_margin(p, w, q, v):
                 some = True
                 pressed += w.normal[k, end]
                 margin = w.normal[k, end] / p.weight + SLACK
-                if k > 0:
+                if k > 0 and w.slides[k] != 0:
                     _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
-                    inside = (-beyond if w.kind[k, end] == 1 else beyond) / p.size + TOUCH
+                    inside = AT_EDGE - beyond / p.size
+                    inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
                     if inside < 0.0:
                         w.fails[k, EDGE + end] = 1
                     least = min(least, inside)

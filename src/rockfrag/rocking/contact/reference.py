@@ -18,6 +18,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.contact.reference_model import (
+    AT_EDGE,
     FULL,
     OPEN,
     Contact,
@@ -340,9 +341,9 @@ class _Run:
         for (k, s), c in contacts.items():
             if self._closed((k, s)):
                 values["press", k, s] = found.normal[k, s] / model.weight + SLACK
-                if k:
-                    beyond = c.beyond / model.size
-                    values["edge", k, s] = (-beyond if c.on_face else beyond) + TOUCH
+                if k and self.mode[k].slides:
+                    inside = AT_EDGE - c.beyond / model.size
+                    values["edge", k, s] = (inside if c.on_face else -inside) + TOUCH
             else:
                 values["gap", k, s] = c.gap / model.size + TOUCH
         for k, (closed, slides) in enumerate(self.mode):

@@ -29,6 +29,9 @@ class InterfaceMode(NamedTuple):
     slides: int
 
 
+# a corner counts as over the face until it is this share of the half width beyond the edge
+AT_EDGE = 1e-9
+
 OPEN = InterfaceMode((), 0)
 FULL = (-1, 1)
 
@@ -159,7 +162,7 @@ class Model:
         corner = q[3 * k : 3 * k + 2] + _turn(self.corner[k][side], q[3 * k + 2])
         beyond = side * float(tangent @ (corner - origin)) - half
         if on_face is None:
-            on_face = beyond <= 0
+            on_face = beyond <= AT_EDGE * self.size
         if on_face:
             gap = float(normal @ (corner - origin))
             return Contact(corner, tangent, normal, True, gap, beyond)
