@@ -37,10 +37,10 @@ from scipy_stack import scipy_stack
 from rockfrag.files import write_table, write_text
 from rockfrag.report.figures.benchmark import draw_benchmark
 from rockfrag.report.figures.style import save_figure
-from rockfrag.rocking.accuracy import fragile_verdicts
+from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.streaming import stream_overturns
+from rockfrag.rocking.parquet import stream_overturns
 
 BEGIN, END = "<!-- results of make bench -->", "<!-- end of results -->"
 NAMES = {"lone": "single block", "stack": "two blocks"}

@@ -1,7 +1,7 @@
 """A statue on a pedestal by scipy's ``solve_ivp``, the counterpart of ``competitors.scipy_lone``.
 
 The mechanics (contact states, impacts, what a closed contact can hold) is that of
-``rockfrag.rocking.reference_model``, with plain floats where every stage of a step calls it.
+``rockfrag.rocking.reference.model``, with plain floats where every stage of a step calls it.
 """
 
 import math
@@ -13,8 +13,8 @@ from competitors import SLOWEST_IMPACT, Array, G
 from scipy.integrate import solve_ivp
 
 from rockfrag.rocking.bodies import Body, Stack
-from rockfrag.rocking.reference import LONGEST_TAIL
-from rockfrag.rocking.reference_model import Model, Pair, State
+from rockfrag.rocking.reference.integrator import LONGEST_TAIL
+from rockfrag.rocking.reference.model import Model, Pair, State
 
 Ground = Callable[[float], float]
 Watch = Callable[[float, Array], float]

@@ -27,7 +27,7 @@ def streamed_memory(kind: str, count: int) -> float:
     import numpy as np
 
     from rockfrag.rocking.bodies import Block, Body, Stack
-    from rockfrag.rocking.streaming import stream_overturns
+    from rockfrag.rocking.parquet import stream_overturns
 
     blocks = [Block(0.3 + 0.001 * i, 1.2, 200.0) for i in range(100)]
     bodies: list[Body] = (

@@ -9,7 +9,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking import streaming
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.streaming import stream_overturns
+from rockfrag.rocking.parquet import stream_overturns
 
 DT = 0.01
 TIME = np.arange(600) * DT

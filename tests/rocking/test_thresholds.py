@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.accuracy import fragile_verdicts
+from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.scattered import scattered_overturns
+from rockfrag.rocking.case_list import scattered_overturns
 from rockfrag.rocking.thresholds import find_thresholds
 
 G = 9.81

@@ -7,10 +7,9 @@ from rockfrag._lazy import loader
 if TYPE_CHECKING:
     from rockfrag.rocking.bodies import Block, Body, Stack
     from rockfrag.rocking.ensemble import EnsembleResult, overturns
-    from rockfrag.rocking.history_streaming import stream_histories
+    from rockfrag.rocking.parquet import stream_histories, stream_overturns
     from rockfrag.rocking.response import Response
     from rockfrag.rocking.simulation import simulate
-    from rockfrag.rocking.streaming import stream_overturns
 
 __all__ = [
     "Block",
@@ -34,7 +33,7 @@ __getattr__ = loader(
         "overturns": "rockfrag.rocking.ensemble",
         "Response": "rockfrag.rocking.response",
         "simulate": "rockfrag.rocking.simulation",
-        "stream_histories": "rockfrag.rocking.history_streaming",
-        "stream_overturns": "rockfrag.rocking.streaming",
+        "stream_histories": "rockfrag.rocking.parquet",
+        "stream_overturns": "rockfrag.rocking.parquet",
     },
 )

@@ -10,15 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.rocking import _lanes as lanes
-from rockfrag.rocking import _stack_lanes as stack_lanes
-from rockfrag.rocking._compile import compiling_alone
-from rockfrag.rocking._mechanics import BODY
-from rockfrag.rocking._rest import BLOCK
-from rockfrag.rocking._stack_cases import OUTCOME
 from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.body_record import Restitution, body_record, lone_restitution
 from rockfrag.rocking.inputs import (
-    COARSE_CLOSING_SPEED,
     STACK_STEP,
     STEP,
     checked_scales,
@@ -26,7 +20,11 @@ from rockfrag.rocking.inputs import (
     listed,
     step_count,
 )
-from rockfrag.rocking.parameters import Restitution, body_parameters, lone_restitution
+from rockfrag.rocking.kernels.equations import BODY
+from rockfrag.rocking.kernels.jit import compiling_alone
+from rockfrag.rocking.kernels.lanes import block, stack_case
+from rockfrag.rocking.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
+from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
@@ -64,6 +62,22 @@ class EnsembleResult:
     peak_velocity: Array
     impacts: NDArray[np.int64]
     closest_approach: Array
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """What the bodies of an ensemble are shaken with, and how."""
+
+    motions: list[Array]
+    dts: Array
+    factors: Array
+    g: float
+    step: float
+    threads: int
+
+
+_Found = tuple[NDArray[np.void], Array]
+"""Outcomes, (bodies, motions, scales) of OUTCOME, and the sampling intervals they count time in [s]."""
 
 
 def overturns(
@@ -120,55 +134,34 @@ def overturns(
         impacts=np.zeros(shape, dtype=np.int64),
         closest_approach=np.full(shape, np.inf),
     )
+    setting = _Setting(values, dts, factors, g, step, workers)
     lone = [i for i, body in enumerate(body_list) if isinstance(body, Block)]
     stacks = [i for i, body in enumerate(body_list) if isinstance(body, Stack)]
-    for chosen, run in ((lone, _lone_blocks), (stacks, _stacks)):
+    for chosen, march in ((lone, _blocks), (stacks, _stacks)):
         if chosen and factors.size:
-            run(
-                [body_list[i] for i in chosen],
-                [per_body[i] for i in chosen],
-                values, dts, factors, g, step, workers, result, np.array(chosen),
-            )  # fmt: skip
+            found = march(setting, [body_list[i] for i in chosen], [per_body[i] for i in chosen])
+            _fill(result, np.array(chosen), found)
     return result
 
 
-def _in_parallel(
-    kernel: Any,
-    working_arrays: Callable[[], tuple[NDArray[Any], ...]],
-    workers: int,
-    count: int,
-    *arguments: object,
-    halves: tuple[Callable[[], None], Callable[[], None]] | None = None,
-) -> None:
-    """Let threads call ``kernel``, each with working arrays of its own, until no case is left."""
-    with compiling_alone(kernel, halves):
-        kernel(np.array([0]), 0, *arguments, *working_arrays())
-    counter = np.array([0])
+def _march(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:
+    """Let threads call an entry kernel, each with memory of its own, until no case is left."""
+    ensemble, *others = arguments
+    with compiling_alone(kernel):
+        kernel(ensemble._replace(count=0), *others[:-1], worker(), others[-1])
+    ensemble.counter[0] = 0
 
     def work(_: int) -> None:
-        kernel(counter, count, *arguments, *working_arrays())
+        kernel(ensemble, *others[:-1], worker(), others[-1])
 
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(work, range(workers)))
-
-
-@dataclass(frozen=True)
-class _Motions:
-    """All motions end to end, sampled as densely as the bodies need."""
-
-    samples: Array
-    highest: Array  # extremes of each BLOCK of samples
-    lowest: Array
-    offsets: NDArray[np.int64]  # where each sampled motion begins
-    lasts: NDArray[np.int64]  # its last sample, which is zero
-    rows: NDArray[np.int64]  # (bodies, motions) which of the sampled motions to use
-    intervals: Array  # (bodies, motions) its sampling interval [s]
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, range(threads)))
 
 
 def _sampled(
     bodies: list[Body], values: list[Array], dts: Array, g: float, step: float
-) -> _Motions:
-    # a body that needs shorter steps than the samples gets the motion sampled more densely
+) -> tuple[Motions, NDArray[np.int64], Array]:
+    """Sample the motions as densely as the bodies need; which each body × motion uses, and its interval [s]."""
     times = np.array([step_count(body, dts, g, step) for body in bodies])
     times = 2 ** np.ceil(np.log2(times)).astype(int)
     kinds, number = np.unique(times * len(values) + np.arange(len(values)), return_inverse=True)
@@ -178,15 +171,22 @@ def _sampled(
     offsets = np.concatenate([[0], np.cumsum([v.size for v in padded])])
     samples = np.concatenate(padded)
     blocks = samples.reshape(-1, BLOCK)
-    return _Motions(
+    highest, lowest = blocks.max(axis=1), blocks.min(axis=1)
+    parts = [slice(i // BLOCK, j // BLOCK) for i, j in zip(offsets[:-1], offsets[1:], strict=True)]
+    motions = Motions(
         samples=samples,
-        highest=blocks.max(axis=1),
-        lowest=blocks.min(axis=1),
+        highest=highest,
+        lowest=lowest,
+        ahead_high=np.concatenate(
+            [np.maximum.accumulate(highest[part][::-1])[::-1] for part in parts]
+        ),
+        ahead_low=np.concatenate(
+            [np.minimum.accumulate(lowest[part][::-1])[::-1] for part in parts]
+        ),
         offsets=offsets,
         lasts=offsets[:-1] + np.array([v.size for v in sampled]) - 1,
-        rows=number.reshape(times.shape),
-        intervals=dts[np.newaxis, :] / times,
     )
+    return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
 
 
 def _refined(values: Array, times: int) -> Array:
@@ -198,42 +198,73 @@ def _refined(values: Array, times: int) -> Array:
     return np.asarray(np.interp(at, np.arange(closed.size), closed))
 
 
-def _stacks(
-    bodies: list[Body],
-    restitution: list[Restitution],
-    values: list[Array],
-    dts: Array,
-    factors: Array,
-    g: float,
-    step: float,
-    workers: int,
-    result: EnsembleResult,
-    rows: NDArray[np.intp],
-) -> None:
-    records = np.array(
-        [body_parameters(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)], BODY
+def _stacks(setting: _Setting, bodies: list[Body], restitution: list[Restitution]) -> _Found:
+    """Verdicts of stacks."""
+    g, step = setting.g, setting.step
+    motions, rows, intervals = _sampled(bodies, setting.motions, setting.dts, g, step)
+    each = list(zip(bodies, intervals, strict=True))
+    count = len(bodies) * setting.factors.size
+    ensemble = Ensemble(
+        counter=np.array([0]),
+        count=count,
+        bodies=np.array(
+            [body_record(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)], BODY
+        ),
+        factors=setting.factors,
+        rows=rows,
+        intervals=intervals,
+        parts=1.0 / np.array([step_count(body, h, g, STACK_STEP * step) for body, h in each]),
+        free=np.array([free_samples(body, h, g) for body, h in each]),
     )
-    motions = _sampled(bodies, values, dts, g, step)
-    free = np.array(
-        [free_samples(body, h, g) for body, h in zip(bodies, motions.intervals, strict=True)]
-    )
-    shape = (len(bodies), *factors.shape)
-    shares = [
-        step_count(body, h, g, STACK_STEP * step)
-        for body, h in zip(bodies, motions.intervals, strict=True)
-    ]
-    parts = 1.0 / np.array(shares)
-    outcome = np.empty(math.prod(shape), OUTCOME)
+    outcomes = np.empty(count, OUTCOME)
+    _march(march_stacks, stack_case.worker, setting.threads, ensemble, motions, outcomes)
+    return outcomes.reshape(len(bodies), *setting.factors.shape), intervals[:, :, np.newaxis]
 
-    _in_parallel(
-        stack_lanes.stack_cases, stack_lanes.working_arrays, workers, len(outcome), records,
-        motions.intervals, parts, free, factors, motions.rows, motions.offsets, motions.lasts, motions.samples,
-        motions.highest, motions.lowest, COARSE_CLOSING_SPEED, outcome,
-        halves=(stack_lanes.compile_events, stack_lanes.compile_others),
-    )  # fmt: skip
-    outcome = outcome.reshape(shape)
+
+def _blocks(setting: _Setting, bodies: list[Body], restitution: list[Restitution]) -> _Found:
+    """Verdicts of lone blocks."""
+    g = setting.g
+    motions, rows, intervals = _sampled(bodies, setting.motions, setting.dts, g, setting.step)
+    poles = np.empty((*intervals.shape, 2), block.POLE)
+    for i, (body, e) in enumerate(zip(bodies, restitution, strict=True)):
+        assert isinstance(body, Block)
+        poles[i] = _poles(body, e, g)
+    poles["swing"] *= intervals[:, :, np.newaxis] ** 2
+    poles["per_swing"] /= intervals[:, :, np.newaxis] ** 2
+    count = len(bodies) * setting.factors.size
+    ensemble = Ensemble(
+        counter=np.array([0]),
+        count=count,
+        bodies=poles,
+        factors=setting.factors / g,
+        rows=rows,
+        intervals=intervals,
+        parts=np.ones(intervals.shape),
+        free=np.zeros(intervals.shape, np.int64),
+    )
+    outcomes = np.empty(count, OUTCOME)
+    _march(block.march_blocks, block.worker, setting.threads, ensemble, motions, outcomes)
+    return outcomes.reshape(len(bodies), *setting.factors.shape), intervals[:, :, np.newaxis]
+
+
+def _poles(body: Block, restitution: Restitution, g: float) -> NDArray[np.void]:
+    """Constants of a block's right and left pole, with p² where p² dt² belongs."""
+    poles = np.empty(2, block.POLE)
+    measured = lone_restitution(body, restitution)
+    for at, pole in ((0, +1), (1, -1)):
+        alpha, swing = body.critical_angle(pole), body.frequency(pole, g) ** 2
+        e = body.momentum_restitution(pole) if measured is None else measured
+        poles[at] = (
+            alpha, math.tan(alpha), math.sin(alpha), math.cos(alpha), swing, e, 1 / alpha,
+            1 / (swing * alpha**2),
+        )  # fmt: skip
+    return poles
+
+
+def _fill(result: EnsembleResult, rows: NDArray[np.intp], found: _Found) -> None:
+    """Write outcomes of some bodies into the result."""
+    outcome, interval = found
     fallen = outcome["fallen"]
-    interval = motions.intervals[:, :, np.newaxis]
     result.overturned[rows] = fallen > 0
     result.overturned_body[rows] = fallen
     result.overturning_time[rows] = np.where(fallen > 0, outcome["certain"] * interval, np.nan)
@@ -242,71 +273,3 @@ def _stacks(
     result.peak_velocity[rows] = outcome["fast"] / interval
     result.impacts[rows] = outcome["impacts"]
     result.closest_approach[rows] = outcome["closest"]
-
-
-def _lone_blocks(
-    bodies: list[Body],
-    restitution: list[Restitution],
-    values: list[Array],
-    dts: Array,
-    factors: Array,
-    g: float,
-    step: float,
-    workers: int,
-    result: EnsembleResult,
-    rows: NDArray[np.intp],
-) -> None:
-    shape = (len(bodies), *factors.shape)
-    motions = _sampled(bodies, values, dts, g, step)
-    intervals = motions.intervals
-    bounds = zip(motions.offsets[:-1], motions.offsets[1:], strict=True)
-    parts = [slice(i // BLOCK, j // BLOCK) for i, j in bounds]
-    # largest and smallest sample from the beginning of a block to the end of its motion
-    ahead_high = np.concatenate(
-        [np.maximum.accumulate(motions.highest[part][::-1])[::-1] for part in parts]
-    )
-    ahead_low = np.concatenate(
-        [np.minimum.accumulate(motions.lowest[part][::-1])[::-1] for part in parts]
-    )
-    table = np.empty((len(bodies), len(values), lanes.BODY))
-    for i, (body, e) in enumerate(zip(bodies, restitution, strict=True)):
-        assert isinstance(body, Block)
-        table[i] = _lane_row(body, e, g)
-        for pole in (0, lanes.POLE):
-            table[i, :, pole + lanes.SWING] *= intervals[i] ** 2
-            table[i, :, pole + lanes.PER_SWING] /= intervals[i] ** 2
-    per_g = factors / g
-    outcome = np.empty((math.prod(shape), lanes.RESULTS))
-
-    _in_parallel(
-        lanes.lone_blocks, lanes.working_arrays, workers, len(outcome), table.ravel(), per_g, motions.rows,
-        motions.offsets, motions.lasts, motions.samples, motions.highest, motions.lowest, ahead_high,
-        ahead_low, outcome.reshape(-1),
-    )  # fmt: skip
-    outcome = outcome.reshape(*shape, lanes.RESULTS)
-    fallen = outcome[..., lanes.OVERTURNED] > 0
-    interval = intervals[:, :, np.newaxis]
-    result.overturned[rows] = fallen
-    result.overturned_body[rows] = 2 * fallen
-    result.overturning_time[rows] = np.where(fallen, outcome[..., lanes.CERTAIN] * interval, np.nan)
-    result.peak_rotation[rows] = np.where(fallen, np.inf, outcome[..., lanes.RATIO])
-    result.peak_velocity[rows] = outcome[..., lanes.SPEED] / interval
-    result.impacts[rows] = outcome[..., lanes.IMPACTS]
-    result.closest_approach[rows] = outcome[..., lanes.CLOSEST]
-
-
-def _lane_row(body: Block, restitution: Restitution, g: float) -> Array:
-    """Entries of the lanes' body table, with p² where p² dt² belongs."""
-    row = np.empty(lanes.BODY)
-    measured = lone_restitution(body, restitution)
-    for pole, at in ((+1, 0), (-1, lanes.POLE)):
-        alpha = body.critical_angle(pole)
-        row[at + lanes.ALPHA] = alpha
-        row[at + lanes.TAN] = math.tan(alpha)
-        row[at + lanes.SIN] = math.sin(alpha)
-        row[at + lanes.COS] = math.cos(alpha)
-        row[at + lanes.SWING] = body.frequency(pole, g) ** 2
-        row[at + lanes.PER_ALPHA] = 1 / alpha
-        row[at + lanes.PER_SWING] = 1 / (row[at + lanes.SWING] * alpha**2)
-        row[at + lanes.E_FROM] = body.momentum_restitution(pole) if measured is None else measured
-    return row

@@ -11,9 +11,9 @@ import pyarrow as pa
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking import _tally as tally
-from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking._march import march
 from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.body_record import Restitution, body_parameters
 from rockfrag.rocking.inputs import (
     CLOSING_SPEED,
     STEP,
@@ -22,8 +22,8 @@ from rockfrag.rocking.inputs import (
     listed,
     step_count,
 )
-from rockfrag.rocking.parameters import Restitution, body_parameters
-from rockfrag.rocking.streaming import CASE, ROWS, new_table
+from rockfrag.rocking.kernels.jit import compiling_alone
+from rockfrag.rocking.parquet import CASE, ROWS, new_table
 from rockfrag.units import STANDARD_GRAVITY
 
 Case = tuple[int, int, int]

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.parameters import Restitution
+from rockfrag.rocking.body_record import Restitution
 
 STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""
@@ -17,12 +17,6 @@ STEP = 0.1
 STACK_STEP = 0.35
 """Share of that step that stacks of an ensemble take while both blocks rotate: they are chaotic, and keep the
 memory of smaller errors."""
-
-CLOSING_SPEED = 1e-6
-"""Separation speed after an impact [rad/s] below which a contact stays closed in a kept history."""
-
-COARSE_CLOSING_SPEED = 1e-4
-"""Likewise where only the verdict matters."""
 
 FREE_TIME = 60.0
 """Free rocking after the motion is followed for at most this long, in units of 1/p."""

@@ -9,34 +9,65 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import _tally as tally
-from rockfrag.rocking._compile import compiling_alone
-from rockfrag.rocking._march import march
 from rockfrag.rocking.bodies import Block, Body
+from rockfrag.rocking.body_record import Restitution, body_record
 from rockfrag.rocking.forces import contact_forces
 from rockfrag.rocking.inputs import (
-    CLOSING_SPEED,
     STEP,
     checked_acceleration,
     free_samples,
     step_count,
     warn_if_weak,
 )
-from rockfrag.rocking.parameters import Restitution, body_parameters
+from rockfrag.rocking.kernels.equations import STATE
+from rockfrag.rocking.kernels.jit import compiling_alone
+from rockfrag.rocking.kernels.record import (
+    CHATTER,
+    CLOSING,
+    EVENT,
+    OPENING,
+    SAMPLE,
+    SUMMARY,
+    fill_energies,
+)
+from rockfrag.rocking.kernels.single import Shaking, march, scratch
 from rockfrag.rocking.response import PATTERNS, Response
 from rockfrag.units import STANDARD_GRAVITY
 
 
-def _initial(body: Body, value: float | Sequence[float] | None, name: str) -> list[float]:
+Array = NDArray[np.float64]
+
+
+def initial_state(
+    body: Body,
+    theta0: float | Sequence[float] | None = None,
+    omega0: float | Sequence[float] | None = None,
+) -> np.void:
+    """Return the STATE that a march begins with.
+
+    Raises
+    ------
+    InputError
+        If there is not one finite number for each block, or a block lies on its side already.
+    """
+    initial: np.void = np.zeros(1, STATE)[0]
+    for name, given in (("theta", theta0), ("omega", omega0)):
+        initial[name + "1"], initial[name + "2"] = _pair_of_blocks(body, given, name + "0")
+    return initial
+
+
+def _pair_of_blocks(
+    body: Body, value: float | Sequence[float] | None, name: str
+) -> tuple[float, float]:
     blocks = 1 if isinstance(body, Block) else 2
     if value is None:
-        return [0.0, 0.0]
+        return 0.0, 0.0
     values = [float(v) for v in np.atleast_1d(np.asarray(value, dtype=float))]
     if len(values) != blocks or not all(math.isfinite(v) for v in values):
         raise InputError(f"{name}: expected {blocks} finite number(s), got {value!r}.")
     if name == "theta0" and any(abs(v) >= math.pi / 2 for v in values):
         raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
-    return [0.0, *values] if blocks == 1 else values
+    return (0.0, values[0]) if blocks == 1 else (values[0], values[1])
 
 
 def simulate(
@@ -77,49 +108,67 @@ def simulate(
     """
     values = checked_acceleration(acceleration, dt)
     warn_if_weak(values)
-    p = body_parameters(body, restitution, linear, g)
-    first, second = _initial(body, theta0, "theta0"), _initial(body, omega0, "omega0")
-    initial = np.array([first[0], second[0], first[1], second[1]])
-    free = int(free_samples(body, dt, g))
-    history = np.zeros((values.size + free, tally.HISTORY))
-    summary = np.zeros(tally.SUMMARY)
+    record = body_record(body, restitution, linear, g)
+    initial = initial_state(body, theta0, omega0)
+    shaking = shaking_of(body, values, dt, 1.0, g, STEP)
+    history = np.zeros(values.size + shaking.free_samples, SAMPLE)
     capacity = 4096
     while True:
-        events = np.zeros((capacity, tally.EVENT))
-        with compiling_alone(march):
-            done = march(
-                p, values, float(dt), 1.0, int(step_count(body, dt, g, STEP)), free, initial,
-                CLOSING_SPEED, history, events, tally.scratch(), summary,
-            )  # fmt: skip
-        count = int(summary[tally.N_EVENTS])
-        if count <= capacity:
+        events = np.zeros(capacity, EVENT)
+        done, summary = run_march(record, shaking, initial, history, events)
+        if summary["events"] <= capacity:
             break
-        capacity = count
-    return _response(body, p, values, dt, history[:done], events[:count], summary, g)
+        capacity = int(summary["events"])
+    return _response(body, record, shaking, history[:done], events[: summary["events"]], summary)
+
+
+def shaking_of(body: Body, values: Array, dt: float, scale: float, g: float, step: float) -> Shaking:
+    """What a march shakes a body with, in steps that follow from the body."""
+    return Shaking(
+        samples=values,
+        scale=float(scale),
+        dt=float(dt),
+        substeps=int(step_count(body, dt, g, step)),
+        free_samples=int(free_samples(body, dt, g)),
+    )
+
+
+def run_march(
+    record: np.void,
+    shaking: Shaking,
+    initial: np.void,
+    history: NDArray[np.void],
+    events: NDArray[np.void],
+) -> tuple[int, np.void]:
+    """March one body; return the number of samples done and the summary."""
+    summary: np.void = np.zeros(1, SUMMARY)[0]
+    with compiling_alone(march):
+        done = march(record, shaking, initial, history, events, summary, scratch())
+    return int(done), summary
 
 
 def _response(
     body: Body,
-    p: np.void,
-    values: NDArray[np.float64],
-    dt: float,
-    history: NDArray[np.float64],
-    events: NDArray[np.float64],
-    summary: NDArray[np.float64],
-    g: float,
+    record: np.void,
+    shaking: Shaking,
+    history: NDArray[np.void],
+    events: NDArray[np.void],
+    summary: np.void,
 ) -> Response:
     n = len(history)
-    blocks = [1] if isinstance(body, Block) else [0, 1]
-    theta = history[:, [0, 2]][:, blocks]
-    omega = history[:, [1, 3]][:, blocks]
-    alpha = history[:, [6, 7]][:, blocks]
-    state = history[:, [4, 5]][:, blocks].astype(np.int64)
+    blocks = ["2"] if isinstance(body, Block) else ["1", "2"]
+    theta, omega, alpha, state = (
+        np.column_stack([history[name + block] for block in blocks])
+        for name in ("theta", "omega", "alpha", "c")
+    )
+    samples, dt = shaking.samples, shaking.dt
     ground = np.zeros(n)
-    ground[: min(n, values.size)] = values[:n]
-    normal, friction = contact_forces(body, ground, state, theta, omega, alpha, g)
-    time = np.arange(n, dtype=np.float64) * float(dt)
-    table = _event_table(events, blocks)
-    fallen = int(summary[tally.FALLEN])
+    ground[: min(n, samples.size)] = samples[:n]
+    normal, friction = contact_forces(
+        body, ground, state, theta, omega, alpha, float(record["gravity"])
+    )
+    time = np.arange(n, dtype=np.float64) * dt
+    fallen = int(summary["fallen"])
     return Response(
         body=body,
         time=time,
@@ -128,34 +177,38 @@ def _response(
         omega=omega,
         alpha=alpha,
         state=state,
-        events=table,
+        events=_event_table(events, blocks),
         overturned=fallen > 0,
         overturned_body=("", "pedestal", "block" if isinstance(body, Block) else "statue")[fallen],
-        overturning_time=float(summary[tally.FALL_TIME]),
-        energy=_energy_table(p, time, history, events),
+        overturning_time=float(summary["fall_time"]),
+        energy=_energy_table(record, time, history, events),
         normal_force=normal,
         friction_force=friction,
-        impacts=int(summary[tally.IMPACTS]),
-        grazings=int(summary[tally.GRAZINGS]),
-        closest_approach=float(summary[tally.CLOSEST]),
+        impacts=int(summary["impacts"]),
+        grazings=int(summary["grazings"]),
+        closest_approach=float(summary["closest"]),
     )
 
 
-def _event_table(events: NDArray[np.float64], blocks: list[int]) -> pd.DataFrame:
-    kinds = {tally.OPENING: "opening", tally.CLOSING: "impact", tally.CHATTER: "chatter"}
+def _event_table(events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
+    kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter"}
+
+    def each(state: np.void, name: str) -> tuple[float, ...]:
+        return tuple(float(state[name + block]) for block in blocks)
+
     rows: list[dict[str, Any]] = [
         {
-            "time": row[0],
-            "kind": kinds[row[1]],
-            "from": PATTERNS[int(row[2]), int(row[3])],
-            "to": PATTERNS[int(row[4]), int(row[5])],
-            "omega_before": tuple(row[[6, 7]][blocks].tolist()),
-            "omega_after": tuple(row[[8, 9]][blocks].tolist()),
-            "theta": tuple(row[[10, 11]][blocks].tolist()),
-            "energy_before": row[12],
-            "energy_after": row[13],
+            "time": event["time"],
+            "kind": kinds[int(event["kind"])],
+            "from": PATTERNS[int(event["before"]["c1"]), int(event["before"]["c2"])],
+            "to": PATTERNS[int(event["after"]["c1"]), int(event["after"]["c2"])],
+            "omega_before": each(event["before"], "omega"),
+            "omega_after": each(event["after"], "omega"),
+            "theta": each(event["after"], "theta"),
+            "energy_before": event["energy_before"],
+            "energy_after": event["energy_after"],
         }
-        for row in events
+        for event in events
     ]
     columns = [
         "time", "kind", "from", "to", "omega_before", "omega_after", "theta",
@@ -165,27 +218,28 @@ def _event_table(events: NDArray[np.float64], blocks: list[int]) -> pd.DataFrame
 
 
 def _energy_table(
-    p: np.void,
-    time: NDArray[np.float64],
-    history: NDArray[np.float64],
-    events: NDArray[np.float64],
+    record: np.void, time: Array, history: NDArray[np.void], events: NDArray[np.void]
 ) -> pd.DataFrame:
     """Ledger of energy by cause over time [J]."""
     kinetic = np.empty(len(history))
     potential = np.empty(len(history))
-    tally.fill_energies(p, history, kinetic, potential)
+    with compiling_alone(fill_energies):
+        fill_energies(record, history, kinetic, potential, np.zeros(1, STATE)[0])
     # an impact closes the ground if the pedestal's contact changed, the interface otherwise
-    by_ground = (events[:, 2] != 0) & (events[:, 2] != events[:, 4])
-    loss = np.where(events[:, 1] == tally.OPENING, 0.0, events[:, 12] - events[:, 13])
-    at = np.searchsorted(time, events[:, 0] - 1e-12 * max(1.0, time[-1]))
+    before = events["before"]["c1"]
+    by_ground = (before != 0) & (before != events["after"]["c1"])
+    loss = np.where(
+        events["kind"] == OPENING, 0.0, events["energy_before"] - events["energy_after"]
+    )
+    at = np.searchsorted(time, events["time"] - 1e-12 * max(1.0, time[-1]))
 
-    def so_far(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def so_far(values: Array) -> Array:
         total = np.zeros(len(time) + 1)
         np.add.at(total, at, values)
         return np.cumsum(total)[: len(time)]
 
     lost_ground, lost_interface = so_far(loss * by_ground), so_far(loss * ~by_ground)
-    work = history[:, 8]
+    work = history["work"]
     start = kinetic[0] + potential[0]
     return pd.DataFrame(
         {

@@ -15,9 +15,9 @@ from rockfrag.errors import InputError
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
-from rockfrag.rocking.parameters import Restitution
 from rockfrag.units import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]

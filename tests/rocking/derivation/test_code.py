@@ -8,8 +8,8 @@ import pytest
 
 from rockfrag.rocking import Block, Stack
 from rockfrag.rocking import _mechanics as fast
-from rockfrag.rocking.parameters import body_parameters
-from rockfrag.rocking.reference_model import LinearModel, Model
+from rockfrag.rocking.body_record import body_parameters
+from rockfrag.rocking.reference.model import LinearModel, Model
 
 from .motion import lagrange_by_newton
 from .systems import System, error, impact_map, random_systems

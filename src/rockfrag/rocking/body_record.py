@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import _mechanics as km
 from rockfrag.rocking.bodies import Block, Body, Stack, Vector
+from rockfrag.rocking.kernels.equations import BODY
 
 Restitution = float | Sequence[float | None] | None
 """Measured ratio of angular velocities after and before an impact: one number for a lone block, a pair
@@ -87,10 +87,10 @@ def lone_restitution(block: Block, restitution: Restitution) -> float | None:
     return _pair(block, restitution)[1]
 
 
-def body_parameters(
+def body_record(
     body: Body, restitution: Restitution = None, linear: bool = False, g: float = 9.81
 ) -> np.void:
-    """Return the record of a body that the kernels read (``_mechanics.BODY``).
+    """Return the record of a body that the kernels read (``kernels.equations.BODY``).
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def body_parameters(
     if not isinstance(body, (Block, Stack)):
         raise InputError(f"a body is a Block or a Stack, not {type(body).__name__}.")
     ground, interface = _pair(body, restitution)
-    p: np.void = np.zeros(1, km.BODY)[0]
+    p: np.void = np.zeros(1, BODY)[0]
     for name in ("eta1r", "eta1l", "eta2r", "eta2l"):
         p[name] = 1.0
     p["gravity"] = g

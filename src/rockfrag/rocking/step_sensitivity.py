@@ -8,9 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.body_record import Restitution
+from rockfrag.rocking.case_list import scattered_overturns
 from rockfrag.rocking.inputs import STEP, checked_scales, listed
-from rockfrag.rocking.parameters import Restitution
-from rockfrag.rocking.scattered import scattered_overturns
 from rockfrag.units import STANDARD_GRAVITY
 
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP
-from rockfrag.rocking.parameters import Restitution
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]

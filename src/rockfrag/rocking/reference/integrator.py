@@ -2,7 +2,7 @@
 
 Dormand and Prince's 8(5,3) pair (Hairer, Nørsett & Wanner 1993, as scipy's DOP853) with relative
 tolerance 1e-10 between the samples of the motion, where the acceleration is linear, and every event
-located on the dense output.  The mechanics is that of :mod:`rockfrag.rocking.reference_model`;
+located on the dense output.  The mechanics is that of :mod:`rockfrag.rocking.reference.model`;
 nothing is shared with the fast kernel but the bodies.
 """
 
@@ -16,14 +16,14 @@ from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
-from rockfrag.rocking.reference_model import (
+from rockfrag.rocking.reference.model import (
     NEGLIGIBLE_SPEED,
     LinearModel,
     Model,
     Pair,
     State,
 )
-from rockfrag.rocking.reference_response import ReferenceEvent, ReferenceResponse
+from rockfrag.rocking.reference.response import ReferenceEvent, ReferenceResponse
 from rockfrag.units import STANDARD_GRAVITY
 
 RTOL, ATOL = 1e-10, 1e-14

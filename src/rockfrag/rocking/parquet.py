@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.inputs import STEP, checked_scales, listed
-from rockfrag.rocking.parameters import Restitution
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]

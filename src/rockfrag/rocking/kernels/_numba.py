@@ -1,0 +1,109 @@
+"""Numba's private parts: a compiler that optimises an entry kernel and all that it calls in one go.
+
+Read by :mod:`rockfrag.rocking.kernels.jit` alone, with versions of numba that it knows.
+"""
+
+from typing import Any, ClassVar
+
+import llvmlite.binding as llvm
+from numba import _dynfunc
+from numba.core import typed_passes, untyped_passes
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase
+from numba.core.compiler_machinery import PassManager, register_pass
+
+
+class Part(JITCodeLibrary):  # type: ignore[misc]
+    """The code of one kernel, not optimised and not made machine code of, with references to those it calls."""
+
+    def add_linking_library(self, library: Any) -> None:
+        """Remember a kernel that is called; whoever links this one links it too."""
+        self._linking_libraries.append(library)
+
+    def finalize(self) -> None:
+        """Leave the code as it is, for others to link."""
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.external:
+                # may be there many times, and vanish where it is inlined
+                function.linkage = "linkonce_odr"
+        self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        self._ensure_finalized()
+        return self._final_module
+
+
+class Whole(JITCodeLibrary):  # type: ignore[misc]
+    """The code of an entry kernel and of all parts that it needs, each linked once."""
+
+    def add_linking_library(self, library: Any) -> None:
+        """Link a kernel that is called, and those that it calls."""
+        waiting = [library]
+        while waiting:
+            one = waiting.pop()
+            if one in self._linking_libraries:
+                continue
+            one._ensure_finalized()
+            self._linking_libraries.append(one)
+            if isinstance(one, Part):
+                waiting += one._linking_libraries
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class LowerPart(typed_passes.NativeLowering):  # type: ignore[misc]
+    """Make a kernel known to those that call it, without machine code."""
+
+    _name = "lower_part"
+
+    def run_pass(self, state: Any) -> bool:
+        """Lower the kernel."""
+        state.flags.no_compile = True
+        super().run_pass(state)
+        made = state["cr"]
+        names = made.fndesc.lookup_module(), made.fndesc.qualname
+        function = _dynfunc.make_function(*names, "kernel", 0, made.env, (state.library,))
+        state["cr"] = made._replace(cfunc=function)
+        state.targetctx.insert_user_function(function, made.fndesc, [state.library])
+        return True
+
+
+class _KernelCompiler(CompilerBase):  # type: ignore[misc]
+    """The passes that kernels need."""
+
+    library: ClassVar[type]
+    lowering: ClassVar[type]
+
+    def define_pipelines(self) -> list[PassManager]:
+        """Return the one list of passes."""
+        state = self.state
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        state.type_annotation = None
+        passes = PassManager("kernel")
+        for one in (
+            untyped_passes.TranslateByteCode,
+            untyped_passes.FixupArgs,
+            untyped_passes.IRProcessing,
+            untyped_passes.ReconstructSSA,
+            typed_passes.NopythonTypeInference,
+            typed_passes.PreLowerStripPhis,
+            self.lowering,
+            typed_passes.NoPythonBackend,
+        ):
+            passes.add_pass(one, one.__name__)
+        passes.finalize()
+        return [passes]
+
+
+class PartCompiler(_KernelCompiler):
+    """Compiles kernels that only kernels call."""
+
+    library = Part
+    lowering = LowerPart
+
+
+class WholeCompiler(_KernelCompiler):
+    """Compiles kernels that Python calls."""
+
+    library = Whole
+    lowering = typed_passes.NativeLowering
