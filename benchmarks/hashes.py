@@ -74,9 +74,7 @@ if __name__ == "__main__":
     for threads in (1, 2):
         print(
             f"uneven threads {threads}:",
-            ensemble(
-                threads, bodies, motions(8, seed=3), DT, amplitudes, restitution=restitution
-            ),
+            ensemble(threads, bodies, motions(8, seed=3), DT, amplitudes, restitution=restitution),
         )
     print("histories of blocks:", histories(blocks(40, 5), 40))
     print("histories of stacks:", histories(stacks(40, 5), 40))

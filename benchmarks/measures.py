@@ -11,17 +11,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import numba
 import numpy as np
 from cases import Cases
 from numpy.typing import NDArray
 
-from rockfrag.rocking import _lanes as lanes
-from rockfrag.rocking import _one_rotation as one_rotation
-from rockfrag.rocking import _stack_lanes as stack_lanes
-from rockfrag.rocking import _two_rotations as two_rotations
+from rockfrag.rocking import ensemble
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
+from rockfrag.rocking.kernels.jit import entry_kernel
+from rockfrag.rocking.kernels.lanes import block, stack_one, stack_two
+from rockfrag.rocking.kernels.lanes.case import LANES
 from rockfrag.rocking.simulation import simulate
 
 SEPARATE = Path(__file__).with_name("separate.py")
@@ -100,76 +99,76 @@ def two_thread_ratio(cases: Cases) -> float:
     )
 
 
-@numba.njit(nogil=True)  # type: ignore[misc]
-def _only_lone(rows: Array, count: int) -> None:
+@entry_kernel  # type: ignore[misc]
+def _only_blocks(lane: Any, count: int) -> None:
     for _ in range(count):
-        lanes.advance(rows)
+        block.advance(lane)
 
 
-@numba.njit(nogil=True)  # type: ignore[misc]
-def _only_one(rows: Array, count: int) -> None:
+@entry_kernel  # type: ignore[misc]
+def _only_one(lane: Any, count: int) -> None:
     for _ in range(count):
-        one_rotation.advance(rows, 9.81)
+        stack_one.advance(lane, 9.81)
 
 
-@numba.njit(nogil=True)  # type: ignore[misc]
-def _only_two(rows: Array, count: int) -> None:
+@entry_kernel  # type: ignore[misc]
+def _only_two(lane: Any, count: int) -> None:
     for _ in range(count):
-        two_rotations.advance(rows, 9.81)
+        stack_two.advance(lane, 9.81)
 
 
 def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
     """CPU time of all cases over that of as many lane steps of smooth arithmetic; steps per case."""
-    module, name = (lanes, "lone_blocks") if kind == "lone" else (stack_lanes, "stack_cases")
     steps = np.zeros(len(_SMOOTH[kind]), dtype=int)
-    kernel = getattr(module, name)
+    entry = getattr(*_ENTRY[kind])
 
     class Counted:
         """The kernel, adding up the steps it says it took."""
 
         def __getattr__(self, attribute: str) -> object:
-            return getattr(kernel, attribute)
+            return getattr(entry, attribute)
 
         def __call__(self, *arguments: object) -> None:
             nonlocal steps
-            steps += np.array(kernel(*arguments))
+            steps += np.array(entry(*arguments))
 
-    setattr(module, name, Counted())
+    setattr(*_ENTRY[kind], Counted())
     try:
         all_cases(cases)
     finally:
-        setattr(module, name, kernel)
+        setattr(*_ENTRY[kind], entry)
 
     def smooth() -> None:
-        for (part, only, still), count in zip(_SMOOTH[kind], steps, strict=True):
-            rows = np.zeros(part.ROWS * part.LANES)
+        for (module, lanes, only, still), count in zip(_SMOOTH[kind], steps, strict=True):
+            lane = np.zeros(1, module.LANE)[0]
             for row, value in still.items():
-                rows[row : row + part.LANES] = value
-            only(rows, count // part.LANES)
+                lane[row] = value
+            only(lane, count // lanes)
 
     smooth()
     over = ratio_in_turn(lambda: all_cases(cases), smooth, time.process_time)
     return over, float(steps.sum()) / cases.count
 
 
+# where the ensembles find their entry kernels
+_ENTRY: dict[str, tuple[Any, str]] = {
+    "lone": (block, "march_blocks"),
+    "stack": (ensemble, "march_stacks"),
+}
+
 # the kernels of the lanes, and what a lane steps on with for ever: no event, no division by zero
-_SMOOTH: dict[str, list[tuple[Any, Callable[[Array, int], None], dict[int, float]]]] = {
+_SMOOTH: dict[str, list[tuple[Any, int, Any, dict[str, float]]]] = {
     "lone": [
         (
-            lanes,
-            _only_lone,
-            {lanes.PSI: 0.2, lanes.ANGLE: 0.25, lanes.KAPPA: 1e-3, lanes.CREST: 10.0, lanes.REST_OF: 1.0},
+            block, block.LANES, _only_blocks,
+            {"psi": 0.2, "angle": 0.25, "kappa": 1e-3, "crest": 10.0, "part_left": 1.0},
         )
     ],
     "stack": [
-        (one_rotation, _only_one, {one_rotation.THETA: 0.2, one_rotation.LEFT: 1.0}),
+        (stack_one, LANES, _only_one, {"theta": 0.2, "part_left": 1.0}),
         (
-            two_rotations,
-            _only_two,
-            {
-                two_rotations.TH1: 0.1, two_rotations.TH2: 0.2, two_rotations.INERTIAS[0]: 3.0,
-                two_rotations.INERTIAS[1]: 2.0, two_rotations.LEFT: 1.0, two_rotations.PART: 1.0,
-            },
+            stack_two, LANES, _only_two,
+            {"theta1": 0.1, "theta2": 0.2, "m11": 3.0, "m22": 2.0, "part_left": 1.0, "part": 1.0},
         ),
     ],
 }  # fmt: skip

@@ -44,7 +44,7 @@ def random_case(seed, lone):
         lean=0.005 * rng.normal() * odd,
     )
     body = statue if lone else Stack(pedestal, statue)
-    weakest = statue.alpha if lone else min(statue.alpha, body.glued().alpha)
+    weakest = statue.alpha if lone else min(statue.alpha, body.rigidly_joined().alpha)
     motion = random_motion(rng, 9.81 * weakest * rng.uniform(1.1, 4))
     restitution = None if seed % 5 else (0.85 if lone else (0.6, 0.85))
     return body, motion, restitution

@@ -86,7 +86,7 @@ def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
     stack = Stack(P, T2)
     r2 = (2 * P.h + T2.h) ** 2 + P.b**2
     inertia = P.pole_inertia() + T2.centroidal_inertia + T2.mass * r2
-    one = stack.glued()
+    one = stack.rigidly_joined()
     assert one.pole_inertia() == pytest.approx(inertia, rel=1e-12)
     total = P.mass + T2.mass
     assert one.momentum_restitution() == pytest.approx(
@@ -107,25 +107,60 @@ def test_the_stack_as_one_body_has_the_thesis_s_inertia() -> None:
     ids=["T1", "T2", "T3"],
 )
 def test_stack_as_one_body(statue: Block, restitution: float, p: float) -> None:
-    one = Stack(P, statue).glued()
+    one = Stack(P, statue).rigidly_joined()
     assert one.momentum_restitution() == pytest.approx(restitution, abs=5e-4)
     assert one.frequency() == pytest.approx(p, abs=5e-4)
+
+
+WIDE = Block(0.30, 0.50, 5.0, cg_offset=0.01)
+"""A statue that reaches 58 mm beyond the pedestal on either side."""
+
+
+def test_a_statue_wider_than_its_pedestal_stands_on_the_pedestal_s_upper_edge() -> None:
+    stack = Stack(P, WIDE, offset=0.02)
+    left, right = stack.interface_pole(-1), stack.interface_pole(+1)
+    assert (left.x, left.y) == pytest.approx((-P.b, P.height))
+    assert (right.x, right.y) == pytest.approx((P.b, P.height))
+    # its centre of gravity stays where it is
+    for pole in (+1, -1):
+        assert stack.interface_pole(pole).x + stack.statue_arm(pole).x == pytest.approx(0.03)
+        assert stack.statue_arm(pole).y == pytest.approx(0.25)
+
+
+def test_a_wide_statue_rocks_as_one_whose_base_is_the_overlap() -> None:
+    stack = Stack(P, WIDE, offset=0.02)
+    narrow = Block(P.width, WIDE.height, WIDE.mass, inertia=WIDE.centroidal_inertia, cg_offset=0.03)
+    motion = 6.0 * np.sin(np.arange(200) * 0.3)
+    one, other = simulate(stack, motion, 0.01), simulate(Stack(P, narrow), motion, 0.01)
+    assert one.impacts > 3
+    np.testing.assert_allclose(one.theta, other.theta, atol=1e-9)
+    np.testing.assert_allclose(one.normal_force, other.normal_force, rtol=1e-6, atol=1e-6)
+
+
+def test_a_statue_may_stand_over_one_edge() -> None:
+    stack = Stack(P, T2, offset=0.05)
+    assert stack.interface_pole(+1).x == pytest.approx(P.b)
+    assert stack.interface_pole(-1).x == pytest.approx(0.05 - T2.b)
+    assert (
+        stack.contact_statue.critical_angle(+1) < T2.alpha < stack.contact_statue.critical_angle(-1)
+    )
 
 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Block(0.0, 1.0, 1.0), "width must be a positive"),
-        (lambda: Block(1.0, -1.0, 1.0), "height must be a positive"),
-        (lambda: Block(1.0, 1.0, 0.0), "mass must be a positive"),
-        (lambda: Block(1.0, 1.0, math.nan), "mass must be a positive"),
-        (lambda: Block(math.inf, 1.0, 1.0), "width must be a positive"),
-        (lambda: Block(1.0, 1.0, 1.0, inertia=0.0), "inertia must be a positive"),
+        (lambda: Block(0.0, 1.0, 1.0), "width: expected a positive number of metres"),
+        (lambda: Block(1.0, -1.0, 1.0), "height: expected a positive"),
+        (lambda: Block(1.0, 1.0, 0.0), "mass: expected a positive"),
+        (lambda: Block(1.0, 1.0, math.nan), "mass: expected a positive"),
+        (lambda: Block(math.inf, 1.0, 1.0), "width: expected a positive number of metres"),
+        (lambda: Block(1.0, 1.0, 1.0, inertia=0.0), "inertia: expected a positive"),
         (lambda: Block(1.0, 1.0, 1.0, cg_offset=0.6), "cannot stand"),
         (lambda: Block(1.0, 4.0, 1.0, lean=0.3), "cannot stand"),
         (lambda: Block(1.0, 4.0, 1.0, lean=math.nan), "finite number of radians"),
-        (lambda: Stack(T2, P), "reaches beyond"),
-        (lambda: Stack(P, T2, offset=0.05), "reaches beyond"),
+        (lambda: Stack(P, T2, offset=0.2), "does not lie on the pedestal"),
+        (lambda: Stack(P, T2, offset=0.1), "so the stack cannot stand"),
+        (lambda: Stack(P, Block(0.7, 0.4, 5.0)), "could touch the ground"),
         (lambda: Stack(P, T2, offset=math.nan), "finite number"),
     ],
 )

@@ -35,7 +35,7 @@ def test_restitution_and_frequency_of_the_specimens(block: Block, e: float, p: f
 def test_restitution_and_frequency_of_the_stacks_as_one_body(
     statue: Block, e: float, p: float
 ) -> None:
-    whole = Stack(P, statue).glued()
+    whole = Stack(P, statue).rigidly_joined()
     assert whole.momentum_restitution() == pytest.approx(e, abs=5e-4)
     assert whole.frequency() == pytest.approx(p, abs=5e-4)
 

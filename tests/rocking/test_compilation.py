@@ -1,28 +1,47 @@
-"""What is compiled ahead, in two processes, is what an ensemble of stacks then uses."""
+"""What is compiled, how often, and what happens where numba's private parts are not known."""
 
-import inspect
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
-from rockfrag.rocking import _stack_cases as cases
-from rockfrag.rocking import _stack_lanes as lanes
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.kernels.lanes.block import march_blocks
+from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
+
+BLOCK = Block(0.3, 1.2, 200.0)
+STACK = Stack(Block(0.4, 0.3, 100.0), BLOCK)
+MOTION = 6.0 * np.sin(np.arange(300) * 0.06)
 
 
-@pytest.mark.parametrize("motions", [1, 2])
-def test_kernels_are_compiled_for_the_types_that_ensembles_give_them(motions):
-    stack = Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0))
-    motion = 6.0 * np.sin(np.arange(300) * 0.06)
-    overturns(stack, [motion] * motions, 0.01, [1.0])
-    lanes.compile_events()
-    lanes.compile_others()
-    assert len(lanes.stack_cases.signatures) == 1
-    names = inspect.signature(lanes.stack_cases.py_func).parameters
-    given = dict(zip(names, lanes.stack_cases.signatures[0], strict=True))
-    for kernel in (cases.carry_on, cases.event_of_one, cases.event_of_two, cases.place_one):
-        (types,) = kernel.signatures
-        for name, kind in zip(inspect.signature(kernel.py_func).parameters, types, strict=True):
-            if name in given:
-                assert kind == given[name], (kernel.__name__, name)
+@pytest.mark.parametrize(("body", "entry"), [(BLOCK, march_blocks), (STACK, march_stacks)])
+def test_one_compilation_serves_every_ensemble(body, entry):
+    for motions, scales in ((1, [1.0]), (2, np.ones((2, 3))), (1, np.linspace(0, 1, 5))):
+        overturns([body] * motions, [MOTION] * motions, 0.01, scales)
+    assert len(entry.signatures) == 1
+
+
+UNKNOWN = """
+import numba, numpy as np
+numba.__version__ = "9.9.9"
+from rockfrag.rocking import Block, overturns
+from rockfrag.rocking.kernels import jit
+assert not jit.KNOWN
+found = overturns(Block(0.3, 1.2, 200.0), 6.0 * np.sin(np.arange(300) * 0.06), 0.01, [0.5, 1.0])
+print(found.peak_velocity.ravel().tolist())
+"""
+
+
+@pytest.mark.slow
+def test_an_unknown_numba_gives_the_same_bits(tmp_path):
+    known = overturns(BLOCK, MOTION, 0.01, [0.5, 1.0]).peak_velocity.ravel().tolist()
+    done = subprocess.run(
+        [sys.executable, "-c", UNKNOWN],
+        env={"NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == str(known)

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import Block, Stack, history_streaming, simulate, stream_histories
+from rockfrag.rocking import Block, Stack, parquet, simulate, stream_histories
 
 DT = 0.01
 TIME = np.arange(400) * DT
@@ -78,7 +78,7 @@ def test_a_shorter_step_and_another_gravity_are_used(tmp_path):
 @pytest.mark.parametrize("rows", [300, 1000, 3000])
 def test_row_groups_are_bounded_and_change_no_number(tmp_path, monkeypatch, rows):
     stream_histories(BODIES, MOTIONS, DT, SCALES, tmp_path / "whole")
-    monkeypatch.setattr(history_streaming, "ROWS", rows)
+    monkeypatch.setattr(parquet, "ROWS", rows)
     stream_histories(BODIES, MOTIONS, DT, SCALES, tmp_path / "cut")
     file = pq.ParquetFile(tmp_path / "cut")
     groups = [file.metadata.row_group(i).num_rows for i in range(file.num_row_groups)]
@@ -90,7 +90,7 @@ def test_row_groups_are_bounded_and_change_no_number(tmp_path, monkeypatch, rows
 
 
 def test_threads_change_no_byte(tmp_path, monkeypatch):
-    monkeypatch.setattr(history_streaming, "ROWS", 1000)
+    monkeypatch.setattr(parquet, "ROWS", 1000)
     for threads in (1, 2, 5):
         stream_histories(BODIES, MOTIONS, DT, SCALES, tmp_path / f"{threads}", threads=threads)
     assert (tmp_path / "1").read_bytes() == (tmp_path / "2").read_bytes()
@@ -107,14 +107,14 @@ def test_few_histories_are_in_memory_however_many_cases_there_are():
 
     cases = ((i, 0, 0) for i in range(1000))
     with ThreadPoolExecutor(2) as pool:
-        for i, table in enumerate(history_streaming._in_order(pool, work, cases, 4)):
+        for i, table in enumerate(parquet._in_order(pool, work, cases, 4)):
             assert table["case"].to_pylist() == [i]
             assert started <= i + 5
     assert started == 1000
 
 
 def test_memory_is_flat_in_the_number_of_cases(tmp_path, monkeypatch):
-    monkeypatch.setattr(history_streaming, "ROWS", 5000)
+    monkeypatch.setattr(parquet, "ROWS", 5000)
     most = []
     tracemalloc.start()
     for count in (1, 10, 200):  # the first loads the kernel
@@ -131,7 +131,7 @@ def test_memory_is_flat_in_the_number_of_cases(tmp_path, monkeypatch):
 def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
     path = tmp_path / "h.parquet"
     path.write_bytes(b"earlier")
-    monkeypatch.setattr(history_streaming, "ROWS", 1000)
+    monkeypatch.setattr(parquet, "ROWS", 1000)
 
     def stop(done: int, total: int) -> None:
         raise KeyboardInterrupt

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.rocking import Block, Body, Response, Stack, overturns, simulate
-from rockfrag.rocking.inputs import CLOSING_SPEED
+from rockfrag.rocking.kernels.chatter import HISTORY
 
 G = 9.81
 DT = 0.01
@@ -157,7 +157,7 @@ def test_two_blocks_that_never_part_rock_as_one(
 ) -> None:
     # a flat plate on a column has no cause to rock on its own
     stack = Stack(Block(0.5, height, 300.0), Block(0.5, top * 0.5, 30.0))
-    together, one = simulate(stack, motion, DT), simulate(stack.glued(), motion, DT)
+    together, one = simulate(stack, motion, DT), simulate(stack.rigidly_joined(), motion, DT)
     parted = np.flatnonzero(together.state[:, 1] != 0)
     n = min(until_fallen(together).stop, until_fallen(one).stop)
     n = min(n, int(parted[0]) if parted.size else n)
@@ -193,8 +193,8 @@ def test_energy_is_never_gained_at_impacts_and_the_ledger_closes(
     scale = energy["kinetic"].max() + energy["input"].abs().max()
     residual = energy["residual"].abs().max()
     # a contact that closes because it chatters gives up no more than this
-    whole = body if isinstance(body, Block) else body.glued()
-    closing = 0.5 * max(whole.pole_inertia(pole) for pole in (+1, -1)) * CLOSING_SPEED**2
+    whole = body if isinstance(body, Block) else body.rigidly_joined()
+    closing = 0.5 * max(whole.pole_inertia(pole) for pole in (+1, -1)) * HISTORY.closing_speed**2
     assert residual <= 1e-6 * scale + closing, f"{residual} J of {scale} J"
 
 

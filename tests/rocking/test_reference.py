@@ -179,7 +179,7 @@ def test_on_a_pedestal_that_cannot_move_the_statue_rocks_alone() -> None:
 
 def test_in_pattern_three_the_stack_rocks_as_one_body() -> None:
     stack = Stack(Block(0.2, 0.6, 10.0), Block(0.19, 0.1, 2.0))
-    glued = stack.glued()
+    glued = stack.rigidly_joined()
     theta0 = 0.2 * glued.alpha
     both = simulate_reference(stack, STILL, 0.005, theta0=(theta0, theta0), duration=0.8)
     one = simulate_reference(glued, STILL, 0.005, theta0=theta0, duration=0.8)

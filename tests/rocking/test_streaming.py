@@ -6,7 +6,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import streaming
+from rockfrag.rocking import parquet
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.parquet import stream_overturns
@@ -60,7 +60,7 @@ def test_verdicts_alone_take_no_other_columns(tmp_path):
 @pytest.mark.parametrize("rows", [1, 5, 7, 20, 30])
 def test_row_groups_change_no_number(tmp_path, monkeypatch, rows):
     stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "whole.parquet", columns="peaks")
-    monkeypatch.setattr(streaming, "ROWS", rows)
+    monkeypatch.setattr(parquet, "ROWS", rows)
     stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "cut.parquet", columns="peaks")
     file = pq.ParquetFile(tmp_path / "cut.parquet")
     groups = [file.metadata.row_group(i).num_rows for i in range(file.num_row_groups)]
@@ -73,7 +73,7 @@ def test_row_groups_change_no_number(tmp_path, monkeypatch, rows):
 
 
 def test_threads_change_no_byte(tmp_path, monkeypatch):
-    monkeypatch.setattr(streaming, "ROWS", 9)
+    monkeypatch.setattr(parquet, "ROWS", 9)
     for threads in (1, 2):
         stream_overturns(
             BODIES, MOTIONS, DT, SCALES, tmp_path / f"{threads}.parquet", threads=threads
@@ -82,7 +82,7 @@ def test_threads_change_no_byte(tmp_path, monkeypatch):
 
 
 def test_scales_and_restitutions_go_with_their_motion_and_body(tmp_path, monkeypatch):
-    monkeypatch.setattr(streaming, "ROWS", 2)
+    monkeypatch.setattr(parquet, "ROWS", 2)
     scales = np.array([[0.5, 1.0], [0.8, 1.6], [1.1, 2.2]])
     restitution = [0.8, (0.4, 0.9)]
     path = tmp_path / "s.parquet"
@@ -98,7 +98,7 @@ def test_scales_and_restitutions_go_with_their_motion_and_body(tmp_path, monkeyp
 def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
     path = tmp_path / "e.parquet"
     path.write_bytes(b"earlier")
-    monkeypatch.setattr(streaming, "ROWS", 5)
+    monkeypatch.setattr(parquet, "ROWS", 5)
 
     def stop(done: int, total: int) -> None:
         raise KeyboardInterrupt

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.case_list import overturns_of_cases
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.case_list import scattered_overturns
+from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.thresholds import find_thresholds
 
 G = 9.81
@@ -162,7 +162,7 @@ def test_scattered_cases_have_the_verdicts_of_the_grid(ensemble):
     grid = overturns(bodies, motions, 0.01, scales).overturned
     rng = np.random.default_rng(1)
     i, j, k = (rng.integers(0, n, 50) for n in grid.shape)
-    some = scattered_overturns(bodies, motions, np.full(3, 0.01), i, j, scales[k])
+    some = overturns_of_cases(bodies, motions, np.full(3, 0.01), i, j, scales[k])
     np.testing.assert_array_equal(some, grid[i, j, k])
 
 

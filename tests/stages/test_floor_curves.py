@@ -76,6 +76,6 @@ def test_stack_rocks_where_its_weaker_part_does():
     assert uplift_amplitude(Stack(PEDESTAL, STATUE)) == pytest.approx(0.25)
     # a slender pedestal goes before its statue, at the b/h of the two together
     slender = Stack(Block(0.2, 1.2, 60.0), STATUE)
-    both = slender.glued()
+    both = slender.rigidly_joined()
     assert uplift_amplitude(slender) == pytest.approx(both.b / both.h)
     assert both.b / both.h < 0.25

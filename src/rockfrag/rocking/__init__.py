@@ -9,31 +9,56 @@ if TYPE_CHECKING:
     from rockfrag.rocking.ensemble import EnsembleResult, overturns
     from rockfrag.rocking.parquet import stream_histories, stream_overturns
     from rockfrag.rocking.response import Response
+    from rockfrag.rocking.restitution import (
+        RestitutionFit,
+        restitution_from_history,
+        restitution_from_impacts,
+        restitution_from_peaks,
+    )
     from rockfrag.rocking.simulation import simulate
+    from rockfrag.rocking.spectra import RockingSpectrum, rocking_spectrum
+    from rockfrag.rocking.step_sensitivity import FragileVerdicts, fragile_verdicts
+    from rockfrag.rocking.thresholds import Thresholds, find_thresholds
 
 __all__ = [
     "Block",
     "Body",
     "EnsembleResult",
+    "FragileVerdicts",
     "Response",
+    "RestitutionFit",
+    "RockingSpectrum",
     "Stack",
+    "Thresholds",
+    "find_thresholds",
+    "fragile_verdicts",
     "overturns",
+    "restitution_from_history",
+    "restitution_from_impacts",
+    "restitution_from_peaks",
+    "rocking_spectrum",
     "simulate",
     "stream_histories",
     "stream_overturns",
 ]
 
+_HOMES = {
+    "bodies": ("Block", "Body", "Stack"),
+    "ensemble": ("EnsembleResult", "overturns"),
+    "parquet": ("stream_histories", "stream_overturns"),
+    "response": ("Response",),
+    "restitution": (
+        "RestitutionFit",
+        "restitution_from_history",
+        "restitution_from_impacts",
+        "restitution_from_peaks",
+    ),
+    "simulation": ("simulate",),
+    "spectra": ("RockingSpectrum", "rocking_spectrum"),
+    "step_sensitivity": ("FragileVerdicts", "fragile_verdicts"),
+    "thresholds": ("Thresholds", "find_thresholds"),
+}
+
 __getattr__ = loader(
-    __name__,
-    {
-        "Block": "rockfrag.rocking.bodies",
-        "Body": "rockfrag.rocking.bodies",
-        "Stack": "rockfrag.rocking.bodies",
-        "EnsembleResult": "rockfrag.rocking.ensemble",
-        "overturns": "rockfrag.rocking.ensemble",
-        "Response": "rockfrag.rocking.response",
-        "simulate": "rockfrag.rocking.simulation",
-        "stream_histories": "rockfrag.rocking.parquet",
-        "stream_overturns": "rockfrag.rocking.parquet",
-    },
+    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
 )

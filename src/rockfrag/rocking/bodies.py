@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from rockfrag.errors import InputError
+from rockfrag.rocking.checks import positive_number, real_number, shown
 from rockfrag.units import STANDARD_GRAVITY
 
 
@@ -29,16 +30,6 @@ class Vector(NamedTuple):
     def minus(self, other: "Vector") -> "Vector":
         """Return the vector from ``other``'s tip to this one's."""
         return Vector(self.x - other.x, self.y - other.y)
-
-
-def _positive(owner: str, name: str, value: float, unit: str) -> None:
-    if not (math.isfinite(value) and value > 0):
-        raise InputError(f"{owner}: {name} must be a positive number of {unit}, got {value}.")
-
-
-def _finite(owner: str, name: str, value: float, unit: str) -> None:
-    if not math.isfinite(value):
-        raise InputError(f"{owner}: {name} must be a finite number of {unit}, got {value}.")
 
 
 @dataclass(frozen=True)
@@ -79,15 +70,15 @@ class Block:
     lean: float = 0.0
 
     def __post_init__(self) -> None:
-        _positive("Block", "width", self.width, "metres")
-        _positive("Block", "height", self.height, "metres")
-        _positive("Block", "mass", self.mass, "kilograms")
+        positive_number("Block: width", self.width, "metres")
+        positive_number("Block: height", self.height, "metres")
+        positive_number("Block: mass", self.mass, "kilograms")
         if self.inertia is not None:
-            _positive("Block", "inertia", self.inertia, "kg m²")
+            positive_number("Block: inertia", self.inertia, "kg m²")
         if self.cg_height is not None:
-            _positive("Block", "cg_height", self.cg_height, "metres")
-        _finite("Block", "cg_offset", self.cg_offset, "metres")
-        _finite("Block", "lean", self.lean, "radians")
+            positive_number("Block: cg_height", self.cg_height, "metres")
+        real_number("Block: cg_offset", self.cg_offset, "metres")
+        real_number("Block: lean", self.lean, "radians")
         if min(self.critical_angle(+1), self.critical_angle(-1)) <= 0:
             raise InputError(
                 f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
@@ -162,6 +153,11 @@ class Block:
 class Stack:
     """A statue standing on a pedestal, both free to rock.
 
+    The two touch where the statue's base and the pedestal's top overlap.  A statue that reaches beyond its
+    pedestal rocks on the pedestal's upper edge, a point of both bodies as long as neither slides; so the ends
+    of the overlap are the poles, and all equations are those of a statue whose base is as wide as the overlap
+    (``contact_statue``).
+
     Parameters
     ----------
     pedestal, statue
@@ -172,7 +168,8 @@ class Stack:
     Raises
     ------
     InputError
-        If the statue's base reaches beyond the pedestal's, or the two together cannot stand.
+        If the two together cannot stand, or if the statue reaches so far beyond the pedestal that its edge
+        could touch the ground before anything has fallen.
     """
 
     pedestal: Block
@@ -180,11 +177,20 @@ class Stack:
     offset: float = 0.0
 
     def __post_init__(self) -> None:
-        _finite("Stack", "offset", self.offset, "metres")
-        if abs(self.offset) + self.statue.b > self.pedestal.b * (1 + 1e-12):
+        for name, block in (("pedestal", self.pedestal), ("statue", self.statue)):
+            if not isinstance(block, Block):
+                raise InputError(f"Stack: {name} must be a Block, got {shown(block)}.")
+        real_number("Stack: offset", self.offset, "metres")
+        left, right = self._overlap
+        if left >= right:
             raise InputError(
                 f"Stack: the statue's base (width {self.statue.width} m, offset {self.offset} m) "
-                f"reaches beyond the pedestal's (width {self.pedestal.width} m)."
+                f"does not lie on the pedestal (width {self.pedestal.width} m)."
+            )
+        if not left < self.offset + self.statue.centre.x < right:
+            raise InputError(
+                "Stack: the statue's centre of gravity is not above the part of its base that lies "
+                "on the pedestal, so the stack cannot stand."
             )
         for pole in (+1, -1):
             # the statue must stand on its leaning pedestal, and both together on the ground
@@ -194,12 +200,69 @@ class Stack:
                     "Stack: a centre of gravity is not above its base once the pedestal's lean "
                     "is counted, so the stack cannot stand."
                 )
+            self._check_overhang(pole)
+
+    def _check_overhang(self, pole: int) -> None:
+        """Refuse a statue whose edge beyond the pedestal could touch the ground before anything has fallen.
+
+        The pedestal's upper edge is lowest where the pedestal, or both as one, balance on their pole; the
+        statue may have turned by a right angle on it by then.
+        """
+        end = self._overlap[1 if pole > 0 else 0]
+        overhang = pole * (self.offset - end) + self.statue.b
+        if overhang <= 1e-12 * self.pedestal.b:
+            return
+        edge = self.reach(pole, pole)
+        whole = self.common_arm(pole)
+        furthest = max(self.pedestal.critical_angle(pole), math.atan2(-pole * whole.x, whole.y))
+        lowest = min(edge.y, edge.turned(pole * furthest).y)
+        if overhang >= lowest:
+            raise InputError(
+                f"Stack: the statue reaches {overhang:.4g} m beyond its pedestal, whose upper "
+                f"edge can come as low as {lowest:.4g} m, so it could touch the ground; such contacts "
+                "are not modelled."
+            )
+
+    @property
+    def _overlap(self) -> tuple[float, float]:
+        """Ends of the contact, to the right of the pedestal's middle [m]."""
+        return (
+            max(-self.pedestal.b, self.offset - self.statue.b),
+            min(self.pedestal.b, self.offset + self.statue.b),
+        )
+
+    @property
+    def _is_inside(self) -> bool:
+        """Whether the statue's base lies on the pedestal with all its width."""
+        return abs(self.offset) + self.statue.b <= self.pedestal.b * (1 + 1e-12)
+
+    @property
+    def contact_offset(self) -> float:
+        """Distance of the middle of the contact to the right of the pedestal's middle [m]."""
+        return self.offset if self._is_inside else sum(self._overlap) / 2
+
+    @cached_property
+    def contact_statue(self) -> Block:
+        """The statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
+        if self._is_inside:
+            return self.statue
+        left, right = self._overlap
+        aside = Vector(self.contact_offset - self.offset, 0.0)
+        centre = self.statue.centre.minus(aside).turned(-self.statue.lean)
+        return Block(
+            width=right - left,
+            height=self.statue.height,
+            mass=self.statue.mass,
+            inertia=self.statue.centroidal_inertia,
+            cg_height=centre.y,
+            cg_offset=centre.x,
+            lean=self.statue.lean,
+        )
 
     def interface_pole(self, pole: int) -> Vector:
         """Statue's pole as it stands, from the middle of the pedestal's base [m]."""
-        return Vector(self.offset + pole * self.statue.b, self.pedestal.height).turned(
-            self.pedestal.lean
-        )
+        end = self.contact_offset + pole * self.contact_statue.b
+        return Vector(end, self.pedestal.height).turned(self.pedestal.lean)
 
     def reach(self, ground_pole: int, statue_pole: int) -> Vector:
         """Vector d from the pedestal's pole to the statue's pole as they stand [m].
@@ -210,7 +273,7 @@ class Stack:
 
     def statue_arm(self, statue_pole: int) -> Vector:
         """Vector r2 from the statue's pole to its centre of gravity as it stands [m]."""
-        return self.statue.arm(statue_pole).turned(self.pedestal.lean)
+        return self.contact_statue.arm(statue_pole).turned(self.pedestal.lean)
 
     def common_arm(self, ground_pole: int) -> Vector:
         """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
@@ -227,7 +290,7 @@ class Stack:
         """Total mass [kg]."""
         return self.pedestal.mass + self.statue.mass
 
-    def glued(self) -> Block:
+    def rigidly_joined(self) -> Block:
         """Return the two as one rigid body, which is what rocks in pattern 3."""
         m1, m2 = self.pedestal.mass, self.statue.mass
         to_statue = self.reach(1, 1)

@@ -7,6 +7,7 @@ import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body, Stack, Vector
+from rockfrag.rocking.checks import positive_number, real_number, shown
 from rockfrag.rocking.kernels.equations import BODY
 
 Restitution = float | Sequence[float | None] | None
@@ -54,31 +55,34 @@ def largest_restitution(block: Block) -> float:
     return math.sqrt(min(right, left) / max(right, left))
 
 
-def _checked(restitution: float | None, interface: str, block: Block) -> float | None:
+def _checked(name: str, restitution: object, block: Block) -> float | None:
     if restitution is None:
         return None
-    value, largest = float(restitution), largest_restitution(block)
-    if not (math.isfinite(value) and 0.0 <= value <= largest):
+    value, largest = real_number(name, restitution), largest_restitution(block)
+    if not 0.0 <= value <= largest:
         raise InputError(
-            f"restitution of the {interface}: {restitution} would gain energy or is no ratio; give a "
-            f"ratio of angular velocities from 0 to at most {largest:.6g}, or None to conserve momentum."
+            f"{name}: {value:.6g} would gain energy or is no ratio; give a ratio of angular "
+            f"velocities from 0 to at most {largest:.6g}, or None to conserve momentum."
         )
     return value
 
 
-def _pair(body: Body, restitution: Restitution) -> tuple[float | None, float | None]:
+def _pair(body: Body, restitution: object) -> tuple[float | None, float | None]:
     """Split what the user gave into (ground, interface) of the kernels' two blocks."""
     if restitution is None:
         return None, None
     if isinstance(body, Block):
-        if not isinstance(restitution, (int, float, np.floating)):
-            raise InputError("restitution: a lone block takes one number, not a pair.")
-        return None, _checked(float(restitution), "block", body)
-    if isinstance(restitution, (int, float, np.floating)) or len(restitution) != 2:
-        raise InputError("restitution: a stack takes a pair (ground, interface), each may be None.")
+        if isinstance(restitution, (tuple, list, np.ndarray)):
+            raise InputError("restitution: a lone block takes one number, not several.")
+        return None, _checked("restitution of the block", restitution, body)
+    if not (isinstance(restitution, (tuple, list, np.ndarray)) and len(restitution) == 2):
+        raise InputError(
+            "restitution: a stack takes a pair (ground, interface), each of which may be None, "
+            f"got {shown(restitution)}."
+        )
     return (
-        _checked(restitution[0], "ground", body.pedestal),
-        _checked(restitution[1], "interface", body.statue),
+        _checked("restitution of the ground", restitution[0], body.pedestal),
+        _checked("restitution of the interface", restitution[1], body.contact_statue),
     )
 
 
@@ -104,10 +108,9 @@ def body_record(
     InputError
         If the restitution does not fit the body or would add energy, or ``g`` is not positive.
     """
-    if not (math.isfinite(g) and g > 0):
-        raise InputError(f"g must be a positive acceleration [m/s²], got {g}.")
+    positive_number("g", g, "m/s²")
     if not isinstance(body, (Block, Stack)):
-        raise InputError(f"a body is a Block or a Stack, not {type(body).__name__}.")
+        raise InputError(f"body: expected a Block or a Stack, got {shown(body)}.")
     ground, interface = _pair(body, restitution)
     p: np.void = np.zeros(1, BODY)[0]
     for name in ("eta1r", "eta1l", "eta2r", "eta2l"):
@@ -121,7 +124,7 @@ def body_record(
         p["fixed"] = True
         p["linear"] = 2 if linear else 0
     else:
-        statue, pedestal = body.statue, body.pedestal
+        statue, pedestal = body.contact_statue, body.pedestal
         p["m1"], p["i1"], p["b1"] = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
         p["c1x"], p["c1y"] = pedestal.centre
         right, left = body.interface_pole(+1), body.interface_pole(-1)

@@ -1,25 +1,24 @@
 """Verdicts of cases that do not fill a grid of bodies × motions × scales."""
 
-import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP
+from rockfrag.rocking.inputs import STEP, checked_threads
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
-def scattered_overturns(
+def overturns_of_cases(
     bodies: Sequence[Body],
-    accelerations: Sequence[ArrayLike],
+    motions: Sequence[Array],
     dts: Array,
     body: Index,
     motion: Index,
@@ -59,7 +58,7 @@ def scattered_overturns(
         scales[row, column] = scale[mine]
         result = overturns(
             [bodies[number]],
-            [accelerations[m] for m in used],
+            [motions[m] for m in used],
             dts[used].tolist(),
             scales,
             restitution=None if restitution is None else [restitution[number]],
@@ -69,6 +68,6 @@ def scattered_overturns(
         )
         verdicts[mine] = result.overturned[0, row, column]
 
-    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+    with ThreadPoolExecutor(checked_threads(threads)) as pool:
         list(pool.map(run, np.unique(body).tolist()))
     return verdicts

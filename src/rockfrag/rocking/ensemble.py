@@ -1,13 +1,14 @@
 """Many bodies × motions × amplitudes at once."""
 
 import math
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking.bodies import Block, Body, Stack
@@ -15,7 +16,12 @@ from rockfrag.rocking.body_record import Restitution, body_record, lone_restitut
 from rockfrag.rocking.inputs import (
     STACK_STEP,
     STEP,
+    MotionLike,
+    check_case_count,
+    check_one_per_body,
     checked_scales,
+    checked_switch,
+    checked_threads,
     free_samples,
     listed,
     step_count,
@@ -25,6 +31,8 @@ from rockfrag.rocking.kernels.jit import compiling_alone
 from rockfrag.rocking.kernels.lanes import block, stack_case
 from rockfrag.rocking.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
 from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
+from rockfrag.rocking.kernels.record import EVENT, SAMPLE
+from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
@@ -32,7 +40,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class EnsembleResult:
-    """Verdicts and peak responses; every array has shape (bodies, motions, scales).
+    """Verdicts and peak responses; every array but the last has shape (bodies, motions, scales).
 
     Attributes
     ----------
@@ -52,6 +60,8 @@ class EnsembleResult:
         Number of impacts until the verdict was certain.
     closest_approach
         Least distance from an unstable equilibrium, as in :class:`Response`; infinite if it never rocked.
+    scales
+        Factors on the motions, shape (motions, scales).
     """
 
     overturned: NDArray[np.bool_]
@@ -62,6 +72,27 @@ class EnsembleResult:
     peak_velocity: Array
     impacts: NDArray[np.int64]
     closest_approach: Array
+    scales: Array
+
+    def table(self) -> pd.DataFrame:
+        """Return the results as a table, a row per case, the scale running fastest.
+
+        Columns: ``body``, ``motion`` (positions in the lists given), ``scale`` and every attribute of that
+        shape, with its unit in the name: ``overturning_time_s``, ``peak_velocity_rad_s``.
+        """
+        shape = self.overturned.shape
+        body = np.arange(shape[0])[:, np.newaxis, np.newaxis]
+        motion = np.arange(shape[1])[:, np.newaxis]
+        units = {"overturning_time": "_s", "peak_velocity": "_rad_s"}
+        columns: dict[str, Any] = {"body": body, "motion": motion, "scale": self.scales}
+        columns |= {
+            name + units.get(name, ""): values
+            for name, values in vars(self).items()
+            if name != "scales"
+        }
+        return pd.DataFrame(
+            {name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()}
+        )
 
 
 @dataclass(frozen=True)
@@ -76,17 +107,31 @@ class _Setting:
     threads: int
 
 
+@dataclass(frozen=True)
+class _Bodies:
+    """Bodies of one kind, with what is given for each."""
+
+    bodies: list[Body]
+    restitution: list[Restitution]
+
+
 _Found = tuple[NDArray[np.void], Array]
 """Outcomes, (bodies, motions, scales) of OUTCOME, and the sampling intervals they count time in [s]."""
+
+Start = float | Sequence[float] | None
+"""Rotation or angular velocity of one body at the start, as in :func:`simulate`."""
 
 
 def overturns(
     bodies: Body | Sequence[Body],
-    accelerations: ArrayLike | Sequence[ArrayLike],
-    dt: float | Sequence[float],
-    scales: ArrayLike,
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None = None,
+    scales: ArrayLike = (1.0,),
     *,
+    theta0: Sequence[Start] | None = None,
+    omega0: Sequence[Start] | None = None,
     restitution: Sequence[Restitution] | None = None,
+    linear: bool = False,
     g: float = STANDARD_GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -97,34 +142,72 @@ def overturns(
     ----------
     bodies
         Blocks and stacks.
-    accelerations
-        Motions [m/s²], each of shape (n,), linear between samples and zero one sample after the last.
+    motions
+        Motions, or their accelerations [m/s²], each of shape (n,), linear between samples and zero one sample
+        after the last.
     dt
-        Sampling interval [s], one or one per motion.
+        Sampling interval of accelerations [s], one or one per motion; a Motion has its own.
     scales
         Factors on the accelerations, shape (scales,) for all motions or (motions, scales).
+    theta0, omega0
+        One entry per body: rotations [rad] and angular velocities [rad/s] at the start, as in
+        :func:`simulate`; None starts all at rest.
     restitution
         One entry per body, each as in :func:`simulate`; None conserves momentum in all.
+    linear
+        Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
     g
-        Gravity [m/s²].
+        Acceleration of gravity [m/s²].
     step
         Largest p h of a step, of which a stack takes 0.35 while both its blocks rotate: smaller is more accurate
         and slower.
     threads
         Threads to use; all cores if None.  Results do not depend on it.
 
+    Notes
+    -----
+    Cases with a start of their own, or with linearised equations, are marched one by one as :func:`simulate`
+    does, which follows every impact and takes some ten times as long; a fall is then certain when a block lies
+    down.
+
     Raises
     ------
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    body_list, values, dts = listed(bodies, accelerations, dt, restitution)
-    factors = checked_scales(scales, len(values))
-    workers = threads or os.cpu_count() or 1
-    per_body: Sequence[Restitution]
-    per_body = restitution if restitution is not None else [None] * len(body_list)
-    shape = (len(body_list), *factors.shape)
-    result = EnsembleResult(
+    body_list, values, dts = listed(bodies, motions, dt, restitution)
+    factors = checked_scales(scales, values)
+    setting = _Setting(values, dts, factors, g, step, checked_threads(threads))
+    given = _Bodies(body_list, list(restitution or [None] * len(body_list)))
+    check_case_count(len(body_list) * factors.size)
+    for name, start in (("theta0", theta0), ("omega0", omega0)):
+        check_one_per_body(name, start, len(body_list))
+    result = _empty_result(factors, len(body_list))
+    if not result.overturned.size:
+        return result
+    if checked_switch("linear", linear) or theta0 is not None or omega0 is not None:
+        starts = [
+            initial_state(body, *start)
+            for body, *start in zip(
+                body_list,
+                theta0 if theta0 is not None else [None] * len(body_list),
+                omega0 if omega0 is not None else [None] * len(body_list),
+                strict=True,
+            )
+        ]
+        _fill(result, np.arange(len(body_list)), _one_by_one(setting, given, starts, linear))
+        return result
+    for kind, march in ((Block, _blocks), (Stack, _stacks)):
+        rows = [i for i, body in enumerate(body_list) if isinstance(body, kind)]
+        if rows:
+            chosen = _Bodies([given.bodies[i] for i in rows], [given.restitution[i] for i in rows])
+            _fill(result, np.array(rows), march(setting, chosen))
+    return result
+
+
+def _empty_result(factors: Array, n_bodies: int) -> EnsembleResult:
+    shape = (n_bodies, *factors.shape)
+    return EnsembleResult(
         overturned=np.zeros(shape, dtype=bool),
         overturned_body=np.zeros(shape, dtype=np.int8),
         overturning_time=np.full(shape, np.nan),
@@ -133,15 +216,34 @@ def overturns(
         peak_velocity=np.zeros(shape),
         impacts=np.zeros(shape, dtype=np.int64),
         closest_approach=np.full(shape, np.inf),
+        scales=factors,
     )
-    setting = _Setting(values, dts, factors, g, step, workers)
-    lone = [i for i, body in enumerate(body_list) if isinstance(body, Block)]
-    stacks = [i for i, body in enumerate(body_list) if isinstance(body, Stack)]
-    for chosen, march in ((lone, _blocks), (stacks, _stacks)):
-        if chosen and factors.size:
-            found = march(setting, [body_list[i] for i in chosen], [per_body[i] for i in chosen])
-            _fill(result, np.array(chosen), found)
-    return result
+
+
+def _one_by_one(setting: _Setting, given: _Bodies, starts: list[np.void], linear: bool) -> _Found:
+    """Verdicts of bodies as single histories give them, of which nothing else is kept."""
+    g, dts, factors = setting.g, setting.dts, setting.factors
+    records = [
+        body_record(body, e, linear, g)
+        for body, e in zip(given.bodies, given.restitution, strict=True)
+    ]
+    outcomes = np.zeros((len(records), *factors.shape), OUTCOME)
+    nothing = np.empty(0, SAMPLE), np.empty(0, EVENT)
+
+    def work(place: tuple[int, int, int]) -> None:
+        i, j, k = place
+        body, dt = given.bodies[i], float(dts[j])
+        scale = float(factors[j, k])
+        shaking = shaking_of(body, setting.motions[j], dt, scale, g, setting.step)
+        done, summary = run_march(records[i], shaking, starts[i], *nothing)
+        outcomes[place] = (
+            summary["fallen"], done - 1, summary["ratio1"], summary["ratio2"],
+            summary["speed2"] * dt, summary["closest"], summary["impacts"],
+        )  # fmt: skip
+
+    with ThreadPoolExecutor(setting.threads) as pool:
+        list(pool.map(work, np.ndindex(*outcomes.shape)))
+    return outcomes, np.broadcast_to(dts[:, np.newaxis], (len(records), len(dts), 1))
 
 
 def _march(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:
@@ -172,7 +274,7 @@ def _sampled(
     samples = np.concatenate(padded)
     blocks = samples.reshape(-1, BLOCK)
     highest, lowest = blocks.max(axis=1), blocks.min(axis=1)
-    parts = [slice(i // BLOCK, j // BLOCK) for i, j in zip(offsets[:-1], offsets[1:], strict=True)]
+    parts = [slice(i // BLOCK, j // BLOCK) for i, j in pairwise(offsets)]
     motions = Motions(
         samples=samples,
         highest=highest,
@@ -198,9 +300,9 @@ def _refined(values: Array, times: int) -> Array:
     return np.asarray(np.interp(at, np.arange(closed.size), closed))
 
 
-def _stacks(setting: _Setting, bodies: list[Body], restitution: list[Restitution]) -> _Found:
+def _stacks(setting: _Setting, given: _Bodies) -> _Found:
     """Verdicts of stacks."""
-    g, step = setting.g, setting.step
+    g, step, bodies = setting.g, setting.step, given.bodies
     motions, rows, intervals = _sampled(bodies, setting.motions, setting.dts, g, step)
     each = list(zip(bodies, intervals, strict=True))
     count = len(bodies) * setting.factors.size
@@ -208,7 +310,8 @@ def _stacks(setting: _Setting, bodies: list[Body], restitution: list[Restitution
         counter=np.array([0]),
         count=count,
         bodies=np.array(
-            [body_record(body, e, g=g) for body, e in zip(bodies, restitution, strict=True)], BODY
+            [body_record(body, e, g=g) for body, e in zip(bodies, given.restitution, strict=True)],
+            BODY,
         ),
         factors=setting.factors,
         rows=rows,
@@ -221,12 +324,12 @@ def _stacks(setting: _Setting, bodies: list[Body], restitution: list[Restitution
     return outcomes.reshape(len(bodies), *setting.factors.shape), intervals[:, :, np.newaxis]
 
 
-def _blocks(setting: _Setting, bodies: list[Body], restitution: list[Restitution]) -> _Found:
+def _blocks(setting: _Setting, given: _Bodies) -> _Found:
     """Verdicts of lone blocks."""
-    g = setting.g
+    g, bodies = setting.g, given.bodies
     motions, rows, intervals = _sampled(bodies, setting.motions, setting.dts, g, setting.step)
     poles = np.empty((*intervals.shape, 2), block.POLE)
-    for i, (body, e) in enumerate(zip(bodies, restitution, strict=True)):
+    for i, (body, e) in enumerate(zip(bodies, given.restitution, strict=True)):
         assert isinstance(body, Block)
         poles[i] = _poles(body, e, g)
     poles["swing"] *= intervals[:, :, np.newaxis] ** 2

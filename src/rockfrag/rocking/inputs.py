@@ -1,15 +1,18 @@
 """Checks of what users give, and the step sizes that follow from it."""
 
-import math
+import numbers
+import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.body_record import Restitution
+from rockfrag.rocking.checks import positive_number, real_array, shown, whole_number
 
 STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""
@@ -22,27 +25,43 @@ FREE_TIME = 60.0
 """Free rocking after the motion is followed for at most this long, in units of 1/p."""
 
 MOST_SAMPLES = 20_000_000
+"""Samples of a history, the motion and the free rocking after it, that are admitted."""
+
+MOST_CASES = 50_000_000
+"""Cases of an ensemble whose results are held in memory."""
+
+STRONGEST = 1e4
+"""Peak acceleration [m/s²] beyond any earthquake."""
 
 WEAK_MOTION = 0.05
 """A peak acceleration [m/s²] below this was probably given in g."""
 
+MotionLike = Motion | ArrayLike
+"""A motion, or its accelerations [m/s²], shape (n,)."""
 
-def checked_acceleration(
-    acceleration: ArrayLike, dt: float, name: str = "acceleration"
-) -> NDArray[np.float64]:
-    """Return the samples as a float array [m/s²], or say in one sentence why they cannot be used.
+
+def checked_motion(
+    motion: MotionLike, dt: float | None, name: str = "motion"
+) -> tuple[NDArray[np.float64], float]:
+    """Return the accelerations of a motion [m/s²] and its sampling interval [s].
 
     Raises
     ------
     InputError
-        If there are fewer than two samples, one is not finite, or ``dt`` is not positive.
+        If there are fewer than two samples, one is not a finite number or beyond any earthquake, or if the
+        interval is missing, given twice or not positive.
     """
-    try:
-        values = np.ascontiguousarray(acceleration, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(
-            f"{name}: expected numbers [m/s²], got {type(acceleration).__name__}."
-        ) from error
+    if isinstance(motion, Motion):
+        if dt is not None:
+            raise InputError(
+                f"dt: {name} is a Motion, which has its own sampling interval; leave dt out."
+            )
+        data, interval = motion.acceleration, motion.dt
+    else:
+        if dt is None:
+            raise InputError(f"dt: {name} is an array; give its sampling interval in seconds.")
+        data, interval = motion, positive_number("dt", dt, "seconds")  # type: ignore[assignment]
+    values = real_array(name, data, "m/s²")
     if values.ndim != 1:
         raise InputError(f"{name}: expected shape (n,), got {values.shape}.")
     if values.size < 2:
@@ -52,73 +71,170 @@ def checked_acceleration(
     if not np.isfinite(values).all():
         first = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f"{name}: sample {first} is not a finite number.")
-    if np.abs(values).max() > 1e4:
+    peak = float(np.abs(values).max())
+    if peak > STRONGEST:
         raise InputError(
-            f"{name}: a peak of {np.abs(values).max():.3g} m/s² is beyond any earthquake; check the unit."
+            f"{name}: a peak of {peak:.3g} m/s² is beyond any earthquake; check the unit."
         )
-    if (
-        isinstance(dt, bool)
-        or not isinstance(dt, (int, float, np.number))
-        or not (math.isfinite(dt) and dt > 0)
-    ):
-        raise InputError(f"dt: expected a positive number of seconds, got {dt!r}.")
-    return values
+    return values, interval
+
+
+def listed_bodies(bodies: object) -> list[Body]:
+    """Return the bodies as a list.
+
+    Raises
+    ------
+    InputError
+        If there is none, or one is neither a Block nor a Stack.
+    """
+    if isinstance(bodies, (Block, Stack)):
+        return [bodies]
+    if not isinstance(bodies, (Sequence, np.ndarray)) or isinstance(bodies, (str, bytes)):
+        raise InputError(
+            f"bodies: expected a Block, a Stack or a list of them, got {shown(bodies)}."
+        )
+    for i, body in enumerate(bodies):
+        if not isinstance(body, (Block, Stack)):
+            raise InputError(f"bodies[{i}]: expected a Block or a Stack, got {shown(body)}.")
+    return list(bodies)
 
 
 def listed(
     bodies: Body | Sequence[Body],
-    accelerations: ArrayLike | Sequence[ArrayLike],
-    dt: float | Sequence[float],
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None,
     restitution: Sequence[Restitution] | None,
 ) -> tuple[list[Body], list[NDArray[np.float64]], NDArray[np.float64]]:
-    """Return bodies, checked motions [m/s²] and the sampling interval of each motion [s].
+    """Return bodies, checked accelerations [m/s²] and the sampling interval of each motion [s].
 
     Raises
     ------
     InputError
         If a body is none, a motion cannot be used, or the lengths of the lists do not fit together.
     """
-    body_list = [bodies] if isinstance(bodies, (Block, Stack)) else list(bodies)
-    for i, body in enumerate(body_list):
-        if not isinstance(body, (Block, Stack)):
-            raise InputError(
-                f"bodies[{i}]: expected a Block or a Stack, got {type(body).__name__}."
-            )
-    one = isinstance(accelerations, np.ndarray) and accelerations.ndim == 1
-    motions: list[ArrayLike] = [accelerations] if one else list(accelerations)  # type: ignore[arg-type, list-item]
-    intervals = np.asarray(dt, dtype=float)
-    if intervals.ndim and intervals.shape != (len(motions),):
-        raise InputError(f"dt: expected one number or {len(motions)}, got {intervals.size}.")
-    if restitution is not None and len(restitution) != len(body_list):
-        raise InputError(
-            f"restitution: expected {len(body_list)} entries, one per body, got {len(restitution)}."
-        )
-    dts = np.broadcast_to(intervals, (len(motions),)).copy()
-    values = [
-        checked_acceleration(motion, float(interval), f"accelerations[{i}]")
-        for i, (motion, interval) in enumerate(zip(motions, dts, strict=True))
+    body_list = listed_bodies(bodies)
+    each = _listed_motions(motions)
+    intervals: list[float | None]
+    if dt is None or isinstance(dt, (numbers.Real, str, complex)):
+        intervals = [dt] * len(each)  # type: ignore[list-item]
+    else:
+        intervals = list(real_array("dt", dt, "s").ravel().tolist())
+        if len(intervals) != len(each):
+            raise InputError(f"dt: expected one number or {len(each)}, got {len(intervals)}.")
+    check_one_per_body("restitution", restitution, len(body_list))
+    checked = [
+        checked_motion(motion, interval, f"motions[{i}]")
+        for i, (motion, interval) in enumerate(zip(each, intervals, strict=True))
     ]
-    return body_list, values, dts
+    return body_list, [values for values, _ in checked], np.array([h for _, h in checked])
 
 
-def checked_scales(scales: ArrayLike, n_motions: int) -> NDArray[np.float64]:
+def _listed_motions(motions: MotionLike | Sequence[MotionLike]) -> list[MotionLike]:
+    if isinstance(motions, Motion):
+        return [motions]
+    if isinstance(motions, np.ndarray) and motions.ndim == 1 and motions.dtype != object:
+        return [motions]
+    if motions is None or isinstance(motions, (str, bytes, Mapping)) or not np.iterable(motions):
+        raise InputError(
+            f"motions: expected a Motion, accelerations or a list of them, got {shown(motions)}."
+        )
+    each = list(motions)
+    if each and all(isinstance(value, numbers.Real) for value in each):
+        # one motion given as a list of numbers
+        return [motions]  # type: ignore[list-item]
+    return each
+
+
+def check_one_per_body(name: str, given: object, count: int) -> None:
+    """Say in one sentence if what is given per body is not a list with an entry for each.
+
+    Raises
+    ------
+    InputError
+        If its length is not the number of bodies.
+    """
+    if given is None:
+        return
+    if not isinstance(given, (list, tuple, np.ndarray)):
+        raise InputError(f"{name}: expected a list with one entry per body, got {shown(given)}.")
+    if len(given) != count:
+        raise InputError(f"{name}: expected {count} entries, one per body, got {len(given)}.")
+
+
+def checked_scales(
+    scales: ArrayLike, motions: Sequence[NDArray[np.float64]]
+) -> NDArray[np.float64]:
     """Return factors on the accelerations as an array of shape (motions, scales).
 
     Raises
     ------
     InputError
-        If the shape does not fit the motions or a factor is not finite.
+        If the shape does not fit the motions, a factor is not finite, or a scaled motion is beyond any earthquake.
     """
-    factors = np.asarray(scales, dtype=float)
+    factors = real_array("scales", scales)
+    count = len(motions)
+    if factors.ndim == 0:
+        factors = factors.reshape(1)
     if factors.ndim == 1:
-        factors = np.broadcast_to(factors, (n_motions, factors.size))
-    if factors.ndim != 2 or factors.shape[0] != n_motions or not np.isfinite(factors).all():
+        factors = np.broadcast_to(factors, (count, factors.size))
+    if factors.ndim != 2 or factors.shape[0] != count or not np.isfinite(factors).all():
         raise InputError(
-            f"scales: expected finite numbers of shape (scales,) or ({n_motions}, scales), "
-            f"got shape {np.shape(scales)}."
+            f"scales: expected finite numbers of shape (scales,) or ({count}, scales), "
+            f"got {shown(scales)}."
         )
+    for i, values in enumerate(motions):
+        strongest = float(np.abs(factors[i]).max(initial=0.0)) * float(np.abs(values).max())
+        if strongest > STRONGEST:
+            raise InputError(
+                f"scales: motions[{i}] is scaled to {strongest:.3g} m/s², which is beyond any earthquake."
+            )
+    check_case_count(factors.size)
     # a copy: kernels would be compiled anew for a view that cannot be written to
     return np.array(factors)
+
+
+def checked_threads(threads: object) -> int:
+    """Return the number of threads; that of the cores if None.
+
+    Raises
+    ------
+    InputError
+        If it is not a positive whole number.
+    """
+    if threads is None:
+        return os.cpu_count() or 1
+    count = whole_number("threads", threads)
+    if not 1 <= count <= 4096:
+        raise InputError(f"threads: expected a whole number from 1 to 4096, got {count}.")
+    return count
+
+
+def checked_switch(name: str, value: object) -> bool:
+    """Return True or False as they are.
+
+    Raises
+    ------
+    InputError
+        If it is anything else.
+    """
+    if not isinstance(value, (bool, np.bool_)):
+        raise InputError(f"{name}: expected True or False, got {shown(value)}.")
+    return bool(value)
+
+
+def check_case_count(count: int) -> None:
+    """Refuse an ensemble whose results would not fit into memory.
+
+    Raises
+    ------
+    InputError
+        If there are more than ``MOST_CASES``.
+    """
+    if count > MOST_CASES:
+        raise InputError(
+            f"bodies × motions × scales: {count} cases are more than the {MOST_CASES} whose results "
+            "are held in memory; write them to a file with stream_overturns."
+        )
 
 
 def warn_if_weak(values: NDArray[np.float64]) -> None:
@@ -134,19 +250,31 @@ def warn_if_weak(values: NDArray[np.float64]) -> None:
 
 def fastest_frequency(body: Body, g: float) -> float:
     """Largest frequency parameter p of the body's blocks [1/s]."""
-    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.statue)
+    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.contact_statue)
     return max(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
 
 
 def slowest_frequency(body: Body, g: float) -> float:
     """Smallest frequency parameter p of the ways in which the body rocks [1/s]."""
-    blocks = (body,) if isinstance(body, Block) else (body.statue, body.glued())
+    blocks = (body,) if isinstance(body, Block) else (body.contact_statue, body.rigidly_joined())
     return min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
 
 
 def free_samples(body: Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
-    """Return the most samples of free rocking that are followed after a motion, for every interval."""
-    return np.ceil(FREE_TIME / slowest_frequency(body, g) / np.asarray(dt)).astype(np.int64)
+    """Return the most samples of free rocking that are followed after a motion, for every interval.
+
+    Raises
+    ------
+    InputError
+        If they would not fit into memory.
+    """
+    samples = np.ceil(FREE_TIME / slowest_frequency(body, g) / np.asarray(dt))
+    if samples.max(initial=0) > MOST_SAMPLES:
+        raise InputError(
+            f"dt: free rocking sampled every {np.min(dt):.3g} s would take {samples.max():.3g} samples, "
+            f"more than the {MOST_SAMPLES} allowed; give a longer interval."
+        )
+    return np.asarray(samples).astype(np.int64)
 
 
 def step_count(body: Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.int64]:
@@ -157,8 +285,7 @@ def step_count(body: Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.i
     InputError
         If ``step`` is not positive, or an interval is far too long for the body.
     """
-    if not (math.isfinite(step) and step > 0):
-        raise InputError(f"step: expected a positive number, got {step}.")
+    positive_number("step", step)
     frequency = fastest_frequency(body, g)
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
     if steps.max(initial=0) > 10_000:

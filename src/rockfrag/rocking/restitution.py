@@ -17,6 +17,7 @@ from scipy.stats import t as student
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.simulation import simulate
 from rockfrag.units import STANDARD_GRAVITY
 
@@ -298,10 +299,7 @@ def restitution_from_history(
 
 
 def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
-    try:
-        values = np.asarray(data, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{name}: expected a list of numbers.") from error
+    values = real_array(name, data, "s" if "time" in name else "rad")
     if values.ndim != 1 or values.size < least:
         raise InputError(f"{name}: expected at least {least} numbers in a row, got {values.shape}.")
     if not np.isfinite(values).all():

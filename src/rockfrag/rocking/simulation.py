@@ -6,15 +6,19 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.body_record import Restitution, body_record
+from rockfrag.rocking.checks import real_array, shown
 from rockfrag.rocking.forces import contact_forces
 from rockfrag.rocking.inputs import (
+    MOST_SAMPLES,
     STEP,
-    checked_acceleration,
+    MotionLike,
+    checked_motion,
+    checked_switch,
     free_samples,
     step_count,
     warn_if_weak,
@@ -33,7 +37,6 @@ from rockfrag.rocking.kernels.record import (
 from rockfrag.rocking.kernels.single import Shaking, march, scratch
 from rockfrag.rocking.response import PATTERNS, Response
 from rockfrag.units import STANDARD_GRAVITY
-
 
 Array = NDArray[np.float64]
 
@@ -56,24 +59,22 @@ def initial_state(
     return initial
 
 
-def _pair_of_blocks(
-    body: Body, value: float | Sequence[float] | None, name: str
-) -> tuple[float, float]:
-    blocks = 1 if isinstance(body, Block) else 2
+def _pair_of_blocks(body: Body, value: object, name: str) -> tuple[float, float]:
     if value is None:
         return 0.0, 0.0
-    values = [float(v) for v in np.atleast_1d(np.asarray(value, dtype=float))]
-    if len(values) != blocks or not all(math.isfinite(v) for v in values):
-        raise InputError(f"{name}: expected {blocks} finite number(s), got {value!r}.")
-    if name == "theta0" and any(abs(v) >= math.pi / 2 for v in values):
+    blocks = 1 if isinstance(body, Block) else 2
+    values = np.atleast_1d(real_array(name, value))
+    if values.shape != (blocks,) or not np.isfinite(values).all():
+        raise InputError(f"{name}: expected {blocks} finite number(s), got {shown(value)}.")
+    if name == "theta0" and (np.abs(values) >= math.pi / 2).any():
         raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
-    return (0.0, values[0]) if blocks == 1 else (values[0], values[1])
+    return (0.0, float(values[0])) if blocks == 1 else (float(values[0]), float(values[1]))
 
 
 def simulate(
     body: Body,
-    acceleration: ArrayLike,
-    dt: float,
+    motion: MotionLike,
+    dt: float | None = None,
     *,
     theta0: float | Sequence[float] | None = None,
     omega0: float | Sequence[float] | None = None,
@@ -87,10 +88,11 @@ def simulate(
     ----------
     body
         A :class:`Block` or a :class:`Stack`.
-    acceleration
-        Acceleration of the ground or floor [m/s²], shape (n,), linear between samples, n ≥ 2.
+    motion
+        A :class:`Motion`, or the acceleration of the ground or floor [m/s²], shape (n,), linear between samples,
+        n ≥ 2.
     dt
-        Sampling interval [s].
+        Sampling interval of an acceleration [s]; a Motion has its own.
     theta0, omega0
         Rotations [rad] and angular velocities [rad/s] at the start: a number, or (pedestal, statue).
     restitution
@@ -106,12 +108,17 @@ def simulate(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    values = checked_acceleration(acceleration, dt)
+    values, interval = checked_motion(motion, dt)
     warn_if_weak(values)
-    record = body_record(body, restitution, linear, g)
+    record = body_record(body, restitution, checked_switch("linear", linear), g)
     initial = initial_state(body, theta0, omega0)
-    shaking = shaking_of(body, values, dt, 1.0, g, STEP)
-    history = np.zeros(values.size + shaking.free_samples, SAMPLE)
+    shaking = shaking_of(body, values, interval, 1.0, g, STEP)
+    most = values.size + shaking.free_samples
+    if most > MOST_SAMPLES:
+        raise InputError(
+            f"motion: {most} samples, with the free rocking after it, are more than the {MOST_SAMPLES} allowed."
+        )
+    history = np.zeros(most, SAMPLE)
     capacity = 4096
     while True:
         events = np.zeros(capacity, EVENT)
@@ -122,7 +129,9 @@ def simulate(
     return _response(body, record, shaking, history[:done], events[: summary["events"]], summary)
 
 
-def shaking_of(body: Body, values: Array, dt: float, scale: float, g: float, step: float) -> Shaking:
+def shaking_of(
+    body: Body, values: Array, dt: float, scale: float, g: float, step: float
+) -> Shaking:
     """What a march shakes a body with, in steps that follow from the body."""
     return Shaking(
         samples=values,

@@ -16,6 +16,7 @@ from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.body_record import Restitution
+from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
 from rockfrag.units import STANDARD_GRAVITY
@@ -97,16 +98,14 @@ def rocking_spectrum(
     InputError
         If a period or an angle cannot be used.
     """
-    period = np.atleast_1d(np.asarray(periods, dtype=np.float64))
-    angle = np.atleast_1d(np.asarray(alpha, dtype=np.float64))
+    period = np.atleast_1d(real_array("periods", periods, "s"))
+    angle = np.atleast_1d(real_array("alpha", alpha, "rad"))
     if period.ndim != 1 or angle.ndim != 1 or period.size == 0 or angle.size == 0:
         raise InputError("rocking spectrum: give at least one period and one angle, in a row each.")
     blocks = [uniform_block(float(a), float(T), g) for a in angle for T in period]
     found = overturns(
         blocks,
-        [motion.acceleration],
-        motion.dt,
-        [1.0],
+        motion,
         restitution=[restitution] * len(blocks),
         g=g,
         threads=threads,

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import Restitution
-from rockfrag.rocking.case_list import scattered_overturns
-from rockfrag.rocking.inputs import STEP, checked_scales, listed
+from rockfrag.rocking.case_list import overturns_of_cases
+from rockfrag.rocking.checks import whole_number
+from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
 from rockfrag.units import STANDARD_GRAVITY
 
 
@@ -40,8 +41,8 @@ class FragileVerdicts:
 
 def fragile_verdicts(
     bodies: Body | Sequence[Body],
-    accelerations: ArrayLike | Sequence[ArrayLike],
-    dt: float | Sequence[float],
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None,
     scales: ArrayLike,
     *,
     sample: int = 1000,
@@ -57,7 +58,7 @@ def fragile_verdicts(
 
     Parameters
     ----------
-    bodies, accelerations, dt, scales, restitution, g, step, threads
+    bodies, motions, dt, scales, restitution, g, step, threads
         The ensemble, as in :func:`overturns`.
     sample
         Number of cases, drawn without repetition; all of them if there are fewer.
@@ -69,22 +70,22 @@ def fragile_verdicts(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    body_list, motions, dts = listed(bodies, accelerations, dt, restitution)
-    factors = checked_scales(scales, len(motions))
+    body_list, values, dts = listed(bodies, motions, dt, restitution)
+    factors = checked_scales(scales, values)
     shape = (len(body_list), *factors.shape)
     total = int(np.prod(shape))
-    if sample < 1 or total < 1:
+    if whole_number("sample", sample) < 1 or total < 1:
         raise InputError(f"sample: expected at least one of {total} cases, got {sample}.")
     chosen = np.random.default_rng(seed).choice(total, min(sample, total), replace=False)
     cases = np.stack(np.unravel_index(np.sort(chosen), shape), axis=1).astype(np.int64)
     body, motion, column = cases.T
     drawn = (body, motion, factors[motion, column])
-    given = scattered_overturns(
-        body_list, motions, dts, *drawn, restitution=restitution, g=g, step=step, threads=threads
+    given = overturns_of_cases(
+        body_list, values, dts, *drawn, restitution=restitution, g=g, step=step, threads=threads
     )
     # twice the samples on the same straight lines and half the bound on p h: exactly half of each step
-    halved = scattered_overturns(
-        body_list, [_doubled(values) for values in motions], dts / 2, *drawn,
+    halved = overturns_of_cases(
+        body_list, [_doubled(one) for one in values], dts / 2, *drawn,
         restitution=restitution, g=g, step=step / 2, threads=threads,
     )  # fmt: skip
     changed = cases[given != halved]

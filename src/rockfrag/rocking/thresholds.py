@@ -11,14 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import Restitution
-from rockfrag.rocking.case_list import scattered_overturns
+from rockfrag.rocking.case_list import overturns_of_cases
+from rockfrag.rocking.checks import positive_number
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP, listed
+from rockfrag.rocking.inputs import STEP, MotionLike, listed
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
@@ -57,8 +58,8 @@ class Thresholds:
 
 def find_thresholds(
     bodies: Body | Sequence[Body],
-    accelerations: ArrayLike | Sequence[ArrayLike],
-    dt: float | Sequence[float],
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None,
     highest: float,
     *,
     tolerance: float,
@@ -72,7 +73,7 @@ def find_thresholds(
 
     Parameters
     ----------
-    bodies, accelerations, dt, restitution, g, step, threads
+    bodies, motions, dt, restitution, g, step, threads
         As in :func:`overturns`.
     highest
         Largest scale on the accelerations to look at; motions with a peak of 1 g make scales PGAs in g.
@@ -87,43 +88,39 @@ def find_thresholds(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    for name, value in (
-        ("highest", highest),
-        ("tolerance", tolerance),
-        ("smallest_window", smallest_window),
-    ):
-        if not (math.isfinite(value) and value > 0):
-            raise InputError(f"{name}: expected a positive number, got {value}.")
+    positive_number("highest", highest)
+    positive_number("tolerance", tolerance)
+    positive_number("smallest_window", smallest_window)
     if smallest_window > highest:
         raise InputError(
             f"smallest_window: {smallest_window} is more than the highest scale, {highest}."
         )
-    body_list, motions, dts = listed(bodies, accelerations, dt, restitution)
+    body_list, values, dts = listed(bodies, motions, dt, restitution)
     intervals = math.ceil(highest / smallest_window - 1e-9)
-    if len(body_list) * len(motions) * intervals > MOST_GRID_CASES:
+    if len(body_list) * len(values) * intervals > MOST_GRID_CASES:
         raise InputError(
             f"smallest_window: {smallest_window} needs a grid of more than {MOST_GRID_CASES} cases; "
             "give a wider one, a lower highest scale, or fewer bodies at a time."
         )
     grid = np.linspace(0.0, highest, intervals + 1)
     settings = {"restitution": restitution, "g": g, "step": step, "threads": threads}
-    fallen = overturns(body_list, motions, dts.tolist(), grid, **settings).overturned  # type: ignore[arg-type]
+    fallen = overturns(body_list, values, dts.tolist(), grid, **settings).overturned  # type: ignore[arg-type]
     body, motion, left = np.nonzero(fallen[..., 1:] != fallen[..., :-1])
     low, high = grid[left], grid[left + 1]
     falls = fallen[body, motion, left + 1]
     for _ in range(max(0, math.ceil(math.log2(highest / intervals / tolerance) - 1e-9))):
         middle = 0.5 * (low + high)
         above = (
-            scattered_overturns(body_list, motions, dts, body, motion, middle, **settings)  # type: ignore[arg-type]
+            overturns_of_cases(body_list, values, dts, body, motion, middle, **settings)  # type: ignore[arg-type]
             == falls
         )
         low, high = np.where(above, low, middle), np.where(above, middle, high)
     table, windows = [], []
     for i in range(len(body_list)):
-        for j, values in enumerate(motions):
+        for j, acceleration in enumerate(values):
             mine = (body == i) & (motion == j)
             row, survived = _read(low[mine], high[mine], falls[mine], highest)
-            peak = float(np.abs(values).max()) / g
+            peak = float(np.abs(acceleration).max()) / g
             table.append((i, j, *row, *(peak * scale for scale in row), len(survived)))
             windows += [(i, j, lower, upper) for lower, upper in survived]
     return Thresholds(

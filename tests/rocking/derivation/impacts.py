@@ -183,7 +183,7 @@ def case_285(s: System, printed: bool) -> Array:
 
 
 def glued_at_rest() -> System:
-    return random_systems().glued().with_(th1=0.0, th2=0.0)
+    return random_systems().rigidly_joined().with_(th1=0.0, th2=0.0)
 
 
 def four_a() -> System:

@@ -100,7 +100,7 @@ def whole(s: System, side: Array | int) -> Array:  # 2.55; 2.53 and 2.54
 
 
 def glued_truth(side: int):
-    return lambda s: s.glued().moments(side, 1).sum(axis=0)
+    return lambda s: s.rigidly_joined().moments(side, 1).sum(axis=0)
 
 
 def standing_truth(side: int):
@@ -170,7 +170,7 @@ def linear_3(s: System, half_width: Array) -> Array:  # 2.64
 
 
 def linear_3_truth(s: System) -> Array:
-    s = s.glued()
+    s = s.rigidly_joined()
     return np.where(
         s.th1 > 0, s.get("linear_motion", 1, 1).sum(0), s.get("linear_motion", -1, 1).sum(0)
     )

@@ -112,7 +112,7 @@ class System:
         """Return the same systems in another state."""
         return replace(self, **{k: v + 0 * self.b1 for k, v in values.items()})
 
-    def glued(self) -> "System":
+    def rigidly_joined(self) -> "System":
         """Return the state of pattern 3, block 2 moving as block 1."""
         return self.with_(th2=self.th1, w2=self.w1, q2=self.q1)
 

@@ -2,13 +2,14 @@
 
 import itertools
 
-import numba
 import numpy as np
 import pytest
 
 from rockfrag.rocking import Block, Stack
-from rockfrag.rocking import _mechanics as fast
-from rockfrag.rocking.body_record import body_parameters
+from rockfrag.rocking.body_record import body_record
+from rockfrag.rocking.kernels.equations import STATE, equations
+from rockfrag.rocking.kernels.impact import impact
+from rockfrag.rocking.kernels.jit import entry_kernel
 from rockfrag.rocking.reference.model import LinearModel, Model
 
 from .motion import lagrange_by_newton
@@ -21,14 +22,21 @@ N = len(S.b1)
 
 
 # kernels can be called by kernels only
-@numba.njit
-def kernel_equations(*arguments):
-    return fast.equations(*arguments)
+@entry_kernel
+def kernel_equations(body, sigma1, sigma2, at):
+    return equations(body, sigma1, sigma2, at)
 
 
-@numba.njit
-def kernel_impact(*arguments):
-    return fast.impact(*arguments)
+@entry_kernel
+def kernel_impact(body, at, closes1, closes2):
+    return impact(body, at, closes1, closes2)
+
+
+def record(c, theta, omega, ground: float) -> np.void:
+    """The kernels' record of contacts and motion."""
+    made = np.zeros(1, STATE)
+    made[0] = (*c, theta[0], omega[0], theta[1], omega[1], ground)
+    return made[0]
 
 
 def stack(s: System, k: int) -> Stack:
@@ -64,8 +72,8 @@ def test_equations_of_motion(poles: tuple[int, int]) -> None:
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     def kernel(k: int) -> tuple[float, float]:
-        p = body_parameters(STACKS[k], g=S.g[k])
-        terms = kernel_equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
+        p = body_record(STACKS[k], g=S.g[k])
+        terms = kernel_equations(p, *poles, record(poles, *state(S, k), S.a[k]))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     assert error(each(reference), true).max() < 1e-12
@@ -82,8 +90,8 @@ def test_linearised_equations_of_motion(poles: tuple[int, int]) -> None:
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     def kernel(k: int) -> tuple[float, float]:
-        p = body_parameters(STACKS[k], linear=True, g=S.g[k])
-        terms = kernel_equations(p, *poles, S.th1[k], S.w1[k], S.th2[k], S.w2[k], S.a[k])
+        p = body_record(STACKS[k], linear=True, g=S.g[k])
+        terms = kernel_equations(p, *poles, record(poles, *state(S, k), S.a[k]))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     assert error(each(reference), true).max() < 1e-12
@@ -115,7 +123,7 @@ def corner_force(s: System, contact: int, pole: int, poles: tuple[int, int]) -> 
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("pole", [1, -1])
 def test_a_full_contact_persists_while_both_its_corners_are_pressed(side: int, pole: int) -> None:
-    glued, standing = S.glued(), S.standing()
+    glued, standing = S.rigidly_joined(), S.standing()
     # pattern 3: the interface; the true angular acceleration is that of the stuck state
     models = [Model(STACKS[k], S.g[k]) for k in range(N)]
     q = np.array(
@@ -175,7 +183,7 @@ def impacts() -> list[tuple[tuple[int, int], tuple[int, int], System]]:
             if which[0]:
                 s = s.with_(th1=0.0, w1=-old[0] * np.abs(s.w1))
             if old[1] == 0:
-                s = s.glued()
+                s = s.rigidly_joined()
             elif which[1]:
                 s = s.with_(th2=s.th1, w2=s.w1 - old[1] * np.abs(s.w2))
             cases.append((old, (old[0] * which[0], old[1] * which[1]), s))
@@ -216,9 +224,9 @@ def test_the_fast_kernel_finds_the_same_outcome(
     for k in range(N):
         theta, omega = state(s, k)
         new, after = Model(STACKS[k], S.g[k]).impact(old, closing, theta, omega)
-        p = body_parameters(STACKS[k], g=S.g[k])
+        p = body_record(STACKS[k], g=S.g[k])
         n1, n2, w1, w2 = kernel_impact(
-            p, *old, closing[0] != 0, closing[1] != 0, theta[0], omega[0], theta[1], omega[1]
+            p, record(old, theta, omega, 0.0), closing[0] != 0, closing[1] != 0
         )
         assert (n1, n2) == new
         assert (w1, w2) == pytest.approx(after, rel=1e-10, abs=1e-12)

@@ -15,7 +15,7 @@ Array = np.ndarray
 
 def upper(s1: int, s2: int):
     """s2 τ2(s2) of block 2 stuck to a pedestal that rocks on s1 (pattern 3)."""
-    return lambda s: s2 * s.glued().moments(s1, s2)[1]
+    return lambda s: s2 * s.rigidly_joined().moments(s1, s2)[1]
 
 
 def ground(s1: int, s2: int):

@@ -25,7 +25,11 @@ def response_figure(response: Response, title: str) -> Figure:
     """Draw acceleration [g], rotations over the critical angle, and the pattern over time."""
     body = response.body
     single = isinstance(body, Block)
-    critical = [body.alpha] if isinstance(body, Block) else [body.glued().alpha, body.statue.alpha]
+    critical = (
+        [body.alpha]
+        if isinstance(body, Block)
+        else [body.rigidly_joined().alpha, body.statue.alpha]
+    )
     names = ["body"] if single else ["pedestal", "statue"]
     colours = [BLUE] if single else [ORANGE, BLUE]
     with figure_style():

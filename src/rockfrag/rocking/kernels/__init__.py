@@ -1,1 +1,34 @@
-"""Kernels."""
+"""The kernels: compiled functions that march bodies through motions.
+
+**The life of a case.**  A case is a body × motion × scale.  It is at rest until the ground lifts it (``case.next_uplift``
+skips to that instant), rocks in a contact state (``contact_states`` has their table), and goes from one to the next by
+events: a contact opens (``contact_states.release``) or closes (``impact``), until the body rests again, has fallen, or its
+motion is over and what is left of its energy cannot overturn it.  Impacts that accumulate are ended at once where that is
+proved to change nothing (``chatter``).
+
+**Who calls whom.**
+
+====================================  =========================================================================
+called from Python                    calls
+====================================  =========================================================================
+``single.march``: one history         ``taylor.fill_series`` from event to event; ``roots`` find the next one;
+                                      ``single.land`` and ``contact_states`` say what follows; ``record`` keeps it
+``lanes.scheduler.march_stacks``      ``stack_one.advance`` and ``stack_two.advance``: one step of sixteen cases;
+                                      ``stack_case``: events, rest, the next case; ``stack_constants`` once a body
+``lanes.block.march_blocks``          ``block.advance``: one step of 32 lone blocks, and all the rest in one file
+``record.fill_energies``              ``equations``
+====================================  =========================================================================
+
+All of them stand on ``equations`` (the two-block model), ``taylor`` (series), ``roots`` (instants), ``contact_states``,
+``impact`` and ``chatter``; ``jit`` says how they are compiled.
+
+**Data** are records with named fields: BODY, STATE (``equations``), SERIES (``taylor``), CASE (``stack_case``), LANE (of
+every kind of lane, a row of numbers for each field), OUTCOME (``case``), SAMPLE, EVENT, SUMMARY (``record``); what belongs
+together is handed on as a named tuple: Ensemble and Motions (``case``), Worker (the memory of a thread), Shaking, Step,
+Ahead.
+
+**Types** are inferred by numba from records and tuples that annotations cannot name, so mypy is kept out of these modules
+(but not of ``jit``); what Python hands to them is typed where it is made.
+
+``docs/kernels.md`` says how to change them.
+"""

@@ -6,14 +6,14 @@ Read by :mod:`rockfrag.rocking.kernels.jit` alone, with versions of numba that i
 from typing import Any, ClassVar
 
 import llvmlite.binding as llvm
-from numba import _dynfunc
+from numba import _dynfunc  # type: ignore[attr-defined]
 from numba.core import typed_passes, untyped_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
 
 
-class Part(JITCodeLibrary):  # type: ignore[misc]
+class Part(JITCodeLibrary):
     """The code of one kernel, not optimised and not made machine code of, with references to those it calls."""
 
     def add_linking_library(self, library: Any) -> None:
@@ -33,7 +33,7 @@ class Part(JITCodeLibrary):  # type: ignore[misc]
         return self._final_module
 
 
-class Whole(JITCodeLibrary):  # type: ignore[misc]
+class Whole(JITCodeLibrary):
     """The code of an entry kernel and of all parts that it needs, each linked once."""
 
     def add_linking_library(self, library: Any) -> None:
@@ -50,7 +50,7 @@ class Whole(JITCodeLibrary):  # type: ignore[misc]
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class LowerPart(typed_passes.NativeLowering):  # type: ignore[misc]
+class LowerPart(typed_passes.NativeLowering):
     """Make a kernel known to those that call it, without machine code."""
 
     _name = "lower_part"
@@ -67,7 +67,7 @@ class LowerPart(typed_passes.NativeLowering):  # type: ignore[misc]
         return True
 
 
-class _KernelCompiler(CompilerBase):  # type: ignore[misc]
+class _KernelCompiler(CompilerBase):
     """The passes that kernels need."""
 
     library: ClassVar[type]

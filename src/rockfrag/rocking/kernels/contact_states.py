@@ -9,13 +9,14 @@
 
 | what happens | when | what follows |
 |---|---|---|
-| uplift, release | a closed contact would have to be pulled at a corner (``ground_hold``, ``interface_hold``) | ``settle`` |
+| uplift, release | a closed contact would have to be pulled at a corner (``ground_hold``, ``interface_hold``)
+| ``settle`` |
 | impact | an open contact's angle falls to zero | ``impact.impact``, then ``settle`` |
 | rest | an impact closes all contacts, or impacts that are sure to end do (``chatter``) | uplift |
 | fall | a block has turned by a right angle, or cannot come back | the end |
 
-A full contact pushes and never pulls.  States are tried from all contacts closed to all open, and the first consistent
-one is taken, so that every transition that the mechanics allows occurs.
+A full contact pushes and never pulls.  States are tried from all contacts closed to all open, and the first
+consistent one is taken, so that every transition that the mechanics allows occurs.
 """
 
 import math

@@ -1,14 +1,15 @@
 """Impacts: what the velocities are after contacts have closed.
 
-Point impact, no bounce, no impulse at a pole that leaves: momentum before is projected on the velocity fields after,
-M(test, new) ω⁺ = B(test, old) ω⁻ (``docs/derivation.md``; thesis eq. 2.12, 2.76-2.86).  The test fields turn about the
+Point impact, no bounce, no impulse at a pole that leaves: momentum before is projected on the velocity fields
+after, M(test, new) ω⁺ = B(test, old) ω⁻ (``docs/derivation.md``; thesis eq. 2.12, 2.76-2.86).  The test fields
+turn about the
 points where the impulses act: the new poles, or what a measured restitution asks for.
 
 Every outcome of every impact is worked out here, so a contact law has its place here:
 
 - ``impact``: any contacts of any body.  One history follows it, and the tables of landings are made with it.
-- ``ground_impact``, ``interface_impact``: one contact of two closes while the other stays open, which makes nearly all
-  impacts of a stack in an ensemble, by the products of velocity fields that the stack's table holds.
+- ``ground_impact``, ``interface_impact``: one contact of two closes while the other stays open, which makes
+  nearly all impacts of a stack in an ensemble, by the products of velocity fields that the stack's table holds.
 - ``block_impact``: the lone block of an ensemble.
 """
 
@@ -20,8 +21,8 @@ from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
 def impact(body, state, closes1, closes2):
     """State and velocities after contacts of a state close: (c1, c2, ω1⁺, ω2⁺).
 
-    Energy never grows: where a measured restitution would make it grow in this configuration, the impulse acts at the
-    pole.
+    Energy never grows: where a measured restitution would make it grow in this configuration, the impulse acts
+    at the pole.
     """
     n1, n2, w1, w2 = _admissible(body, state, closes1, closes2, body.measured)
     if body.measured:

@@ -1,18 +1,21 @@
 """How kernels are compiled, and the one place that uses numba's private parts.
 
-``kernel`` marks a function that other kernels call, ``entry_kernel`` one that Python calls.  Machine code is made for
-entry kernels alone, once per machine, and cached where the installation (or the user's cache) can be written.
+``kernel`` marks a function that other kernels call, ``entry_kernel`` one that Python calls.  Machine code is
+made for entry kernels alone, once per machine, and cached where the installation (or the user's cache) can be
+written.
 
-Numba would otherwise optimise every kernel by itself, once more inside each kernel that calls it, and make machine code
-for all of them, of which only that of the entry kernels is ever run; and it would take every kernel through two dozen
-passes for what these do not use (closures, reference counts, array expressions, parallel loops).  Both cost more time
-than all that is needed.  So a kernel stays a piece of unoptimised code until an entry kernel that needs it is optimised
-as a whole.  This uses classes that numba does not document; with a version other than ``TESTED_NUMBA`` kernels are
-compiled the ordinary way, which takes longer and gives the same bits.
+Numba would otherwise optimise every kernel by itself, once more inside each kernel that calls it, and make
+machine code for all of them, of which only that of the entry kernels is ever run; and it would take every
+kernel through two dozen passes for what these do not use (closures, reference counts, array expressions,
+parallel loops).  Both cost more time than all that is needed.  So a kernel stays a piece of unoptimised code
+until an entry kernel that needs it is optimised as a whole.  This uses classes that numba does not document;
+with a version other than ``TESTED_NUMBA`` kernels are compiled the ordinary way, which takes longer and gives
+the same bits.
 
-Arithmetic is strictly IEEE: nothing is contracted or reordered, because the compiler would do so differently in each
-place that a kernel is inlined in.  Kernels may not allocate arrays: what they are given is borrowed from the caller, and
-nothing counts references (atomic operations that took a twentieth of the time of an ensemble).
+Arithmetic is strictly IEEE: nothing is contracted or reordered, because the compiler would do so differently
+in each place that a kernel is inlined in.  Kernels may not allocate arrays: what they are given is borrowed
+from the caller, and nothing counts references (atomic operations that took a twentieth of the time of an
+ensemble).
 """
 
 import gc
@@ -37,7 +40,7 @@ if KNOWN:
     from rockfrag.rocking.kernels._numba import PartCompiler, WholeCompiler
 
 
-def entry_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+def entry_kernel(function: Callable[..., Any]) -> Any:
     """Compile ``function``, which Python calls, without the interpreter's lock, and cache the machine code."""
     own = {"pipeline_class": WholeCompiler} if KNOWN else {}
     try:
@@ -53,27 +56,28 @@ def entry_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     return compiled
 
 
-def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+def kernel(function: Callable[..., Any]) -> Any:
     """Mark ``function``, which only kernels call; it may be inlined or not."""
     return _part(function)
 
 
-def inlined_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+def inlined_kernel(function: Callable[..., Any]) -> Any:
     """Mark ``function``, which only kernels call, as one that is always inlined.
 
-    For what is called at every event, since an array is handed on as seven numbers, and for straight-line arithmetic
-    that the compiler is to do for several cases at once.
+    For what is called at every event, since an array is handed on as seven numbers, and for straight-line
+    arithmetic that the compiler is to do for several cases at once.
     """
     return _part(function, forceinline=True)
 
 
-def _part(function: Callable[..., Any], **more: Any) -> Callable[..., Any]:
+def _part(function: Callable[..., Any], **more: Any) -> Any:
     own = {"pipeline_class": PartCompiler} if KNOWN else {}
     return _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **own, **more)
 
 
 def _compiled(function: Callable[..., Any], **options: Any) -> Any:
-    return numba.njit(nogil=True, error_model="numpy", _nrt=False, **options)(function)
+    njit: Any = numba.njit
+    return njit(nogil=True, error_model="numpy", _nrt=False, **options)(function)
 
 
 @cache

@@ -265,5 +265,5 @@ def narrowed(bracket, tau, hold):
 
 @inlined_kernel
 def is_narrow(bracket):
-    """Whether the instant is known to 1e-13 of the step; it is taken at the end at which the contact has let go."""
+    """Whether the instant is known to 1e-13 of the step; its end has let go, and is what counts."""
     return bracket[2] - bracket[0] <= 1e-13

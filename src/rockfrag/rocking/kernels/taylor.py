@@ -1,17 +1,17 @@
 """Taylor series of a rocking motion over one step (Moore 1966; Jorba and Zou 2005).
 
 The ground acceleration is linear over a step, so every coefficient follows exactly from those before it.  With
-V = R(θ)(vx, vy) a first moment, X = V_y and Y = V_x, the equations of motion hold only sums and products of series and
-X' = -Y θ', Y' = X θ'; a product's coefficient is (u v)_k = Σ u_j v_{k-j}, and a rate's follows from
+V = R(θ)(vx, vy) a first moment, X = V_y and Y = V_x, the equations of motion hold only sums and products of
+series and X' = -Y θ', Y' = X θ'; a product's coefficient is (u v)_k = Σ u_j v_{k-j}, and a rate's follows from
 (k + 1) w_{k+1} = (θ'')_k.  That is the whole method; ``tests/rocking/test_taylor.py`` has it in twenty lines, and
 compares with it what stands here:
 
 - ``fill_series``: both rotations of any body in any contact state, linearised or not, for one history.
-- ``rates_of_one``, ``rates_of_two``: the same written out, without loops or branches, so that the compiler can work on
-  several cases at once.
+- ``rates_of_one``, ``rates_of_two``: the same written out, without loops or branches, so that the compiler can
+  work on several cases at once.
 
-Where gravity were g + a_v(t), linear over the step too, each weight moment g Y would become a product of two series as
-a X is now.
+Where gravity were g + a_v(t), linear over the step too, each weight moment g Y would become a product of two
+series as a X is now.
 """
 
 import math
@@ -84,7 +84,7 @@ def _extend(rotation, k, linear):
 
 @kernel
 def _extend_circular(rotation, k):
-    """Append coefficient ``k`` ≥ 1 of sine and cosine: k s_k = Σ c_j (k - j) θ_{k-j}, k c_k = -Σ s_j (k - j) θ_{k-j}."""
+    """Append coefficient k ≥ 1: k s_k = Σ c_j (k - j) θ_{k-j} and k c_k = -Σ s_j (k - j) θ_{k-j}."""
     ds = 0.0
     dc = 0.0
     for j in range(k):
@@ -239,8 +239,8 @@ def sine_cosine(x):
 def rates_of_one(s0, c0, w, kappa, a, rise):
     """Taylor coefficients 0 to 6 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0.
 
-    ψ'' = κ (sin ψ + A cos ψ) with A = a + rise τ and time in steps (thesis eq. 2.4): a lone block with ψ = θc - |θ|,
-    κ = p² h² and A the ground acceleration over g, positive where it pushes the block back down.
+    ψ'' = κ (sin ψ + A cos ψ) with A = a + rise τ and time in steps (thesis eq. 2.4): a lone block with ψ = θc
+    - |θ|, κ = p² h² and A the ground acceleration over g, positive where it pushes the block back down.
     """
     w1 = kappa * fma(a, c0, s0)
     s1 = c0 * w
@@ -293,8 +293,8 @@ def rates_of_two(mass, weight1, weight2, g, rates, ground):
 
     M11 θ1'' + M12 θ2'' + D θ2'² + f1 = 0 and M12 θ1'' + M22 θ2'' - D θ1'² + f2 = 0 with M12 = E cos Δ + F sin Δ,
     D = dM12/dΔ, Δ = θ2 - θ1 and fi = a Xi - g Yi, where Xi = Vy cos θi - Vx sin θi and Yi = Vx cos θi + Vy sin θi
-    (``equations``).  All satisfy recurrences: M' = D Δ', D' = -M Δ', X' = -Y θ', Y' = X θ'.  Time is counted in steps:
-    rates and V carry the step's length.
+    (``equations``).  All satisfy recurrences: M' = D Δ', D' = -M Δ', X' = -Y θ', Y' = X θ'.  Time is counted
+    in steps: rates and V carry the step's length.
 
     Parameters
     ----------

@@ -86,14 +86,14 @@ class Model:
             self._r1 = self._d = _Affine(_NOWHERE, _NOWHERE, _NOWHERE)
             arms = {(s, t): body.arm(t) for s in (1, -1) for t in (1, -1)}
         else:
-            blocks = (body.pedestal, body.statue)
+            blocks = (body.pedestal, body.contact_statue)
             pedestal = body.pedestal
             self.m1, self.i1, self.b1 = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
             pairs = [(s, t) for s in (1, -1) for t in (1, -1)]
             self._r1 = _affine({(s, t): pedestal.arm(s) for s, t in pairs})
             self._d = _affine({(s, t): body.reach(s, t) for s, t in pairs})
             arms = {(s, t): body.statue_arm(t) for s, t in pairs}
-        upper = body if isinstance(body, Block) else body.statue
+        upper = body if isinstance(body, Block) else body.contact_statue
         self.m2, self.i2, self.b2 = upper.mass, upper.centroidal_inertia, upper.b
         self._r2 = _affine(arms)
         self.frequency = max(upper.frequency(s, g) for s in (1, -1))
@@ -388,7 +388,7 @@ def _checked_restitution(body: Body, restitution: object) -> tuple[float | None,
     ground, interface = restitution
     return (
         _checked_value("restitution[0] (ground)", body.pedestal, ground),
-        _checked_value("restitution[1] (interface)", body.statue, interface),
+        _checked_value("restitution[1] (interface)", body.contact_statue, interface),
     )
 
 

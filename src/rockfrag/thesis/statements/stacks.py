@@ -53,7 +53,7 @@ def c2(setting: Setting) -> Result:
         tower = next(n for n, block in setting.blocks.items() if stack.statue == block)
         computed[f"P&{tower} pattern 3"] = setting.pattern_3[name]
         computed[f"P&{tower} pattern 4"] = setting.pattern_4[name]
-        agree.append(starts_at(stack.glued(), setting.pattern_3[name]))
+        agree.append(starts_at(stack.rigidly_joined(), setting.pattern_3[name]))
         agree.append(starts_at(stack, setting.pattern_4[name]))
     wrong = [
         f"{name}: {computed.get(name, math.nan):.4f} against {figure}"

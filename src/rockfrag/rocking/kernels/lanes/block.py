@@ -1,11 +1,12 @@
 """Ensembles of lone blocks, many cases side by side.
 
-Each lane carries one case; one pass of the vector loop advances every lane by one sample with the same straight-line
-arithmetic, and what is rare (impacts, rest, verdicts, the next case) is handled lane by lane between passes.  All cases
-need the same arithmetic, so a case lives in its lane and never waits for one, unlike those of stacks (``scheduler``).
+Each lane carries one case; one pass of the vector loop advances every lane by one sample with the same
+straight-line arithmetic, and what is rare (impacts, rest, verdicts, the next case) is handled lane by lane
+between passes.  All cases need the same arithmetic, so a case lives in its lane and never waits for one,
+unlike those of stacks (``scheduler``).
 
-With ψ = θc - |θ| and A the ground acceleration over g, positive where it pushes the block back down, the equation of
-motion on either pole is ψ'' = p² (sin ψ + A cos ψ) (thesis eq. 2.4).  Time is counted in samples.
+With ψ = θc - |θ| and A the ground acceleration over g, positive where it pushes the block back down, the
+equation of motion on either pole is ψ'' = p² (sin ψ + A cos ψ) (thesis eq. 2.4).  Time is counted in samples.
 """
 
 import math
@@ -105,10 +106,10 @@ def advance(lane):
 
     Everything is stored in every lane: conditional stores cost many times as much.
 
-    A fall is certain, whatever the ground does, in this case.  Let tan φ = ``bound``, the most that A can be in the rest
-    of the motion.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side grows with ψ: a block that the
-    constant A = tan φ cannot bring back is brought back by no smaller A.  With ψ' < 0 that pendulum passes its upper
-    equilibrium ψ = -φ if ψ'²/2 ≥ κ (1 - cos(ψ + φ)) / cos φ.
+    A fall is certain, whatever the ground does, in this case.  Let tan φ = ``bound``, the most that A can be
+    in the rest of the motion.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side grows
+    with ψ: a block that the constant A = tan φ cannot bring back is brought back by no smaller A.  With ψ' < 0
+    that pendulum passes its upper equilibrium ψ = -φ if ψ'²/2 ≥ κ (1 - cos(ψ + φ)) / cos φ.
     """
     for i in range(LANES):
         psi = lane.psi[i]
@@ -308,7 +309,7 @@ def _event(lane, i, tally):
 
 @inlined_kernel
 def _flight(gap, rates, end):
-    """Time at which ψ reaches the angle of impact, ``gap`` below it, passed by the time ``end``; NEVER if it stays."""
+    """Time at which ψ reaches the angle of impact, passed by the time ``end``; NEVER if it stays there."""
     _, w1, w2, w3, w4, w5, w6 = rates
     series = (
         -gap,

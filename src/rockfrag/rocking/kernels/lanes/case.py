@@ -11,15 +11,16 @@ LANES = 16
 """Lanes of each kind that stacks march in."""
 
 WITHIN, QUIET, CLOSES, NEARS, RELEASE = -1.0, 0.0, 1.0, 2.0, 3.0
-"""Flags of a lane after a pass: it has not yet reached the end of its sample, or has; positive ones are events: a contact
-closes, may have closed, or lets go."""
+"""Flags of a lane after a pass: it has not yet reached the end of its sample, or has; positive ones are
+events: a contact closes, may have closed, or lets go."""
 
 BLOCK = 16
 """Samples under one entry of the tables of extremes that rest is skipped with."""
 
 OUTCOME = np.dtype(
     [
-        # what fell (0 none, 1 the pedestal, 2 the statue or lone block), and the samples after which that was certain
+        # what fell (0 none, 1 the pedestal, 2 the statue or lone block), and the samples after which that was
+        # certain
         ("fallen", np.int64), ("certain", np.int64),
         # extremes: of θ/θcritical of pedestal and statue, |θ'| of the statue per sample, distance from balance
         ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("closest", np.float64),

@@ -1,12 +1,13 @@
 """Ensembles of stacks, many cases side by side.
 
-There are lanes for the cases of which one part rotates and lanes for those of which both blocks do, because the arithmetic
-of the second costs twice that of the first.  One pass advances all lanes of a kind; what is rare (events, rest, verdicts,
-the next case) is handled case by case between passes.  A case whose event changes its kind waits for a lane of the other:
-there are as many cases in flight as lanes, so that one kind or the other can always fill its lanes.
+There are lanes for the cases of which one part rotates and lanes for those of which both blocks do, because
+the arithmetic of the second costs twice that of the first.  One pass advances all lanes of a kind; what is
+rare (events, rest, verdicts, the next case) is handled case by case between passes.  A case whose event
+changes its kind waits for a lane of the other: there are as many cases in flight as lanes, so that one kind or
+the other can always fill its lanes.
 
-A case's numbers depend on that case alone, so neither the number of lanes nor their neighbours nor the threads change a
-bit of them.
+A case's numbers depend on that case alone, so neither the number of lanes nor their neighbours nor the threads
+change a bit of them.
 """
 
 from rockfrag.rocking.kernels.jit import entry_kernel, inlined_kernel, lowest_bit

@@ -1,7 +1,8 @@
 """The life of a stack's case: taken, at rest, in a lane, through its events, and put down.
 
-A case in flight is a CASE record; its slot holds the constants of its body.  Lanes of one rotation (``stack_one``) and of
-two (``stack_two``) hold copies of what they march; ``place_one``, ``store_one`` and their like carry these over.
+A case in flight is a CASE record; its slot holds the constants of its body.  Lanes of one rotation
+(``stack_one``) and of two (``stack_two``) hold copies of what they march; ``place_one``, ``store_one`` and
+their like carry these over.
 """
 
 import math

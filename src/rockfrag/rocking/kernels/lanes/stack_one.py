@@ -1,6 +1,7 @@
 """Stacks side by side of which one part rotates: the statue on its pedestal, or both blocks as one.
 
-One pass advances every lane from where it is within a sample to the end of that sample.  Time is counted in samples.
+One pass advances every lane from where it is within a sample to the end of that sample.  Time is counted in
+samples.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Stacks side by side of which both blocks rotate, the ground and the interface being open.
 
-One pass advances every lane by one step, which ends with its sample or takes the largest part of it that is allowed.
-Time is counted in samples.
+One pass advances every lane by one step, which ends with its sample or takes the largest part of it that is
+allowed. Time is counted in samples.
 """
 
 import numpy as np
@@ -66,8 +66,8 @@ def span_of(left, part):
 def advance(lane, g):
     """Advance every lane by a step, and flag those with an event in it.
 
-    A lane is QUIET at the end of its sample, and WITHIN it after a step that does not reach that end.  Everything is
-    stored in every lane: conditional stores cost many times as much.
+    A lane is QUIET at the end of its sample, and WITHIN it after a step that does not reach that end.
+    Everything is stored in every lane: conditional stores cost many times as much.
     """
     for i in range(LANES):
         left = lane.part_left[i]
@@ -177,7 +177,7 @@ def next_event(c1, c2, flag, series):
 
 @inlined_kernel
 def nearest(lane, i, state):
-    """Largest θ/θcritical of both, |θ2'|, least distance from balance squared, up to an event (θ1, θ1', θ2, θ2')."""
+    """Largest θ/θcritical of both, |θ2'|, least distance from balance squared, up to an event."""
     theta1, omega1, theta2, omega2 = state
     ratio1 = lane.per_angle1[i] * theta1
     ratio2 = lane.per_angle2[i] * theta2

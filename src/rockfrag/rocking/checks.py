@@ -1,0 +1,96 @@
+"""Checks of single numbers and arrays that users give: what cannot be used is refused, never trimmed."""
+
+import math
+import numbers
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+
+_LONGEST_SHOWN = 60
+
+
+def shown(value: object) -> str:
+    """Return a value as a message quotes it: in one short line."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "…"
+
+
+def real_number(name: str, value: object, unit: str = "") -> float:
+    """Return a finite number as it is, or say in one sentence why it is none.
+
+    Raises
+    ------
+    InputError
+        For text, booleans, None, arrays, complex and infinite numbers.
+    """
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
+    if not is_number or not math.isfinite(value):  # type: ignore[arg-type]
+        raise InputError(f"{name}: expected a finite number{_of(unit)}, got {shown(value)}.")
+    return float(value)  # type: ignore[arg-type]
+
+
+def positive_number(name: str, value: object, unit: str = "") -> float:
+    """Return a positive number, or say in one sentence why it is none.
+
+    Raises
+    ------
+    InputError
+        For what is no finite number, zero and negative numbers.
+    """
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
+    if not is_number or not (math.isfinite(value) and value > 0):  # type: ignore[arg-type, operator]
+        raise InputError(f"{name}: expected a positive number{_of(unit)}, got {shown(value)}.")
+    return float(value)  # type: ignore[arg-type]
+
+
+def whole_number(name: str, value: object) -> int:
+    """Return a whole number, or say in one sentence why it is none.
+
+    Raises
+    ------
+    InputError
+        For all but integers; True and False are none.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+        raise InputError(f"{name}: expected a whole number, got {shown(value)}.")
+    return int(value)
+
+
+def _of(unit: str) -> str:
+    return f" of {unit}" if unit else ""
+
+
+def real_array(name: str, data: object, unit: str = "") -> NDArray[np.float64]:
+    """Return data as an array of floats, or say in one sentence why they cannot be used.
+
+    Raises
+    ------
+    InputError
+        For text, booleans, complex numbers, sets, mappings, ragged lists and arrays with a mask.
+    """
+    wanted = f"{name}: expected numbers{f' [{unit}]' if unit else ''}"
+    if isinstance(data, np.ma.MaskedArray):
+        raise InputError(f"{wanted}, got a masked array; fill its gaps first.")
+    if data is None or isinstance(data, (str, bytes, set, frozenset, Mapping)):
+        raise InputError(f"{wanted}, got {shown(data)}.")
+    try:
+        values: NDArray[Any] = np.asarray(data)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{wanted}, got {shown(data)}.") from error
+    if values.dtype.kind == "c":
+        raise InputError(f"{wanted}, got complex ones; take their real part if that is meant.")
+    if values.dtype.kind not in "iuf" and values.size:
+        raise InputError(f"{wanted}, got {_kind(values)}.")
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _kind(values: NDArray[Any]) -> str:
+    if values.dtype.kind == "b":
+        return "booleans"
+    if values.dtype.kind in "US":
+        return "text"
+    return f"{type(values.ravel()[0]).__name__} objects"
