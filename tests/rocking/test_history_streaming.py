@@ -145,8 +145,8 @@ def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"bodies": [BLOCK, "T2"]}, r"bodies\[1\]: expected a Block or a Stack, got str"),
-        ({"accelerations": [MOTIONS[0], [1.0]]}, r"accelerations\[1\]: a motion needs"),
+        ({"bodies": [BLOCK, "T2"]}, r"bodies\[1\]: expected a Block or a Stack, got 'T2'"),
+        ({"motions": [MOTIONS[0], [1.0]]}, r"motions\[1\]: a motion needs"),
         ({"dt": [DT, DT, DT]}, "dt: expected one number or 2, got 3"),
         ({"dt": 0.0}, "dt: expected a positive number"),
         ({"dt": [DT, 1e6]}, "is too long for a block"),
@@ -154,11 +154,11 @@ def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
         ({"restitution": [0.9]}, "restitution: expected 2 entries, one per body, got 1"),
         ({"restitution": [0.9, 0.9]}, "a pair"),
         ({"step": 0.0}, "step: expected a positive number"),
-        ({"g": -1.0}, "g must be a positive acceleration"),
+        ({"g": -1.0}, "g: expected a positive number"),
     ],
 )
 def test_wrong_arguments_are_named_before_anything_is_written(tmp_path, changed, message):
-    arguments = {"bodies": BODIES, "accelerations": MOTIONS, "dt": DT, "scales": SCALES} | changed
+    arguments = {"bodies": BODIES, "motions": MOTIONS, "dt": DT, "scales": SCALES} | changed
     with pytest.raises(InputError, match=message) as caught:
         stream_histories(**arguments, path=tmp_path / "h.parquet")
     assert str(caught.value).count(". ") == 0

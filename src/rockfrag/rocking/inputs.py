@@ -190,7 +190,7 @@ def checked_scales(
             )
     check_case_count(factors.size)
     # a copy: kernels would be compiled anew for a view that cannot be written to
-    return np.array(factors)
+    return np.array(factors, order="C")
 
 
 def checked_threads(threads: object) -> int:
