@@ -1,10 +1,11 @@
 """The kernels: compiled functions that march bodies through motions.
 
-**The life of a case.**  A case is a body × motion × scale.  It is at rest until the ground lifts it (``case.next_uplift``
-skips to that instant), rocks in a contact state (``contact_states`` has their table), and goes from one to the next by
-events: a contact opens (``contact_states.release``) or closes (``impact``), until the body rests again, has fallen, or its
-motion is over and what is left of its energy cannot overturn it.  Impacts that accumulate are ended at once where that is
-proved to change nothing (``chatter``).
+**The life of a case.**  A case is a body × motion × scale.  It is at rest until the ground lifts it
+(``case.next_uplift`` skips to that instant), rocks in a contact state (``contact_states`` has their table),
+and goes from one to the next by
+events: a contact opens (``contact_states.release``) or closes (``impact``), until the body rests again, has
+fallen, or its motion is over and what is left of its energy cannot overturn it.  Impacts that accumulate are
+ended at once where that is proved to change nothing (``chatter``).
 
 **Who calls whom.**
 
@@ -19,16 +20,17 @@ called from Python                    calls
 ``record.fill_energies``              ``equations``
 ====================================  =========================================================================
 
-All of them stand on ``equations`` (the two-block model), ``taylor`` (series), ``roots`` (instants), ``contact_states``,
-``impact`` and ``chatter``; ``jit`` says how they are compiled.
+All of them stand on ``equations`` (the two-block model), ``taylor`` (series), ``roots`` (instants),
+``contact_states``, ``impact`` and ``chatter``; ``jit`` says how they are compiled.
 
-**Data** are records with named fields: BODY, STATE (``equations``), SERIES (``taylor``), CASE (``stack_case``), LANE (of
-every kind of lane, a row of numbers for each field), OUTCOME (``case``), SAMPLE, EVENT, SUMMARY (``record``); what belongs
-together is handed on as a named tuple: Ensemble and Motions (``case``), Worker (the memory of a thread), Shaking, Step,
-Ahead.
+**Data** are records with named fields: BODY, STATE (``equations``), SERIES (``taylor``), CASE
+(``stack_case``), LANE (of every kind of lane, a row of numbers for each field), OUTCOME (``case``), SAMPLE,
+EVENT, SUMMARY (``record``); what belongs
+together is handed on as a named tuple: Ensemble and Motions (``case``), Worker (the memory of a thread),
+Shaking, Step, Ahead.
 
-**Types** are inferred by numba from records and tuples that annotations cannot name, so mypy is kept out of these modules
-(but not of ``jit``); what Python hands to them is typed where it is made.
+**Types** are inferred by numba from records and tuples that annotations cannot name, so mypy is kept out of
+these modules (but not of ``jit``); what Python hands to them is typed where it is made.
 
 ``docs/kernels.md`` says how to change them.
 """
