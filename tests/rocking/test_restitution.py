@@ -143,7 +143,10 @@ def test_without_spare_data_there_is_no_interval() -> None:
             lambda: restitution_from_history(T2, np.arange(9) * 0.01, np.full(9, 0.1)),
             "at least two impacts",
         ),
-        (lambda: restitution_from_history(T2, np.arange(9), ["a"] * 9), r"expected numbers \[rad\], got text"),
+        (
+            lambda: restitution_from_history(T2, np.arange(9), ["a"] * 9),
+            r"expected numbers \[rad\], got text",
+        ),
     ],
 )
 def test_what_cannot_be_fitted_is_refused_in_one_sentence(call, message: str) -> None:  # type: ignore[no-untyped-def]

@@ -96,7 +96,7 @@ def overturns_with_friction(
         If an argument cannot be used; the message says which and why.
     """
     body_list, values, dts = listed(bodies, accelerations, dt, None)
-    factors = checked_scales(scales, len(values))
+    factors = checked_scales(scales, values)
     if len(friction) != len(body_list):
         raise InputError(f"friction: expected {len(body_list)} entries, one per body.")
     up = np.zeros(0)

@@ -16,7 +16,7 @@ from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.contact.response import ContactResponse, mode_names
 from rockfrag.rocking.inputs import (
     STEP,
-    checked_acceleration,
+    checked_motion,
     free_samples,
     step_count,
     warn_if_weak,
@@ -75,8 +75,8 @@ def simulate_with_friction(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    values = checked_acceleration(acceleration, dt)
-    up = np.zeros(0) if vertical is None else checked_acceleration(vertical, dt, "vertical")
+    values, _ = checked_motion(acceleration, dt, "acceleration")
+    up = np.zeros(0) if vertical is None else checked_motion(vertical, dt, "vertical")[0]
     if up.size not in (0, values.size):
         raise InputError(f"vertical: {up.size} samples for {values.size} horizontal ones.")
     warn_if_weak(values)
