@@ -74,7 +74,7 @@ def test_many_histories_are_those_of_the_reference(stacks: bool) -> None:
 
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
 def test_verdicts_are_those_of_time_stepping(stacks: bool) -> None:
-    differing, fallen, slips = compare_with_stepping(8, stacks, seed=22, step=1e-4)
+    differing, fallen, slips = compare_with_stepping(8, stacks, seed=25, step=1e-4)
     assert differing <= 1
     assert fallen >= 1
     assert np.median(np.abs(slips)) < 1e-3
