@@ -164,16 +164,16 @@ def overturns(
     threads
         Threads to use; all cores if None.  Results do not depend on it.
 
+    Raises
+    ------
+    InputError
+        If an argument cannot be used; the message says which and why.
+
     Notes
     -----
     Cases with a start of their own, or with linearised equations, are marched one by one as :func:`simulate`
     does, which follows every impact and takes some ten times as long; a fall is then certain when a block lies
     down.
-
-    Raises
-    ------
-    InputError
-        If an argument cannot be used; the message says which and why.
     """
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)

@@ -71,12 +71,14 @@ def stream_overturns(
 
     Parameters
     ----------
-    bodies, motions, dt, scales, restitution, g, step, threads
+    bodies, motions, dt, scales
         As in :func:`overturns`.
     path
         The file to write.
     columns
         "verdict" or "peaks".
+    restitution, g, step, threads
+        As in :func:`overturns`.
     progress
         Called with the number of cases done and of all cases after every row group.
 
@@ -216,10 +218,12 @@ def stream_histories(
 
     Parameters
     ----------
-    bodies, motions, dt, scales, restitution, g, step, threads
+    bodies, motions, dt, scales
         As in :func:`overturns`.
     path
         The file to write.
+    restitution, g, step, threads
+        As in :func:`overturns`.
     progress
         Called with the number of cases done and of all cases after every row group.
 

@@ -132,6 +132,8 @@ def restitution_from_peaks(
         Use the slender linearised equation (thesis eq. 2.9).
     confidence
         Level of the interval.
+    g
+        Acceleration of gravity [m/s²].
 
     Raises
     ------
@@ -184,7 +186,7 @@ def restitution_from_impacts(
         Times of successive impacts [s], shape (n,), n ≥ 3, rising; none may be left out.
     first_pole
         Corner the block rocks on between the first two.
-    linear, confidence
+    linear, confidence, g
         As for :func:`restitution_from_peaks`.
 
     Raises
@@ -256,6 +258,8 @@ def restitution_from_history(
         Rotations [rad], shape (n,), clockwise positive.
     confidence
         Level of the interval.
+    g
+        Acceleration of gravity [m/s²].
 
     Raises
     ------

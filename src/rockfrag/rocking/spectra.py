@@ -92,6 +92,10 @@ def rocking_spectrum(
         Critical angles [rad], one or several, shape (j,).
     restitution
         The same measured restitution for all; None conserves momentum (thesis eq. 2.14).
+    g
+        Acceleration of gravity [m/s²].
+    threads
+        Threads to use; all cores if None.  The spectrum does not depend on it.
 
     Raises
     ------

@@ -58,12 +58,14 @@ def fragile_verdicts(
 
     Parameters
     ----------
-    bodies, motions, dt, scales, restitution, g, step, threads
+    bodies, motions, dt, scales
         The ensemble, as in :func:`overturns`.
     sample
         Number of cases, drawn without repetition; all of them if there are fewer.
     seed
         Seed of the draw.
+    restitution, g, step, threads
+        As in :func:`overturns`.
 
     Raises
     ------

@@ -73,7 +73,7 @@ def find_thresholds(
 
     Parameters
     ----------
-    bodies, motions, dt, restitution, g, step, threads
+    bodies, motions, dt
         As in :func:`overturns`.
     highest
         Largest scale on the accelerations to look at; motions with a peak of 1 g make scales PGAs in g.
@@ -82,6 +82,8 @@ def find_thresholds(
     smallest_window
         Width of the narrowest window that must not be missed, in scale: the spacing of the grid that is
         looked at first.
+    restitution, g, step, threads
+        As in :func:`overturns`.
 
     Raises
     ------

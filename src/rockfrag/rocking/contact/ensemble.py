@@ -85,6 +85,8 @@ def overturns_with_friction(
         One entry per body, each as in :func:`simulate_with_friction`.
     vertical
         Vertical motions [m/s²], one per horizontal one and as long.
+    g
+        Acceleration of gravity [m/s²].
     step
         Largest product of the frequency parameter and the step [-].
     threads
