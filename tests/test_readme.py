@@ -166,5 +166,5 @@ def keys_of(schema: dict) -> set[str]:
 def test_every_key_of_a_configuration_is_explained():
     schemas = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))["$defs"]
     text = (ROOT / "config/README.md").read_text(encoding="utf-8")
-    explained = set(re.findall(r"`([A-Za-z_]+)`", text))
+    explained = set(re.findall(r"`([A-Za-z_0-9]+)`", text))
     assert set().union(*(keys_of(schema) for schema in schemas.values())) <= explained

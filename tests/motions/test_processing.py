@@ -70,7 +70,7 @@ def test_recorded_steps_can_be_taken_again(record):
 @pytest.mark.parametrize(
     ("steps", "message"),
     [
-        ([{"step": "polish"}], "no step 'polish'; known are demean, baseline"),
+        ([{"step": "polish"}], "no step 'polish'; known are demean, remove_median"),
         ([{"step": ["demean"]}], "there is no step"),
         ([{"order": 4}], "key 'step'"),
         (["demean"], "key 'step'"),

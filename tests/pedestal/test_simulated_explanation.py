@@ -82,7 +82,7 @@ def test_perturbed_copies_follow_from_the_seed_and_differ_on_the_two_sides():
     ("levels", "words"),
     [
         ({"statue_restitution": (1.2,)}, ["statue_restitution", "1.2", "between 0 and 1"]),
-        ({"pedestal_width_cm": (10.0,)}, ["pedestal_width_cm", "10", "beyond"]),
+        ({"statue_offset_mm": (150.0,)}, ["statue_offset_mm", "150", "centre of gravity"]),
         ({"statue_cg_offset_mm": (70.0,)}, ["statue_cg_offset_mm", "cannot stand"]),
     ],
 )

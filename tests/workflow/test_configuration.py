@@ -88,7 +88,10 @@ def test_a_wrong_key_or_value_is_named_with_what_was_expected(
         (SPECIMENS.replace("T2,", "T1,"), ["line 3", "T1", "twice"]),
         (SPECIMENS.replace("2172", "2172,7"), ["line 2", "4 cells"]),
         ("", ["header"]),
-        (SPECIMENS.replace("18.4", "10.4"), ["configurations.csv, line 4", "beyond"]),
+        (
+            SPECIMENS.replace("P,18.4,20.8", "P,4,2").replace("2300", "50"),
+            ["configurations.csv, line 4", "ground"],
+        ),
     ],
 )
 def test_a_wrong_cell_is_named_with_line_and_column(

@@ -10,7 +10,6 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.motions.measures import measure_pair
 from rockfrag.motions.processing import process
 from rockfrag.motions.rotation import (
     fault_normal,
@@ -129,6 +128,9 @@ def measure_records(
     InputError
         If a record is wrong, or two components are no pair.
     """
+    # the measures are compiled, which the checks of a study need not wait for
+    from rockfrag.motions.measures import measure_pair
+
     known: dict[frozenset[str], dict[str, float]] = {}
     table: list[dict[str, Any]] = []
     for row in rows:

@@ -2,6 +2,7 @@
 
 import glob
 import gzip
+import math
 import os
 import tempfile
 from collections.abc import Iterator
@@ -195,7 +196,10 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
     duration = trace.stats.get("knet", {}).get("duration") if format_name == "KNET" else None
     if duration is None:
         return []
-    promised = round(float(duration) * float(trace.stats.sampling_rate))
+    product = float(duration) * float(trace.stats.sampling_rate)
+    if not math.isfinite(product):
+        raise InputError(f"{path}: its duration of {duration} s is no length; the file is damaged.")
+    promised = round(product)
     found = int(trace.stats.npts)
     if found == promised:
         return []

@@ -17,7 +17,9 @@ _COLUMNS = (
 def _section(results: Results) -> Section | None:
     curves = results.table("fragility_floors")
     shown = curves[(curves["measure"] == "pga_g") & curves["theta"].notna()]
-    files = sorted(path.name for path in (results.folder / "exports").glob("*") if path.is_file())
+    # hidden files are the workflow's own marks
+    names = (path.name for path in (results.folder / "exports").iterdir() if path.is_file())
+    files = sorted(name for name in names if not name.startswith("."))
     if shown.empty:
         return None
     shown = shown.assign(
