@@ -44,6 +44,20 @@ def test_a_box_rocks_as_the_block_of_its_dimensions(box: Path):
     assert block.frequency() == pytest.approx(plain.frequency(), rel=1e-6)
 
 
+def test_a_block_comes_from_a_mesh_or_from_measured_edges(box: Path):
+    mesh = Block.from_mesh(
+        box, mass=MASS, direction_deg=0, contact_tolerance=0.001, edge_retreat=0.01
+    )
+    inertia = MASS * (WIDTH**2 + HEIGHT**2) / 12
+    hand = Block.from_edges(0.19, 0.19, cg_height=0.5, height=HEIGHT, mass=MASS, inertia=inertia)
+    assert mesh.width == pytest.approx(hand.width, rel=1e-6)
+    assert mesh.frequency() == pytest.approx(hand.frequency(), rel=1e-6)
+    uneven = Block.from_edges(0.1, 0.3, cg_height=0.5, height=HEIGHT, mass=MASS, inertia=inertia)
+    # θ > 0 leans over the right edge, which is the further one
+    assert uneven.critical_angle(+1) == pytest.approx(np.arctan2(0.3, 0.5))
+    assert uneven.critical_angle(-1) == pytest.approx(np.arctan2(0.1, 0.5))
+
+
 def test_over_its_diagonal_a_box_reaches_half_the_diagonal(box: Path):
     diagonal = np.degrees(np.arctan2(DEPTH, WIDTH))
     edges = read_shape(box, mass=MASS).edges(float(diagonal), 0.001)

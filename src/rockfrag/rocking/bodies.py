@@ -7,6 +7,7 @@ R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwi
 """
 
 import math
+import os
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -84,6 +85,83 @@ class Block:
                 f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
                 f"gravity is not above its base of {self.width} m, so it cannot stand."
             )
+
+    @classmethod
+    def from_edges(
+        cls,
+        left: float,
+        right: float,
+        *,
+        cg_height: float,
+        height: float,
+        mass: float,
+        inertia: float,
+    ) -> "Block":
+        """Make a block of the distances at which its edges were measured.
+
+        Parameters
+        ----------
+        left, right
+            Horizontal distances of the edges from the centre of gravity [m].
+        cg_height, height
+            Height of the centre of gravity above the base, and of the whole body [m].
+        mass
+            Mass [kg].
+        inertia
+            Moment of inertia about the centre of gravity [kg m²].
+
+        Raises
+        ------
+        InputError
+            As :class:`Block`.
+        """
+        return cls(
+            width=left + right,
+            height=height,
+            mass=mass,
+            inertia=inertia,
+            cg_height=cg_height,
+            cg_offset=(left - right) / 2,
+        )
+
+    @classmethod
+    def from_mesh(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        direction_deg: float,
+        contact_tolerance: float,
+        edge_retreat: float = 0.0,
+        mass: float | None = None,
+        density: float | None = None,
+        metres_per_unit: float = 1.0,
+    ) -> "Block":
+        """Make the planar block that a body of any shape is in one direction of shaking.
+
+        Parameters
+        ----------
+        path
+            Closed mesh as OBJ, PLY or STL with z up, see :func:`rockfrag.rocking.shapes.read_shape`.
+        direction_deg
+            Direction of shaking, from the mesh's x axis towards its y axis [degrees].
+        contact_tolerance
+            Height above the lowest point up to which points carry [m].
+        edge_retreat
+            Distance by which the edges carry further in than those points [m].
+        mass, density
+            Mass [kg] or density [kg/m³]; one of them.
+        metres_per_unit
+            Length of the mesh's unit [m].
+
+        Raises
+        ------
+        InputError
+            If the mesh cannot be used, or the body could not stand so.
+        """
+        from rockfrag.rocking.shapes import read_shape
+
+        shape = read_shape(path, mass=mass, density=density, metres_per_unit=metres_per_unit)
+        return shape.block(direction_deg, contact_tolerance, edge_retreat)
 
     @property
     def b(self) -> float:

@@ -174,13 +174,13 @@ class Shape:
                 f"{self.name}: along {direction_deg:g}° its edges are {edges.left:.4f} and {edges.right:.4f} m "
                 "from the centre of gravity, so it cannot stand; give a larger tolerance or less retreat."
             )
-        return Block(
-            width=edges.left + edges.right,
+        return Block.from_edges(
+            edges.left,
+            edges.right,
+            cg_height=self.cg_height,
             height=self.height,
             mass=self.mass,
             inertia=self.inertia_about(direction_deg),
-            cg_height=self.cg_height,
-            cg_offset=(edges.left - edges.right) / 2,
         )
 
     def worst_direction(self, tolerance: float, step_deg: float = 1.0) -> tuple[float, float]:

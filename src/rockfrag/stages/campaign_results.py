@@ -120,13 +120,13 @@ def object_of(study: CampaignStudy) -> Shape | Block:
             density=given.get("density_kg_m3"),
             metres_per_unit=given.get("metres_per_unit", 1.0),
         )
-    return Block(
-        width=given["left_m"] + given["right_m"],
+    return Block.from_edges(
+        given["left_m"],
+        given["right_m"],
+        cg_height=given["cg_height_m"],
         height=given["height_m"],
         mass=given["mass_kg"],
         inertia=given["inertia_kg_m2"],
-        cg_height=given["cg_height_m"],
-        cg_offset=(given["left_m"] - given["right_m"]) / 2,
     )
 
 
