@@ -2,7 +2,6 @@
 
 import math
 
-from rockfrag.rocking._compile import entry_kernel, kernel
 from rockfrag.rocking.contact._modes import (
     approach,
     project,
@@ -22,6 +21,7 @@ from rockfrag.rocking.contact._step import (
     start_step,
     take_step,
 )
+from rockfrag.rocking.kernels.jit import entry_kernel, kernel
 
 MOST_EVENTS = 300
 """Events within a sample after which accumulating ones are ended ten times as coarsely, and again."""

@@ -6,8 +6,8 @@ taken, or the one that violates its inequalities least (``docs/contact.md``, 5 t
 
 import math
 
-from rockfrag.rocking._compile import kernel
 from rockfrag.rocking.contact._solve import bias, end_of, look_at, rate, solve
+from rockfrag.rocking.kernels.jit import kernel
 
 CONSISTENT = 2e-13
 """Violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the

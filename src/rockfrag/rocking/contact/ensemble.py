@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.contact._body import BODY, OUTCOME, contact_body, posed, working_memory
 from rockfrag.rocking.contact._march import EVENT, HISTORY, march_cases
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.inputs import STEP, checked_scales, free_samples, listed, step_count
+from rockfrag.rocking.kernels.jit import compiling_alone
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]

@@ -8,7 +8,6 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking._compile import compiling_alone
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.contact._body import contact_body, posed, working_memory
 from rockfrag.rocking.contact._march import EVENT, HISTORY, march
@@ -21,6 +20,7 @@ from rockfrag.rocking.inputs import (
     step_count,
     warn_if_weak,
 )
+from rockfrag.rocking.kernels.jit import compiling_alone
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]

@@ -36,17 +36,36 @@ class Part(JITCodeLibrary):
 class Whole(JITCodeLibrary):
     """The code of an entry kernel and of all parts that it needs, each linked once."""
 
-    def add_linking_library(self, library: Any) -> None:
-        """Link a kernel that is called, and those that it calls."""
-        waiting = [library]
-        while waiting:
-            one = waiting.pop()
-            if one in self._linking_libraries:
-                continue
-            one._ensure_finalized()
-            self._linking_libraries.append(one)
-            if isinstance(one, Part):
-                waiting += one._linking_libraries
+    def finalize(self) -> None:
+        """Link callers before those they call: code that nothing linked so far calls would be dropped."""
+        self._linking_libraries = _callers_first(self._linking_libraries)
+        super().finalize()
+
+    def _verify_declare_only_symbols(self) -> None:
+        """Refuse code that calls a function which is not there; numba asks this of its own functions alone."""
+        for function in self._final_module.functions:
+            if function.is_declaration and function.name.startswith("_ZN"):
+                raise AssertionError(f"{function.name} is called but not linked")
+
+
+def _callers_first(libraries: list[Any]) -> list[Any]:
+    """Order libraries and all that their parts call, directly or not, so that each comes after its callers."""
+    order: list[Any] = []
+    seen = set()
+
+    def visit(library: Any) -> None:
+        if library in seen:
+            return
+        seen.add(library)
+        library._ensure_finalized()
+        if isinstance(library, Part):
+            for called in library._linking_libraries:
+                visit(called)
+        order.append(library)
+
+    for one in libraries:
+        visit(one)
+    return order[::-1]
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
