@@ -34,9 +34,9 @@ from measures import (
 )  # fmt: skip
 from scipy_stack import scipy_stack
 
+from rockfrag.figure_style import save_figure
 from rockfrag.files import write_table, write_text
 from rockfrag.report.figures.benchmark import draw_benchmark
-from rockfrag.report.figures.style import save_figure
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.parquet import stream_overturns

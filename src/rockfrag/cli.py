@@ -120,10 +120,9 @@ def _simulate(options: argparse.Namespace) -> int:
     print("friction needed: " + ", ".join(f"{value:.3f}" for value in response.friction_demand))
     print(_history(response.events, options.all_events))
     if options.plot:
-        from rockfrag.report.figures.response import response_figure
-        from rockfrag.report.figures.style import save_figure
+        from rockfrag.figure_style import save_figure
 
-        save_figure(response_figure(response, f"{motion.name}, peak {peak:.3f} g"), options.plot)
+        save_figure(response.plot(f"{motion.name}, peak {peak:.3f} g"), options.plot)
         print(f"drawn in {options.plot}")
     return 0
 

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.path import Path as Outline
 
+from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.report.figures.amplitudes import (
     amplitudes_by_floor,
     amplitudes_by_object,
@@ -17,7 +18,6 @@ from rockfrag.report.figures.amplitudes import (
 from rockfrag.report.figures.effects import forest_figure
 from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.figures.shaker import shaker_limits
-from rockfrag.report.figures.style import figure_style, new_figure, save_figure
 from rockfrag.report.figures.sweep import verdict_map
 from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
 

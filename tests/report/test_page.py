@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 from matplotlib.figure import Figure
 
-from rockfrag.report.figures.style import figure_style, new_figure
+from rockfrag.figure_style import figure_style, new_figure
 from rockfrag.report.page import Column, cell, render, table_html
 from rockfrag.report.part import FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw

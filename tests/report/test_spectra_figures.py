@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
+from rockfrag.figure_style import save_figure
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures.spectra import comparison_figure, spectra_figure
-from rockfrag.report.figures.style import save_figure
 
 ALPHA = math.atan(1 / 4)
 T = np.arange(500) * 0.01

@@ -4,7 +4,7 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -70,6 +73,13 @@ class Motion:
     def pga(self) -> float:
         """Peak absolute acceleration [m/s²]."""
         return float(np.abs(self.acceleration).max())
+
+    def plot(self) -> "Figure":
+        """Draw acceleration [g], velocity [cm/s] and displacement [cm] over time."""
+        # matplotlib is loaded only by those who draw
+        from rockfrag.records.motion_figure import motion_figure
+
+        return motion_figure(self.acceleration, self.dt, self.name)
 
     def after(
         self,

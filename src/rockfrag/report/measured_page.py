@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from rockfrag.figure_style import note_figure
 from rockfrag.files import write_text
 from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure, surface_figure
-from rockfrag.report.figures.style import note_figure
 from rockfrag.report.page import Column, render, table_html
 from rockfrag.report.part import FigureSpec, Finding, Section
 from rockfrag.report.study_report import FIGURES, draw

@@ -15,15 +15,7 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from rockfrag.errors import InputError
-from rockfrag.motions.integration import integrate
-from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
-from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
-from rockfrag.records.doubts import doubts
-from rockfrag.records.motion import Motion
-from rockfrag.records.parsing.text_file import NotAcceleration
-from rockfrag.records.read import Record, motion_of, read_record
-from rockfrag.records.sources.folder import files_of
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLUE,
     GREEN,
     ORANGE,
@@ -35,6 +27,14 @@ from rockfrag.report.figures.style import (
     plain_log,
     save_figure,
 )
+from rockfrag.motions.integration import integrate
+from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
+from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
+from rockfrag.records.doubts import doubts
+from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.text_file import NotAcceleration
+from rockfrag.records.read import Record, motion_of, read_record
+from rockfrag.records.sources.folder import files_of
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
 
 COLUMNS = (

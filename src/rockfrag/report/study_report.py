@@ -4,8 +4,8 @@ import multiprocessing
 from collections.abc import Sequence
 from pathlib import Path
 
+from rockfrag.figure_style import save_figure
 from rockfrag.files import write_text
-from rockfrag.report.figures.style import save_figure
 from rockfrag.report.page import Picture, read_picture, render
 from rockfrag.report.part import FigureSpec, Finding, Part, Results, Section
 from rockfrag.report.provenance import provenance

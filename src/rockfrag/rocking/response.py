@@ -1,12 +1,16 @@
 """What a simulation returns."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Body
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PATTERNS = {
     (0, 0): "rest",
@@ -78,6 +82,13 @@ class Response:
     impacts: int
     grazings: int
     closest_approach: float
+
+    def plot(self, title: str = "") -> "Figure":
+        """Draw the ground's acceleration [g], rotations over the critical angle with impacts, and patterns."""
+        # matplotlib is loaded only by those who draw
+        from rockfrag.rocking.response_figure import response_figure
+
+        return response_figure(self, title)
 
     @property
     def pattern(self) -> NDArray[np.str_]:

@@ -16,7 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLACK,
     BLUE,
     COLUMN_WIDTH,

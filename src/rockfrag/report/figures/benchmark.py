@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLUE,
     ORANGE,
     PAGE_WIDTH,

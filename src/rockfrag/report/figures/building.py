@@ -3,8 +3,8 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
+from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure
 from rockfrag.report.figures.amplitudes import GREY, MARKERS
-from rockfrag.report.figures.style import COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure
 from rockfrag.report.wording import shortened
 
 AXIS_NAMES = {

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from scipy.stats import norm
 
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLACK,
     BLUE,
     COLUMN_WIDTH,

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, figure_style, new_figure
 from rockfrag.report.figures.amplitudes import BAND, GREY
-from rockfrag.report.figures.style import BLUE, COLUMN_WIDTH, figure_style, new_figure
 from rockfrag.report.wording import counted, shortened
 
 NONE = (1 / 1.1, 1.1)

@@ -9,13 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.empirical import local_share, share_in_bins
-from rockfrag.fragility.estimators import Fragility
-from rockfrag.fragility.goodness import GoodnessOfFit
-from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit
-from rockfrag.fragility.states import ThreeStates
-from rockfrag.fragility.surface import FragilitySurface
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLACK,
     BLUE,
     COLUMN_WIDTH,
@@ -29,6 +23,12 @@ from rockfrag.report.figures.style import (
     new_figure,
     plain_log,
 )
+from rockfrag.fragility.empirical import local_share, share_in_bins
+from rockfrag.fragility.estimators import Fragility
+from rockfrag.fragility.goodness import GoodnessOfFit
+from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit
+from rockfrag.fragility.states import ThreeStates
+from rockfrag.fragility.surface import FragilitySurface
 from rockfrag.report.wording import shortened
 
 GREY = "#777777"

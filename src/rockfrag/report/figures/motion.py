@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
 from rockfrag.records.motion import Motion
-from rockfrag.report.figures.style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
 from rockfrag.report.wording import shortened
 from rockfrag.units import STANDARD_GRAVITY
 

@@ -5,8 +5,8 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure
 from rockfrag.report.figures.amplitudes import MARKERS, drawn_tests
-from rockfrag.report.figures.style import COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure
 from rockfrag.report.figures.sweep import MOST_ROWS
 from rockfrag.report.wording import shortened
 

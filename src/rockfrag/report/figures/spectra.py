@@ -11,9 +11,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.spectra import response_spectrum
-from rockfrag.records.motion import Motion
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLACK,
     BLUE,
     GREEN,
@@ -23,6 +21,8 @@ from rockfrag.report.figures.style import (
     figure_style,
     new_figure,
 )
+from rockfrag.motions.spectra import response_spectrum
+from rockfrag.records.motion import Motion
 from rockfrag.rocking.spectra import rocking_spectrum
 from rockfrag.units import STANDARD_GRAVITY
 

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     COLUMN_WIDTH,
     CONFIGURATION_COLOURS,
     figure_style,

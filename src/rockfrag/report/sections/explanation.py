@@ -8,16 +8,16 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.pedestal.simulated_explanation import REFERENCE
-from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
-from rockfrag.report.figures.effects import NONE, ratio_axis
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLACK,
     OKABE_ITO,
     PAGE_WIDTH,
     figure_style,
     new_figure,
 )
+from rockfrag.pedestal.simulated_explanation import REFERENCE
+from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
+from rockfrag.report.figures.effects import NONE, ratio_axis
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section

@@ -5,6 +5,7 @@ import pandas as pd
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from rockfrag.figure_style import COLUMN_WIDTH, figure_style, new_figure
 from rockfrag.report.figures.amplitudes import (
     GREY,
     SIDE_COLOUR,
@@ -13,7 +14,6 @@ from rockfrag.report.figures.amplitudes import (
     drawn_tests,
     plot_tests,
 )
-from rockfrag.report.figures.style import COLUMN_WIDTH, figure_style, new_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.sections.pedestal import EFFECT_COLUMNS, shown_effects

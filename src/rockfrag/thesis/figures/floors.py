@@ -9,8 +9,7 @@ from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag.report.figures.building import AXIS_NAMES
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLUE,
     COLUMN_WIDTH,
     GREEN,
@@ -19,6 +18,7 @@ from rockfrag.report.figures.style import (
     figure_style,
     new_figure,
 )
+from rockfrag.report.figures.building import AXIS_NAMES
 from rockfrag.thesis.floor_order import STATEMENTS, TIE
 
 FLOOR_STYLES = {

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from rockfrag.report.figures.style import (
+from rockfrag.figure_style import (
     BLACK,
     BLUE,
     COLUMN_WIDTH,
@@ -22,7 +22,7 @@ _PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b")
 
 
 def response_figure(response: Response, title: str) -> Figure:
-    """Draw acceleration [g], rotations over the critical angle, and the pattern over time."""
+    """Draw acceleration [g], rotations over the critical angle with impacts, and the pattern over time."""
     body = response.body
     single = isinstance(body, Block)
     critical = (
@@ -55,8 +55,12 @@ def response_figure(response: Response, title: str) -> Figure:
         largest = float(np.abs(response.theta / critical).max())
         rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
         rotation.set_ylabel("Rotation / critical [-]")
-        if not single:
-            rotation.legend(loc="upper right", ncols=2)
+        impacts = response.events.loc[response.events["kind"] == "impact", "time"]
+        rotation.plot(
+            impacts, np.zeros(len(impacts)), "|", color=BLACK, ms=5, mew=0.5, label="impact"
+        )
+        if not single or len(impacts):
+            rotation.legend(loc="upper right", ncols=3)
         if response.overturned:
             for panel in (ground, rotation, pattern):
                 panel.axvline(response.overturning_time, color=RED, lw=0.8)
