@@ -6,6 +6,9 @@ from rockfrag.records.motion import Motion
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
 
+WRITTEN = "motions/written"
+"""Folder of the motions of all floors in the format that a study asks for."""
+
 
 def run(job: Job[Study]) -> Results:
     """Yield the motions as read, on the ground and on every floor, and their intensity measures."""
@@ -25,6 +28,10 @@ def run(job: Job[Study]) -> Results:
     yield "motions/ground", ground
     floors = [floor for one in ground for floor in _floors(study, one)]
     yield "motions/floors", floors
+    if study.write_motions is not None:
+        from rockfrag.records.write import write_motions
+
+        write_motions(floors, job.folder / WRITTEN, study.write_motions)
     table = measure_motions(floors)
     pairs = measure_records(rows, *place, study.processing)
     if len(pairs):
@@ -62,11 +69,12 @@ STAGE = Stage(
         *study.record_files(RECORDS_FOLDER),
         *([] if study.building_file is None else [str(study.building_file)]),
     ],
-    outputs=(
+    outputs=lambda study: (
         "motions/records.parquet",
         "motions/ground.parquet",
         "motions/floors.parquet",
         "measures",
+        *([] if study.write_motions is None else [f"{WRITTEN}/"]),
     ),
-    settings=("motions", "building"),
+    settings=("motions", "building", "write_motions"),
 )

@@ -117,6 +117,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
             confidence=content["fragility"]["confidence"],
         ),
         compare_with=content.get("compare_with"),
+        write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
     )
     _check_names(study)

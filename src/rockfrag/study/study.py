@@ -59,6 +59,8 @@ class Study:
         Settings of the fragility curves.
     compare_with
         ``thesis`` if the study is compared with the thesis that these tests come from, or None.
+    write_motions
+        Format in which the motions of all floors are written too, or None.
     more
         Optional parts: shaker, measured tests, sensitivity to the building, explanation.
     """
@@ -80,6 +82,7 @@ class Study:
     protocol_step_percent: float
     fragility: FragilitySettings
     compare_with: str | None
+    write_motions: str | None
     more: Supplementary
 
     @property
