@@ -23,6 +23,7 @@ from rockfrag.motions.filtering import highpass
 from rockfrag.motions.intensity import pga, pgv
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
+from rockfrag.records.sources.url import fetch_url
 from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.shapes import Shape, read_shape
 from rockfrag.stages.campaign import OURS
@@ -68,8 +69,6 @@ def _campaign_with_motions(job: Job[CampaignStudy]) -> tuple[Campaign, list[Moti
     """Read the table of tests and the motion of each, scaled where the table says so."""
     study = job.study
     for public in study.fetch:
-        from rockfrag.records.sources.url import fetch_url
-
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
