@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -14,42 +15,70 @@ from rockfrag.errors import InputError
 LONGEST_NAME = 80
 """Characters of a name, and of the file name made of it."""
 
+FORMULA = ("=", "+", "-", "@")
+"""Characters with which a spreadsheet takes a cell for a formula."""
 
-def file_name(name: str) -> str:
-    """Make a name that users gave into one that files may bear on every system.
+_RESERVED = {
+    "con",
+    "prn",
+    "aux",
+    "nul",
+    *(f"{port}{n}" for port in ("com", "lpt") for n in range(10)),
+}
+"""Names of devices, which no file may bear on Windows, whatever its ending."""
 
-    ASCII letters, digits, ``-``, ``_`` and ``.`` stay, other characters become ``-``; a digest follows
-    where letters of other scripts were lost, so that their names stay different.
+
+def check_name(name: str) -> None:
+    """Check that a name which a user gave can stand in tables, figures and file names.
 
     Raises
     ------
     InputError
-        If the name is too long, cannot be printed, or holds no letter or digit.
+        If it is too long, cannot be printed, holds no letter or digit, or begins as a formula does.
     """
     if len(name) > LONGEST_NAME or not name.isprintable() or not any(c.isalnum() for c in name):
         raise InputError(
             f"expected a name with a letter or digit and of at most {LONGEST_NAME} characters, "
             f"found {name[:LONGEST_NAME]!r}."
         )
+    if name.startswith(FORMULA):
+        raise InputError(
+            f"the name {name!r} begins as a formula of spreadsheets; begin it with a letter or digit."
+        )
+
+
+def file_name(name: str) -> str:
+    """Make any text into a name that files may bear on every system.
+
+    ASCII letters, digits, ``-``, ``_`` and ``.`` stay, other characters become ``-``; a digest follows
+    where letters of other scripts or what is too long were lost, so that such names stay different.
+    """
     plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in name)
-    # neither hidden nor an option, and never a folder
+    plain = plain[:LONGEST_NAME] or "unnamed"
+    # neither hidden nor an option, and never a folder or a device
     if plain[0] in ".-":
         plain = f"_{plain[1:]}"
-    if name.isascii():
+    if plain[-1] == ".":
+        plain = f"{plain[:-1]}-"
+    if plain.split(".")[0].casefold() in _RESERVED:
+        plain = f"_{plain}"
+    if name.isascii() and len(name) <= LONGEST_NAME:
         return plain
-    return f"{plain}-{hashlib.sha256(name.encode()).hexdigest()[:6]}"
+    digest = hashlib.sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:6]
+    return f"{plain}-{digest}"
 
 
 def distinct_file_names(names: Iterable[str]) -> None:
-    """Check that names can be made into files that stay apart, on systems that ignore case too.
+    """Check that names can be used, and made into files that stay apart where case is ignored too.
 
     Raises
     ------
     InputError
-        If a name is given twice, cannot be a file's, or two would share one.
+        As :func:`check_name`, or if a name is given twice, or two would share a file name.
     """
     found: dict[str, str] = {}
     for name in names:
+        check_name(name)
         other = found.setdefault(file_name(name).casefold(), name)
         if other != name:
             raise InputError(f"{name} and {other} would share a file name; rename one.")
@@ -80,6 +109,32 @@ def write_text(text: str, path: str | os.PathLike[str]) -> None:
         part.write_bytes(text.encode("utf-8"))
 
 
+def csv_text(table: pd.DataFrame) -> str:
+    """Text of a table as CSV with Unix line ends.
+
+    A text that a spreadsheet would take for a formula (what a record's header says may be anything) gets
+    an apostrophe before it, which spreadsheets take as the sign of a text.
+    """
+    texts = table.select_dtypes(exclude=["number", "bool", "datetime"])
+    guarded = {
+        column: texts[column].map(_as_text)
+        for column in texts
+        if any(_as_text(value) is not value for value in texts[column].unique())
+    }
+    safe = table.assign(**guarded).rename(columns=_as_text)
+    return str(safe.to_csv(index=False, lineterminator="\n"))
+
+
+def _as_text(value: Any) -> Any:
+    if not isinstance(value, str) or len(value) < 2 or not value.startswith((*FORMULA, "\t", "\r")):
+        return value
+    try:
+        float(value)
+    except ValueError:
+        return f"'{value}"
+    return value
+
+
 def write_table(table: pd.DataFrame, *paths: str | os.PathLike[str]) -> None:
     """Write a table to each path, by its ending as ``.csv`` or ``.parquet``, without the index.
 
@@ -90,7 +145,7 @@ def write_table(table: pd.DataFrame, *paths: str | os.PathLike[str]) -> None:
         ending = Path(path).suffix
         with whole_file(path) as part:
             if ending == ".csv":
-                table.to_csv(part, index=False, lineterminator="\n", encoding="utf-8")
+                part.write_bytes(csv_text(table).encode("utf-8"))
             elif ending == ".parquet":
                 table.to_parquet(part, index=False, engine="pyarrow")
             else:

@@ -115,7 +115,9 @@ def _info(options: argparse.Namespace) -> int:
 
 def _print_info(table: "pd.DataFrame", form: str) -> None:
     if form == "csv":
-        print(table.to_csv(index=False, lineterminator="\n"), end="")
+        from rockfrag.files import csv_text
+
+        print(csv_text(table), end="")
     elif form == "json":
         print(table.to_json(orient="records", indent=2, force_ascii=False))
     else:
@@ -127,13 +129,13 @@ def _print_info(table: "pd.DataFrame", form: str) -> None:
 
 
 def _catalogue(options: argparse.Namespace) -> int:
-    from rockfrag.files import write_text
+    from rockfrag.files import csv_text, write_text
     from rockfrag.records.make_catalogue import make_catalogue
 
     folder = Path(options.output).parent if options.output else Path()
     draft = make_catalogue(options.paths, options.unit, options.dt, folder)
     used = [column for column in draft.table if (draft.table[column] != "").any()]
-    text = draft.table[used].to_csv(index=False, lineterminator="\n")
+    text = csv_text(draft.table[used])
     if options.output:
         write_text(text, options.output)
         print(f"{len(draft.table)} motions in {options.output}", file=sys.stderr)

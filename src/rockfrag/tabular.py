@@ -5,12 +5,15 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from rockfrag.errors import InputError
+from rockfrag.plain_text import read_text
 from rockfrag.units import other_names, quantity, split_name
 
 DELIMITERS = (",", ";", "\t")
+
+MOST_BYTES = 64 * 2**20
+"""Size of a table that is read at once."""
 
 
 @dataclass(frozen=True)
@@ -152,16 +155,9 @@ def read_cells(path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
     Raises
     ------
     InputError
-        If the file cannot be read, or is not CSV in UTF-8.
+        If the file cannot be read, is larger than :data:`MOST_BYTES`, or is not CSV in UTF-8.
     """
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{path}: is not UTF-8 text (byte {error.start}); save the table as CSV in UTF-8."
-        ) from error
+    text = read_text(path, MOST_BYTES)
     numbered = [
         (number, line)
         for number, line in enumerate(text.splitlines(), start=1)

@@ -1,26 +1,50 @@
-"""Reading a YAML file with errors that name the place."""
+"""Reading a YAML file with errors that name the place.
+
+Values are those of YAML 1.2: ``1e-3`` is a number, and ``no``, ``12:30`` and ``1976-05-06`` are texts.
+"""
 
 import os
-from pathlib import Path
+import re
 from typing import Any
 
 import yaml
 
 from rockfrag.errors import InputError
+from rockfrag.plain_text import read_text, unfit_character
+
+MOST_BYTES = 256 * 1024
+"""Largest configuration; three thousand names of motions are a third of it."""
+
+MOST_VALUES, DEEPEST = 20_000, 20
+"""Values in a configuration, and mappings and lists within each other."""
 
 
 class _StrictLoader(yaml.SafeLoader):
-    """PyYAML's safe loader for plain data: keys are texts and given once, dates stay texts."""
+    """PyYAML's safe loader for plain data: keys are texts and given once, values those of YAML 1.2."""
+
+    values, depth = 0, 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Refuse aliases, which no configuration needs and which can stand for millions of values."""
+        """Compose a value, unless there are too many or too deep ones.
+
+        Aliases are refused: no configuration needs them, and they can stand for millions of values.
+        """
+        self.values += 1
+        event = self.peek_event()
+        if self.values > MOST_VALUES or self.depth > DEEPEST:
+            much = "nested too deeply" if self.depth > DEEPEST else f"more than {MOST_VALUES}"
+            raise yaml.MarkedYAMLError(
+                problem=f"values are {much}; simplify it", problem_mark=event.start_mark
+            )
         if self.check_event(yaml.AliasEvent):
-            event = self.peek_event()
             raise yaml.MarkedYAMLError(
                 problem=f"the alias *{event.anchor} is not understood; write its value out",
                 problem_mark=event.start_mark,
             )
-        return super().compose_node(parent, index)
+        self.depth += 1
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
 
 
 def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
@@ -30,6 +54,7 @@ def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
             raise yaml.MarkedYAMLError(
                 problem="a key must be a word, not a list or a mapping", problem_mark=key.start_mark
             )
+        _text(loader, key)
         if key.value in seen:
             raise yaml.MarkedYAMLError(
                 problem=f"key {key.value!r} is given twice", problem_mark=key.start_mark
@@ -39,11 +64,43 @@ def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
     return {key.value: loader.construct_object(value, deep=True) for key, value in node.value}
 
 
-_StrictLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _mapping)
-_StrictLoader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if not tag.endswith(":timestamp")]
-    for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
+def _text(loader: _StrictLoader, node: yaml.ScalarNode) -> str:
+    # an escape such as "\x07" can write what the file itself must not hold
+    if unfit := unfit_character(node.value):
+        raise yaml.MarkedYAMLError(
+            problem=f"holds the character {unfit!r}, which no text shows; remove it",
+            problem_mark=node.start_mark,
+        )
+    return str(node.value)
+
+
+def _number(loader: _StrictLoader, node: yaml.ScalarNode) -> float:
+    return float(node.value.replace(".inf", "inf").replace(".nan", "nan").replace(".NaN", "nan"))
+
+
+_TAG = "tag:yaml.org,2002:"
+_StrictLoader.yaml_constructors = {
+    f"{_TAG}map": _mapping,
+    f"{_TAG}seq": yaml.SafeLoader.construct_yaml_seq,
+    f"{_TAG}str": _text,
+    f"{_TAG}int": lambda loader, node: int(node.value),
+    f"{_TAG}float": _number,
+    f"{_TAG}bool": yaml.SafeLoader.construct_yaml_bool,
+    f"{_TAG}null": yaml.SafeLoader.construct_yaml_null,
+    None: yaml.SafeLoader.construct_undefined,
 }
+_StrictLoader.yaml_implicit_resolvers = {}
+for _name, _pattern, _first in (
+    ("null", r"~|null|Null|NULL|", ["~", "n", "N", ""]),
+    ("bool", r"true|True|TRUE|false|False|FALSE", list("tTfF")),
+    ("int", r"[-+]?[0-9]+", list("-+0123456789")),
+    (
+        "float",
+        r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan|\.NaN",
+        list("-+.0123456789"),
+    ),
+):
+    _StrictLoader.add_implicit_resolver(f"{_TAG}{_name}", re.compile(rf"(?:{_pattern})\Z"), _first)
 
 
 def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -52,22 +109,20 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If the file cannot be read, is not UTF-8 or not YAML, gives a key twice, or is no mapping.
+        If the file cannot be read, is not UTF-8 or not YAML, is too large or too deep, gives a key
+        twice, or is no mapping.
     """
+    text = read_text(path, MOST_BYTES)
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
         content = yaml.load(text, Loader=_StrictLoader)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: is not UTF-8 text (byte {error.start}).") from error
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         raise InputError(f"{path}{where}: {error.problem or 'is not valid YAML'}.") from error
     except RecursionError as error:
         raise InputError(f"{path}: brackets or lists are nested too deeply.") from error
-    except (yaml.YAMLError, ValueError, TypeError) as error:
+    except (yaml.YAMLError, ValueError, TypeError, LookupError) as error:
+        # a tag such as !!bool stands before what is none
         raise InputError(f"{path}: is not valid YAML ({error}).") from error
     if not isinstance(content, dict):
         raise InputError(f"{path}: expected a mapping of keys to values, as in config/thesis.yaml.")

@@ -55,7 +55,7 @@ def test_motions_of_a_study_are_written_by_their_names(tmp_path, motion):
     write_motion_set([motion, other], tmp_path / "floors.parquet")
     found = motions_of_study(tmp_path / "floors.parquet")
     paths = write_motions(found, tmp_path / "out", "AT2")
-    assert [path.name for path in paths] == ["Friuli attic.AT2", "Kobe_ground.AT2"]
+    assert [path.name for path in paths] == ["Friuli-attic.AT2", "Kobe-ground.AT2"]
     same = [motion, Motion(motion.acceleration, 0.01, motion.name)]
     with pytest.raises(InputError, match="would have one file"):
         write_motions(same, tmp_path / "out", "AT2")
@@ -71,4 +71,4 @@ def test_records_and_studies_are_written_from_the_command_line(tmp_path, motion,
     assert (
         main(["write", str(tmp_path / "floors.parquet"), str(tmp_path), "--format", "mseed"]) == 0
     )
-    assert "Friuli attic.mseed" in capsys.readouterr().out
+    assert "Friuli-attic.mseed" in capsys.readouterr().out

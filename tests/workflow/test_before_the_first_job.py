@@ -11,7 +11,7 @@ import yaml
 
 from rockfrag.cli import main
 from rockfrag.errors import InputError
-from rockfrag.files import distinct_file_names, file_name
+from rockfrag.files import check_name, distinct_file_names, file_name
 from rockfrag.fragility.sweeps import scale_power
 from rockfrag.motions.measures import measure_motion
 from rockfrag.records.motion import Motion
@@ -228,7 +228,7 @@ def test_a_block_with_a_wrong_unit_is_refused_with_the_number(
 @pytest.mark.parametrize("name", ["", ".", "..", "---", "a\nb", "x" * 300, "\x00"])
 def test_names_that_cannot_be_files_are_refused(name: str):
     with pytest.raises(InputError, match="expected a name"):
-        file_name(name)
+        check_name(name)
 
 
 def test_names_become_files_that_stay_in_their_folder_and_apart():
@@ -299,3 +299,72 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
 def test_the_schema_is_one_file_for_everything_that_yaml_says():
     kinds = yaml.safe_load((ROOT / "src" / "rockfrag" / "schema.json").read_text())["$defs"]
     assert {"study", "measured_table", "building", "shaker"} <= set(kinds)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"PK\x03\x04\x14\x00", "spreadsheet or archive"),
+        (b"study: \xff\xfe\n", "is not UTF-8"),
+        (b"study: a\x07b\n", "line 1: holds the character '\\x07'"),
+        (b'study: "a\\x07b"\n', "column 8: holds the character '\\x07'"),
+        (b'"a\\u202Eb": 1\n', "which no text shows"),
+        (b"study: !!bool perhaps\n", "is not valid YAML"),
+        (b"study: !!set {a, b}\n", "could not determine a constructor"),
+        (b"study: [" + b"1," * 30_000 + b"1]\n", "more than 20000"),
+        (b"# " + b"x" * 300_000, "larger than 256 KiB"),
+    ],
+)
+def test_what_is_no_text_or_no_plain_data_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes, words: str
+):
+    path = tmp_path / "study.yaml"
+    path.write_bytes(content)
+    assert words in said(capsys, path)
+
+
+def test_folders_and_devices_are_no_configuration(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    assert "folder or a device" in said(capsys, tmp_path)
+    assert "folder or a device" in said(capsys, Path("/dev/zero"))
+
+
+def test_values_are_those_of_yaml_1_2(tmp_path: Path):
+    path = tmp_path / "study.yaml"
+    path.write_text("a: 1e-3\nb: no\nc: 12:30\nd: 0x10\ne: -2.\nf: ~\ng: true\nh: 010\ni: 1_000\n")
+    assert read_yaml(path) == {
+        **{"a": 0.001, "b": "no", "c": "12:30", "d": "0x10", "e": -2.0, "f": None},
+        **{"g": True, "h": 10, "i": "1_000"},
+    }
+    path.write_bytes("name: Köln\n".encode("utf-16"))
+    assert read_yaml(path) == {"name": "Köln"}
+
+
+@pytest.mark.parametrize("name", ["=1+1", "-rf", "+1", "@SUM(A1)"])
+def test_names_that_begin_as_formulas_are_refused(
+    study_folder: Path, capsys: pytest.CaptureFixture[str], name: str
+):
+    table = study_folder / "specimens.csv"
+    table.write_text(table.read_text().replace("T2,", f"{name},"))
+    assert "begins as a formula" in said(capsys, study_folder / "study.yaml")
+
+
+def test_motions_stay_apart_on_every_floor(study_folder: Path, capsys: pytest.CaptureFixture[str]):
+    table = study_folder / "motions.csv"
+    text = table.read_text().replace("motion 0", "A").replace("motion 1", "A_1")
+    table.write_text(text)
+    (study_folder / "building.yaml").write_text(
+        "storey_heights_m: [3, 3]\nmasses_kg: [1000, 1000]\nfirst_period_s: 0.2\n"
+        "floors: {g: 0, 1_2: 1, 2: 2}\n"
+    )
+    path = write_study(study_folder, {**study_content(), "building": "building.yaml"})
+    assert "A_1 and A become one" in said(capsys, path)
+
+
+def test_fetched_files_stay_in_the_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    content = yaml.safe_load((ROOT / "config" / "granite.yaml").read_text())
+    digest = hashlib.sha256(b"").hexdigest()
+    for name in ("/tmp/x.csv", "../../../../x.csv"):
+        content["fetch"] = [{"url": "https://example.org/x", "sha256": digest, "file": name}]
+        assert "outside of this folder" in said(capsys, write_study(tmp_path, content))

@@ -131,7 +131,7 @@ def test_what_is_not_a_mapping_is_refused(study_folder: Path, text: str, words: 
 
 
 def test_bytes_that_are_no_text_and_absent_files_are_refused(study_folder: Path):
-    (study_folder / "study.yaml").write_bytes(b"\xff\xfe\x00study")
+    (study_folder / "study.yaml").write_bytes(b"study: K\xf6ln")
     with pytest.raises(InputError, match="UTF-8"):
         load_study(study_folder / "study.yaml")
     with pytest.raises(InputError, match="cannot be read"):

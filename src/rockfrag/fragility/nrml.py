@@ -12,6 +12,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.fragility.curve_facts import curve_facts
+from rockfrag.fragility.identifiers import identifiers
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 STATES = ("rocks", "slides", "overturned")
@@ -89,14 +90,16 @@ def write_nrml(
     """
     if table.empty:
         raise InputError("NRML: there is no curve to write; give at least one row.")
+    # OpenQuake takes letters, digits, "_", "-" and ":" in a name
+    taxonomies = identifiers(map(str, table[by]), "_:-")
     rows: dict[str, dict[str, Mapping[Hashable, Any]]] = {}
     for row in table.to_dict("records"):
-        states = rows.setdefault(_taxonomy(row, by), {})
+        taxonomy = taxonomies[str(row[by])]
+        states = rows.setdefault(taxonomy, {})
         state = str(row.get("state", "overturned"))
         if state in states:
             raise InputError(
-                f"NRML: {_taxonomy(row, by)!r} has two curves; choose one estimator and one measure for "
-                "each."
+                f"NRML: {taxonomy!r} has two curves; choose one estimator and one measure for each."
             )
         states[state] = row
     known = [state for state in STATES if any(state in states for states in rows.values())]
@@ -127,11 +130,6 @@ def write_nrml(
     ElementTree.indent(root, space="  ")
     text = ElementTree.tostring(root, encoding="unicode")
     write_text('<?xml version="1.0" encoding="UTF-8"?>\n' + text + "\n", path)
-
-
-def _taxonomy(row: Mapping[Hashable, Any], by: str) -> str:
-    # OpenQuake takes letters, digits, "_", "-" and ":" in a name, 75 at most
-    return re.sub(r"[^A-Za-z0-9_:-]", "_", str(row[by]))[:75]
 
 
 def _function(

@@ -11,6 +11,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility.curve_facts import curve_facts
+from rockfrag.fragility.identifiers import identifiers
 from rockfrag.fragility.nrml import STATES, STEP
 
 _DEMANDS = {
@@ -63,13 +64,14 @@ def write_simcenter(
         }
     }
     components: dict[str, dict[str, Mapping[Hashable, Any]]] = {}
+    known = identifiers(map(str, table[by]), "_")
     for row in table.to_dict("records"):
-        states = components.setdefault(_identifier(str(row[by])), {})
+        identifier = f"ROCKFRAG.{known[str(row[by])]}"
+        states = components.setdefault(identifier, {})
         state = str(row.get("state", "overturned"))
         if state in states:
             raise InputError(
-                f"SimCenter: {_identifier(str(row[by]))} has two curves; choose one estimator and one "
-                "measure for each."
+                f"SimCenter: {identifier} has two curves; choose one estimator and one measure for each."
             )
         states[state] = row
     for name, states in components.items():
@@ -78,10 +80,6 @@ def write_simcenter(
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
     write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
-
-
-def _identifier(name: str) -> str:
-    return "ROCKFRAG." + "".join(c if c.isascii() and c.isalnum() else "_" for c in name)
 
 
 def _component(

@@ -17,6 +17,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, name_and_unit
+from rockfrag.plain_text import table_encoding
 
 ROWS = 100_000
 """Rows that are read at a time."""
@@ -27,7 +28,6 @@ Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
 _YES = {"1", "true", "yes", "y", "overturned", "toppled", "fell", "ja", "oui", "si", "sí"}
 _NO = {"0", "false", "no", "n", "survived", "stood", "nein", "non"}
 _DIMENSIONLESS = ("uplift_ratio", "velocity_ratio")
-_WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 
 
 def read_tests(
@@ -150,7 +150,7 @@ def read_titles(path: str | os.PathLike[str]) -> list[str]:
         If the file cannot be read or has no header.
     """
     source = Path(path).name
-    encoding = _encoding(path, source)
+    encoding = table_encoding(path)
     head = _head(path, encoding)[1]
     titles = [title.strip() for title in next(csv.reader([head], delimiter=_separator(head)), [])]
     if not any(titles):
@@ -177,7 +177,7 @@ def _pieces(
     path: str | os.PathLike[str], source: str, needed: Sequence[str]
 ) -> Generator[tuple[pd.DataFrame, bool], None, None]:
     """Yield the needed columns as text, piece by piece, and whether a comma may be a decimal point."""
-    encoding = _encoding(path, source)
+    encoding = table_encoding(path)
     titles = read_titles(path)
     comments, head = _head(path, encoding)
     separator = _separator(head)
@@ -219,32 +219,6 @@ def _pieces(
             f"{source}: not a readable CSV table ({reason}); if its numbers have decimal commas, separate "
             "the columns by semicolons."
         ) from error
-
-
-def _encoding(path: str | os.PathLike[str], source: str) -> str:
-    """Tell the text's encoding from its first bytes, and refuse what is no text."""
-    try:
-        with open(path, "rb") as file:
-            start = file.read(65_536)
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: there is no such file; correct the path.") from error
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}).") from error
-    if start.startswith(_WORKBOOKS):
-        raise InputError(
-            f"{source}: this is a spreadsheet or archive, not text; save the sheet as CSV (UTF-8) and name "
-            "that file."
-        )
-    if start.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16"
-    if b"\x00" in start:
-        raise InputError(f"{source}: this is not a text file; save the table as CSV (UTF-8).")
-    try:
-        # a character may be cut at the end of what was read
-        start[: start.rfind(b"\n") + 1].decode("utf-8")
-    except UnicodeDecodeError:
-        return "cp1252"
-    return "utf-8-sig"
 
 
 class _Numbers:

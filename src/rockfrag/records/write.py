@@ -11,7 +11,7 @@ from obspy.core.inventory import Channel, Network, Response, Station
 from obspy.core.inventory.response import InstrumentSensitivity
 
 from rockfrag.errors import InputError
-from rockfrag.files import whole_file
+from rockfrag.files import file_name, whole_file
 from rockfrag.records.formats import at2, opensees, plain, seismosoft
 from rockfrag.records.motion import Motion, read_motion_set
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
@@ -90,8 +90,7 @@ def write_motions(
     ending = ".mseed" if name == "MSEED" else WRITERS[name][0]
     paths: dict[Path, str] = {}
     for motion in motions:
-        stem = re.sub(r"[^\w .+-]", "_", motion.name).strip(" .")[:100] or "motion"
-        path = Path(folder) / f"{stem}{ending}"
+        path = Path(folder) / f"{file_name(motion.name)}{ending}"
         if path in paths:
             raise InputError(f"{path}: {motion.name!r} and {paths[path]!r} would have one file.")
         write_motion(motion, path, name, unit)

@@ -1,7 +1,6 @@
 """What is in a record: a row for each of its channels, and a picture of one."""
 
 import os
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from textwrap import shorten
@@ -27,6 +26,7 @@ from rockfrag.figure_style import (
     plain_log,
     save_figure,
 )
+from rockfrag.files import file_name
 from rockfrag.motions.integration import integrate
 from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
 from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
@@ -175,11 +175,11 @@ def draw_files(
             except InputError:
                 continue
             for motion in motions:
-                stem = re.sub(r"[^\w .+-]", "_", motion.name).strip(" .")[:100] or "motion"
+                stem = file_name(motion.name)
                 picture = Path(folder) / f"{stem}.png"
                 number = 2
                 while picture in drawn:
-                    picture = Path(folder) / f"{stem} {number}.png"
+                    picture = Path(folder) / f"{stem}-{number}.png"
                     number += 1
                 picture.parent.mkdir(parents=True, exist_ok=True)
                 draw_record(motion, picture)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from rockfrag.files import file_name
 from rockfrag.rocking.bodies import Block, Body
 
 GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
@@ -103,7 +104,7 @@ def export_curves(curves: pd.DataFrame, folder: Path) -> list[str]:
             continue
         stem = f"fragility_{_stem(str(usable['im'].iloc[0]))}"
         if height != 0:
-            stem += "_" + "".join(c if c.isalnum() else "_" for c in str(floor))
+            stem += f"_{file_name(str(floor))}"
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it
             write_nrml(usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem)

@@ -109,8 +109,8 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     content = checked(content, "campaign", str(source))
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
-        PublicFile(one["url"], one["sha256"], _beside(source, one["file"]))
-        for one in content.get("fetch", ())
+        PublicFile(one["url"], one["sha256"], _kept(source, i, one["file"]))
+        for i, one in enumerate(content.get("fetch", ()))
     )
     fetched = {one.path for one in fetch}
     _check_object(source, thing, content["unknowns"])
@@ -166,6 +166,17 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
 
 def _beside(source: Path, name: str) -> Path:
     return Path(os.path.normpath(source.parent / name))
+
+
+def _kept(source: Path, number: int, name: str) -> Path:
+    """Where a fetched file is kept: never outside of the folders of the configuration and of the run."""
+    path = _beside(source, name)
+    place = Path(os.path.abspath(path))
+    if not any(place.is_relative_to(os.path.abspath(home)) for home in (source.parent, ".")):
+        raise InputError(
+            f"{source}: key fetch[{number}].file: {path} is outside of this folder; name a file in it."
+        )
+    return path
 
 
 def _existing(source: Path, key: str, path: Path, fetched: set[Path]) -> Path:

@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
-from rockfrag.files import distinct_file_names
+from rockfrag.files import distinct_file_names, file_name
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
@@ -161,14 +161,24 @@ def _chosen(
 
 def _check_names(study: Study) -> None:
     """Refuse names of motions and floors that could not stand in tables and file names."""
+    motions, floors = list(study.catalogue["name"]), list(study.floors)
     for where, names in (
-        (f"{study.catalogue_file}, column name", list(study.catalogue["name"])),
-        (f"{study.building_file}: key floors", list(study.floors)),
+        (f"{study.catalogue_file}, column name", motions),
+        (f"{study.building_file}: key floors", floors),
     ):
         try:
             distinct_file_names(names)
         except InputError as error:
             raise InputError(f"{where}: {error}") from None
+    felt: dict[str, str] = {}
+    for motion in motions:
+        for floor in floors:
+            other = felt.setdefault(file_name(f"{motion}_{floor}").casefold(), motion)
+            if other != motion:
+                raise InputError(
+                    f"{study.catalogue_file}, column name: with the floors' names {motion} and {other} "
+                    "become one; rename one."
+                )
 
 
 def _check_records_exist(study: Study) -> None:
