@@ -115,13 +115,11 @@ def csv_text(table: pd.DataFrame) -> str:
     A text that a spreadsheet would take for a formula (what a record's header says may be anything) gets
     an apostrophe before it, which spreadsheets take as the sign of a text.
     """
-    texts = table.select_dtypes(exclude=["number", "bool", "datetime"])
-    guarded = {
-        column: texts[column].map(_as_text)
-        for column in texts
-        if any(_as_text(value) is not value for value in texts[column].unique())
-    }
-    safe = table.assign(**guarded).rename(columns=_as_text)
+    safe = table.copy(deep=False)
+    for column in table.select_dtypes(exclude=["number", "bool", "datetime"]):
+        if any(_as_text(value) is not value for value in table[column].unique()):
+            safe[column] = table[column].map(_as_text)
+    safe = safe.rename(columns=_as_text)
     return str(safe.to_csv(index=False, lineterminator="\n"))
 
 
