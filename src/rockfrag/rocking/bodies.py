@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.checks import positive_number, real_number, shown
+from rockfrag.rocking.kernels.elementary import atan2, hypot, sin_cos
 from rockfrag.units import STANDARD_GRAVITY
 
 
@@ -25,7 +26,7 @@ class Vector(NamedTuple):
 
     def turned(self, angle: float) -> "Vector":
         """Turn clockwise by ``angle`` [rad]: R(angle)(x, y)."""
-        c, s = math.cos(angle), math.sin(angle)
+        s, c = sin_cos(angle)
         return Vector(self.x * c + self.y * s, -self.x * s + self.y * c)
 
     def minus(self, other: "Vector") -> "Vector":
@@ -80,7 +81,7 @@ class Block:
             positive_number("Block: cg_height", self.cg_height, "metres")
         real_number("Block: cg_offset", self.cg_offset, "metres")
         real_number("Block: lean", self.lean, "radians")
-        if min(self.critical_angle(+1), self.critical_angle(-1)) <= 0:
+        if not min(self.critical_angle(+1), self.critical_angle(-1)) > 0:
             raise InputError(
                 f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
                 f"gravity is not above its base of {self.width} m, so it cannot stand."
@@ -178,7 +179,7 @@ class Block:
         """Moment of inertia about the centre of gravity [kg m²]."""
         if self.inertia is not None:
             return self.inertia
-        return self.mass * (self.width**2 + self.height**2) / 12
+        return self.mass * (self.width * self.width + self.height * self.height) / 12
 
     @property
     def slenderness(self) -> float:
@@ -197,7 +198,7 @@ class Block:
     def critical_angle(self, pole: int) -> float:
         """Rotation about ``pole`` at which the block balances on it, a positive angle [rad]."""
         arm = self.arm(pole)
-        return math.atan2(-pole * arm.x, arm.y)
+        return atan2(-pole * arm.x, arm.y)
 
     @property
     def alpha(self) -> float:
@@ -206,11 +207,12 @@ class Block:
 
     def radius(self, pole: int = 1) -> float:
         """Distance R from the pole to the centre of gravity [m]."""
-        return math.hypot(*self.arm(pole))
+        return hypot(*self.arm(pole))
 
     def pole_inertia(self, pole: int = 1) -> float:
         """Moment of inertia about the pole, I_O = I_C + m R² [kg m²]."""
-        return self.centroidal_inertia + self.mass * self.radius(pole) ** 2
+        arm = self.arm(pole)
+        return self.centroidal_inertia + self.mass * (arm.x * arm.x + arm.y * arm.y)
 
     def frequency(self, pole: int = 1, g: float = STANDARD_GRAVITY) -> float:
         """Frequency parameter p = √(m g R / I_O) [1/s]; thesis eq. 2.16 with its square mended."""
@@ -292,7 +294,7 @@ class Stack:
             return
         edge = self.reach(pole, pole)
         whole = self.common_arm(pole)
-        furthest = max(self.pedestal.critical_angle(pole), math.atan2(-pole * whole.x, whole.y))
+        furthest = max(self.pedestal.critical_angle(pole), atan2(-pole * whole.x, whole.y))
         lowest = min(edge.y, edge.turned(pole * furthest).y)
         if overhang >= lowest:
             raise InputError(
@@ -380,7 +382,8 @@ class Stack:
         )
         x = (m1 * centre1.x + m2 * centre2.x) / (m1 + m2)
         y = (m1 * centre1.y + m2 * centre2.y) / (m1 + m2)
-        spread = m1 * m2 / (m1 + m2) * ((centre1.x - centre2.x) ** 2 + (centre1.y - centre2.y) ** 2)
+        apart = centre1.minus(centre2)
+        spread = m1 * m2 / (m1 + m2) * (apart.x * apart.x + apart.y * apart.y)
         return Block(
             width=self.pedestal.width,
             height=self.pedestal.height + self.statue.height,

@@ -1,6 +1,5 @@
 """Many bodies × motions × amplitudes at once."""
 
-import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -265,7 +264,9 @@ def _sampled(
 ) -> tuple[Motions, NDArray[np.int64], Array]:
     """Sample the motions as densely as the bodies need; which each body × motion uses, and its interval [s]."""
     times = np.array([step_count(body, dts, g, step) for body in bodies])
-    times = 2 ** np.ceil(np.log2(times)).astype(int)
+    # the next power of two
+    mantissa, exponent = np.frexp(times)
+    times = 2 ** (exponent - (mantissa == 0.5))
     kinds, number = np.unique(times * len(values) + np.arange(len(values)), return_inverse=True)
     sampled = [_refined(values[kind % len(values)], kind // len(values)) for kind in kinds.tolist()]
     # whole blocks each, so that no block straddles two motions
@@ -355,11 +356,12 @@ def _poles(body: Block, restitution: Restitution, g: float) -> NDArray[np.void]:
     poles = np.empty(2, block.POLE)
     measured = lone_restitution(body, restitution)
     for at, pole in ((0, +1), (1, -1)):
-        alpha, swing = body.critical_angle(pole), body.frequency(pole, g) ** 2
+        alpha, frequency, arm = body.critical_angle(pole), body.frequency(pole, g), body.arm(pole)
+        swing, aside, radius = frequency * frequency, -pole * arm.x, body.radius(pole)
         e = body.momentum_restitution(pole) if measured is None else measured
         poles[at] = (
-            alpha, math.tan(alpha), math.sin(alpha), math.cos(alpha), swing, e, 1 / alpha,
-            1 / (swing * alpha**2),
+            alpha, aside / arm.y, aside / radius, arm.y / radius, swing, e, 1 / alpha,
+            1 / (swing * alpha * alpha),
         )  # fmt: skip
     return poles
 

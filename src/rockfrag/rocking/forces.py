@@ -4,23 +4,32 @@ The forces follow from the absolute accelerations of the centres of gravity: N2 
 T2 = m2 x2'', and the sums over both blocks at the ground.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Block, Body, Vector
+from rockfrag.rocking.kernels.jit import compiling_alone
+from rockfrag.rocking.kernels.record import fill_sines
 
 Array = NDArray[np.float64]
 
 
-def _turned(arm: Vector, theta: Array) -> tuple[Array, Array]:
-    c, s = np.cos(theta), np.sin(theta)
-    return arm.x * c + arm.y * s, -arm.x * s + arm.y * c
+class _Turning(NamedTuple):
+    """A rotation at some samples: its sine and cosine, rate and acceleration."""
+
+    sine: Array
+    cosine: Array
+    omega: Array
+    alpha: Array
 
 
-def _acceleration(arm: Vector, theta: Array, omega: Array, alpha: Array) -> tuple[Array, Array]:
+def _acceleration(arm: Vector, turning: _Turning) -> tuple[Array, Array]:
     """Acceleration of the tip of ``arm`` that turns clockwise about its foot [m/s²]."""
-    x, y = _turned(arm, theta)
-    return alpha * y - omega**2 * x, -alpha * x - omega**2 * y
+    sine, cosine, omega, alpha = turning
+    x, y = arm.x * cosine + arm.y * sine, -arm.x * sine + arm.y * cosine
+    return alpha * y - omega * omega * x, -alpha * x - omega * omega * y
 
 
 def contact_forces(
@@ -47,10 +56,17 @@ def contact_forces(
     """
     normal = np.zeros_like(theta)
     friction = np.zeros_like(theta)
+    sine, cosine = np.empty_like(theta), np.empty_like(theta)
+    with compiling_alone(fill_sines):
+        fill_sines(theta, sine, cosine)
+
+    def turning(rows: NDArray[np.bool_], block: int) -> _Turning:
+        return _Turning(*(values[rows, block] for values in (sine, cosine, omega, alpha)))
+
     if isinstance(body, Block):
         for pole in (+1, -1):
             rows = (state[:, 0] == pole) | (state[:, 0] == 0) & (pole == 1)
-            ax, ay = _acceleration(body.arm(pole), theta[rows, 0], omega[rows, 0], alpha[rows, 0])
+            ax, ay = _acceleration(body.arm(pole), turning(rows, 0))
             friction[rows, 0] = body.mass * (ground[rows] + ax)
             normal[rows, 0] = body.mass * (g + ay)
         return normal, friction
@@ -59,11 +75,10 @@ def contact_forces(
         for two in (+1, -1):
             rows = (state[:, 0] == one) | (state[:, 0] == 0) & (one == 1)
             rows &= (state[:, 1] == two) | (state[:, 1] == 0) & (two == 1)
-            first = theta[rows, 0], omega[rows, 0], alpha[rows, 0]
-            second = theta[rows, 1], omega[rows, 1], alpha[rows, 1]
-            x1, y1 = _acceleration(body.pedestal.arm(one), *first)
-            xd, yd = _acceleration(body.reach(one, two), *first)
-            x2, y2 = _acceleration(body.statue_arm(two), *second)
+            first, second = turning(rows, 0), turning(rows, 1)
+            x1, y1 = _acceleration(body.pedestal.arm(one), first)
+            xd, yd = _acceleration(body.reach(one, two), first)
+            x2, y2 = _acceleration(body.statue_arm(two), second)
             friction[rows, 1] = m2 * (ground[rows] + xd + x2)
             normal[rows, 1] = m2 * (g + yd + y2)
             friction[rows, 0] = friction[rows, 1] + m1 * (ground[rows] + x1)

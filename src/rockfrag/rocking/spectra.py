@@ -19,6 +19,7 @@ from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
+from rockfrag.rocking.kernels.elementary import sin_cos
 from rockfrag.units import STANDARD_GRAVITY
 
 Floats = NDArray[np.float64]
@@ -66,8 +67,9 @@ def uniform_block(alpha: float, period: float, g: float = STANDARD_GRAVITY) -> B
         raise InputError(f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}.")
     if not (math.isfinite(period) and period > 0):
         raise InputError(f"period: 2π/p must be a positive number of seconds, got {period}.")
-    radius = 3 * g * period**2 / (16 * math.pi**2)
-    width, height = 2 * radius * math.sin(alpha), 2 * radius * math.cos(alpha)
+    radius = 3 * g * period * period / (16 * math.pi * math.pi)
+    sine, cosine = sin_cos(alpha)
+    width, height = 2 * radius * sine, 2 * radius * cosine
     return Block(width, height, 1000 * width * height)
 
 

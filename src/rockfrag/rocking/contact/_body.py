@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.contact.friction import Friction
+from rockfrag.rocking.kernels.elementary import atan2, sin_cos
 
 F, INT = np.float64, np.int64
 
@@ -133,14 +134,15 @@ def contact_body(body: Body, friction: tuple[Friction, ...], g: float) -> np.voi
         )
         for end, arm in enumerate(pair):
             p["corner"][k, end] = -arm.x, -arm.y
-            p["critical"][k, end] = math.atan2((1 - 2 * end) * arm.x, arm.y)
+            p["critical"][k, end] = atan2((1 - 2 * end) * arm.x, arm.y)
         p["static"][k], p["kinetic"][k] = friction[k]
     p["standing"][:2] = blocks[0].centre
     if not isinstance(body, Block):
         pedestal = body.pedestal
-        top = np.array([math.sin(pedestal.lean), math.cos(pedestal.lean)]) * pedestal.height
+        sine, cosine = sin_cos(pedestal.lean)
+        top = np.array([sine, cosine]) * pedestal.height
         p["face"][1], p["half"][1] = top - pedestal.centre, pedestal.b
-        p["tilt_cos"][1], p["tilt_sin"][1] = math.cos(pedestal.lean), math.sin(pedestal.lean)
+        p["tilt_cos"][1], p["tilt_sin"][1] = cosine, sine
         foot, own = body.interface_pole(1), body.statue_arm(1)
         p["standing"][3:5] = foot.x + own.x, foot.y + own.y
     p["weight"] = g * sum(block.mass for block in blocks)
@@ -163,7 +165,7 @@ def posed(
     standing = p["standing"]
 
     def turned(x: float, y: float, angle: float) -> NDArray[np.float64]:
-        c, s = math.cos(angle), math.sin(angle)
+        s, c = sin_cos(angle)
         return np.array([x * c + y * s, -x * s + y * c])
 
     for k in range(int(p["count"])):

@@ -2,6 +2,7 @@
 
 import math
 
+from rockfrag.rocking.kernels.elementary import sin_cos
 from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
 
 AT_EDGE = 1e-9
@@ -13,8 +14,7 @@ their face stand on it and not on its edges."""
 def look_at(p, w, q):
     """Take sines and cosines of the rotations in ``q``."""
     for k in range(p.count):
-        w.cos[k] = math.cos(q[3 * k + 2])
-        w.sin[k] = math.sin(q[3 * k + 2])
+        w.sin[k], w.cos[k] = sin_cos(q[3 * k + 2])
 
 
 @inlined_kernel

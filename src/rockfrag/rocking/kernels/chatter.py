@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.rocking.kernels.contact_states import at_rest
+from rockfrag.rocking.kernels.elementary import hypot
 from rockfrag.rocking.kernels.equations import accelerations, statue_balance
 from rockfrag.rocking.kernels.impact import mass_matrix
 from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
@@ -103,7 +104,7 @@ def fill_restoring(body, restoring, scratch):
             restoring.still[i] = still
             restoring.per_ground[i] = _restoring(body, c1, c2, 1.0, scratch) - still
     _, vx, vy, inertia = statue_balance(body, 1)
-    frequency2 = body.gravity * math.hypot(vx, vy) / inertia
+    frequency2 = body.gravity * hypot(vx, vy) / inertia
     restoring.frequency2 = frequency2
     restoring.fastest = 0.2 * _least(restoring, 0.0) / math.sqrt(frequency2)
 
@@ -230,8 +231,7 @@ def _turn_of(hop):
     """Cosine and sine of θ1, and of θ2 - θ1: either θ1 is zero, or both are the same."""
     if hop.ground:
         return 1.0, 0.0, hop.cosine, hop.sine
-    cosine, sine = hop.cosine, hop.sine
-    return cosine, sine, cosine * cosine + sine * sine, sine * cosine - cosine * sine
+    return hop.cosine, hop.sine, 1.0, 0.0
 
 
 @kernel
@@ -310,7 +310,8 @@ def may_close(hop, before, after, longest, g, ahead):
 @inlined_kernel
 def closed(hop, two):
     """Velocities once the contact stays closed, with the momentum of its velocities in this contact state."""
-    m11, m12, m22, _ = mass_matrix(two, hop.cosine, hop.sine)
+    _, _, cosine, sine = _turn_of(hop)
+    m11, m12, m22, _ = mass_matrix(two, cosine, sine)
     if hop.ground:
         return 0.0, hop.omega2 + m12 * hop.omega1 / m22
     both = ((m11 + m12) * hop.omega1 + (m12 + m22) * hop.omega2) / (m11 + 2.0 * m12 + m22)

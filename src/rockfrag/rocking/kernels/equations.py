@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from rockfrag.rocking.kernels.elementary import atan2, hypot, sin, sin_cos
 from rockfrag.rocking.kernels.jit import kernel
 
 BODY = np.dtype(
@@ -69,8 +70,8 @@ def arm2(body, sigma):
     y = body.c2y - sigma * body.b2 * body.ey
     if body.linear == 2:
         # eq. 2.9: sin θc → θc, cos θc → 1
-        radius = math.hypot(x, y)
-        return -sigma * radius * math.atan2(-sigma * x, y), radius
+        radius = hypot(x, y)
+        return -sigma * radius * atan2(-sigma * x, y), radius
     return x, y
 
 
@@ -131,8 +132,7 @@ def weight_moment(body, vx, vy, theta, ground):
     g = body.gravity
     if body.linear > 0:
         return ground * vy - g * (vx + vy * theta)
-    c = math.cos(theta)
-    s = math.sin(theta)
+    s, c = sin_cos(theta)
     return ground * (vy * c - vx * s) - g * (vx * c + vy * s)
 
 
@@ -145,8 +145,7 @@ def equations(body, sigma1, sigma2, state):
         m12 = e
         d = 0.0
     else:
-        c = math.cos(theta2 - theta1)
-        s = math.sin(theta2 - theta1)
+        s, c = sin_cos(theta2 - theta1)
         m12 = e * c + f * s
         d = f * c - e * s
     v1x, v1y = first_moment1(body, sigma1, sigma2)
@@ -215,7 +214,8 @@ def turn_between(body, state):
     """Cosine and sine of θ2 - θ1; 1 and 0 in the linearised equations."""
     if body.linear > 0 or state.theta1 == state.theta2:
         return 1.0, 0.0
-    return math.cos(state.theta2 - state.theta1), math.sin(state.theta2 - state.theta1)
+    sine, cosine = sin_cos(state.theta2 - state.theta1)
+    return cosine, sine
 
 
 @kernel
@@ -271,11 +271,9 @@ def potential_energy(body, state):
     if body.linear > 0:
         return -g * (theta1 * (v1x + 0.5 * v1y * theta1) + theta2 * (v2x + 0.5 * v2y * theta2))
     # V_y(θ) - V_y(0), with 1 - cos θ = 2 sin²(θ/2) so that nothing cancels
-    h1 = math.sin(0.5 * theta1)
-    h2 = math.sin(0.5 * theta2)
-    return -g * (
-        v1x * math.sin(theta1) + 2.0 * v1y * h1 * h1 + v2x * math.sin(theta2) + 2.0 * v2y * h2 * h2
-    )
+    h1 = sin(0.5 * theta1)
+    h2 = sin(0.5 * theta2)
+    return -g * (v1x * sin(theta1) + 2.0 * v1y * h1 * h1 + v2x * sin(theta2) + 2.0 * v2y * h2 * h2)
 
 
 @kernel
@@ -291,14 +289,14 @@ def balance(body, c1, c2):
     else:
         vx, vy = first_moment1(body, s1, s2)
         inertia = inertia1(body, s1, s2)
-    return math.atan2(-c1 * vx, vy), vx, vy, inertia
+    return atan2(-c1 * vx, vy), vx, vy, inertia
 
 
 @kernel
 def statue_balance(body, c2):
     """Critical angle, first moment and inertia of the statue (or lone block) on its pole c2."""
     vx, vy = first_moment2(body, pole(c2))
-    return math.atan2(-c2 * vx, vy), vx, vy, inertia2(body, pole(c2))
+    return atan2(-c2 * vx, vy), vx, vy, inertia2(body, pole(c2))
 
 
 @kernel
@@ -307,12 +305,12 @@ def barrier(body):
     least = math.inf
     for s2 in (1.0, -1.0):
         vx, vy = first_moment2(body, s2)
-        least = min(least, math.hypot(vx, vy) - vy)
+        least = min(least, hypot(vx, vy) - vy)
         if not body.fixed:
             for s1 in (1.0, -1.0):
                 vx, vy = first_moment1(body, s1, s2)
-                least = min(least, math.hypot(vx, vy) - vy)
+                least = min(least, hypot(vx, vy) - vy)
                 wx, wy = first_moment2(body, s2)
                 vx, vy = vx + wx, vy + wy
-                least = min(least, math.hypot(vx, vy) - vy)
+                least = min(least, hypot(vx, vy) - vy)
     return least * body.gravity

@@ -13,7 +13,9 @@ with a version other than ``TESTED_NUMBA`` kernels are compiled the ordinary way
 the same bits.
 
 Arithmetic is strictly IEEE: nothing is contracted or reordered, because the compiler would do so differently
-in each place that a kernel is inlined in.  Kernels may not allocate arrays: what they are given is borrowed
+in each place that a kernel is inlined in, and sine and its like come from ``elementary``, not from a library.
+So bits are the same on every processor; one without multiply-adds computes those that are asked for by name
+(``fma``) by a function, exactly and slowly.  Kernels may not allocate arrays: what they are given is borrowed
 from the caller, and nothing counts references (atomic operations that took a twentieth of the time of an
 ensemble).
 """
@@ -24,12 +26,15 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 import numba
 from filelock import FileLock
 from numba import types
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
+
+from rockfrag.rocking.kernels import elementary
 
 TESTED_NUMBA = ("0.68.",)
 """Versions of numba whose private parts are known to be as this module takes them to be."""
@@ -71,13 +76,23 @@ def inlined_kernel(function: Callable[..., Any]) -> Any:
 
 
 def _part(function: Callable[..., Any], **more: Any) -> Any:
-    own = {"pipeline_class": PartCompiler} if KNOWN else {}
-    return _compiled(function, no_cpython_wrapper=True, no_cfunc_wrapper=True, **own, **more)
+    return _compiled(function, **_PART, **more)
 
 
 def _compiled(function: Callable[..., Any], **options: Any) -> Any:
     njit: Any = numba.njit
-    return njit(nogil=True, error_model="numpy", _nrt=False, **options)(function)
+    return njit(**_EVERY, **options)(function)
+
+
+_EVERY: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+if KNOWN:
+    _PART["pipeline_class"] = PartCompiler
+
+for _function in list(vars(elementary).values()):
+    if isinstance(_function, FunctionType):
+        # plain Python, which kernels may call as if it were one of them
+        register_jitable(**_EVERY, **_PART)(_function)
 
 
 @cache

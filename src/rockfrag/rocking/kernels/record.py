@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rockfrag.rocking.kernels.elementary import hypot, sin_cos
 from rockfrag.rocking.kernels.equations import (
     STATE,
     accelerations,
@@ -98,7 +99,7 @@ def fill_balances(body, balances):
 @kernel
 def _keep_balance(body, way, critical, moment, inertia):
     way.critical = critical
-    way.frequency2 = body.gravity * math.hypot(moment[0], moment[1]) / inertia
+    way.frequency2 = body.gravity * hypot(moment[0], moment[1]) / inertia
 
 
 @kernel
@@ -171,8 +172,9 @@ def work_of(body, c1, c2, series, end, step):
             if body.linear > 0:
                 rate = v1y * w1 + v2y * w2
             else:
-                rate = w1 * (v1y * math.cos(t1) - v1x * math.sin(t1))
-                rate += w2 * (v2y * math.cos(t2) - v2x * math.sin(t2))
+                sine1, cosine1 = sin_cos(t1)
+                sine2, cosine2 = sin_cos(t2)
+                rate = w1 * (v1y * cosine1 - v1x * sine1) + w2 * (v2y * cosine2 - v2x * sine2)
             total -= weights[i] * (step.ground + step.rise * tau) * rate
     return 0.5 * end * total
 
@@ -210,3 +212,11 @@ def fill_energies(body, history, kinetic, potential, scratch):
         scratch.theta2, scratch.omega2 = sample.theta2, sample.omega2
         kinetic[i] = kinetic_energy(body, scratch)
         potential[i] = potential_energy(body, scratch)
+
+
+@entry_kernel
+def fill_sines(theta, sine, cosine):
+    """Fill the sine and cosine of each angle of arrays of two dimensions."""
+    for i in range(theta.shape[0]):
+        for j in range(theta.shape[1]):
+            sine[i, j], cosine[i, j] = sin_cos(theta[i, j])

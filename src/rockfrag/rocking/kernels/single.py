@@ -3,8 +3,8 @@
 Between events the rotations follow their series; an event is located on the series and handled before the
 march goes on.  Every step size, root and decision depends on this one case alone.
 
-Nothing here needs what a web page does not have: no thread, no file, no Python object, and of mathematics only
-sin, cos, atan2, hypot, sqrt and fma.
+Nothing here needs what a web page does not have: no thread, no file, no Python object, and no mathematics but
+that of ``elementary``.
 """
 
 import math

@@ -14,11 +14,11 @@ Where gravity were g + a_v(t), linear over the step too, each weight moment g Y 
 series as a X is now.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
+from rockfrag.rocking.kernels.elementary import sin_cos
 from rockfrag.rocking.kernels.equations import (
     coupling,
     first_moment1,
@@ -76,8 +76,7 @@ def _extend(rotation, k, linear):
         rotation.sine[k] = rotation.angle[k]
         rotation.cosine[k] = 1.0 if k == 0 else 0.0
     elif k == 0:
-        rotation.sine[0] = math.sin(rotation.angle[0])
-        rotation.cosine[0] = math.cos(rotation.angle[0])
+        rotation.sine[0], rotation.cosine[0] = sin_cos(rotation.angle[0])
     else:
         _extend_circular(rotation, k)
 
@@ -216,8 +215,8 @@ def fill_series(body, state, step, series):
 
 
 @inlined_kernel
-def sine_cosine(x):
-    """Sine and cosine for |x| ≤ π/2 to 1e-10, and to rounding for |x| ≤ 0.6."""
+def quick_sine_cosine(x):
+    """Sine and cosine without a branch, for |x| ≤ π/2 to 1e-10, and to rounding for |x| ≤ 0.6."""
     y = x * x
     s = fma(y, -1.0 / 1307674368000.0, 1.0 / 6227020800.0)
     s = fma(s, y, -1.0 / 39916800.0)

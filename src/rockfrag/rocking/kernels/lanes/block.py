@@ -16,6 +16,7 @@ import numpy as np
 
 from rockfrag.rocking.kernels.chatter import Ahead, block_dies_out
 from rockfrag.rocking.kernels.contact_states import HALF_TURN
+from rockfrag.rocking.kernels.elementary import acos, cos
 from rockfrag.rocking.kernels.impact import block_impact
 from rockfrag.rocking.kernels.jit import entry_kernel, inlined_kernel, kernel, lowest_bit, take_next
 from rockfrag.rocking.kernels.lanes.case import (
@@ -31,9 +32,9 @@ from rockfrag.rocking.kernels.single import MAX_EVENTS_PER_STEP
 from rockfrag.rocking.kernels.taylor import (
     ORDER,
     keep_rates,
+    quick_sine_cosine,
     rate_at,
     rates_of_one,
-    sine_cosine,
     travel,
 )
 
@@ -120,7 +121,7 @@ def advance(lane):
         a = lane.ground[i]
         a_end = lane.ground_end[i]
         w = omega * left
-        s, c = sine_cosine(psi)
+        s, c = quick_sine_cosine(psi)
         rates = rates_of_one(s, c, w, kappa * left * left, a, a_end - a)
         end = psi + travel(rates, 1.0)
         v = rate_at(rates, 1.0)
@@ -215,7 +216,7 @@ def _fall(lane, i, tally):
     psi, w = lane.was_psi[i], lane.was_omega[i]
     near = w * w / lane.kappa[i]
     if psi > 0.0:
-        near -= 2.0 * (1.0 - math.cos(psi))
+        near -= 2.0 * (1.0 - cos(psi))
     else:
         near += psi * psi
     near = math.sqrt(max(0.0, near)) / lane.angle[i]
@@ -380,14 +381,14 @@ def _falls_freely(lane, i, tally, ensemble):
     for _ in range(64):
         here = _pole(lane, i, side, ensemble)
         angle, kappa = here.alpha, here.swing
-        energy = 0.5 * w * w + kappa * math.cos(psi)
+        energy = 0.5 * w * w + kappa * cos(psi)
         if (psi > 0.0 and w <= 0.0) or psi <= 0.0:
             if psi > 0.0 and energy < kappa:
-                _note(tally, math.acos(energy / kappa), 0.0, angle, kappa)
+                _note(tally, acos(energy / kappa), 0.0, angle, kappa)
             elif psi > 0.0 or w <= 0.0 or energy < kappa:
                 _note(tally, 0.0, math.sqrt(2.0 * abs(energy - kappa)), angle, kappa)
                 return True
-        v = math.sqrt(max(0.0, 2.0 * (energy - kappa * math.cos(angle))))
+        v = math.sqrt(max(0.0, 2.0 * (energy - kappa * cos(angle))))
         tally.fast = max(tally.fast, v)
         w = block_impact(here, v)
         side = -side
@@ -395,10 +396,8 @@ def _falls_freely(lane, i, tally, ensemble):
         here = _pole(lane, i, side, ensemble)
         psi, kappa = here.alpha, here.swing
         left = 0.5 * w * w
-        if left < kappa * (1.0 - math.cos(psi)) and left < other.swing * (
-            1.0 - math.cos(other.alpha)
-        ):
-            _note(tally, math.acos(left / kappa + math.cos(psi)), 0.0, psi, kappa)
+        if left < kappa * (1.0 - cos(psi)) and left < other.swing * (1.0 - cos(other.alpha)):
+            _note(tally, acos(left / kappa + cos(psi)), 0.0, psi, kappa)
             return False
     return False
 

@@ -51,7 +51,7 @@ from rockfrag.rocking.kernels.lanes.stack_constants import (
 )
 from rockfrag.rocking.kernels.roots import slope, value
 from rockfrag.rocking.kernels.single import MAX_EVENTS_PER_STEP, land
-from rockfrag.rocking.kernels.taylor import SERIES, sine_cosine
+from rockfrag.rocking.kernels.taylor import SERIES, quick_sine_cosine
 
 SLOTS = 2 * LANES
 """Cases in flight, so that lanes of one kind or the other can always be filled."""
@@ -407,7 +407,7 @@ def close_one(case, worker, ground, g, motions):
     c1, c2, omega1, omega2 = case.c1, case.c2, case.omega1, case.omega2
     constants, number = worker.twos[case.slot], number_of(c1, c2)
     before, products = constants[number], worker.impacts[case.slot, number]
-    sine, cosine = sine_cosine(case.theta2)
+    sine, cosine = quick_sine_cosine(case.theta2)
     if ground:
         n1, n2 = -c1, c2
         after = constants[number_of(n1, n2)]

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from rockfrag.rocking.kernels.elementary import hypot
 from rockfrag.rocking.kernels.equations import (
     arm1,
     arm2,
@@ -101,7 +102,7 @@ def _one_rotates(body, c1, c2, hh, one):
     per = hh * body.gravity / inertia
     one.gx, one.gy = per * vx, per * vy
     one.per_angle = (c1 + c2) / critical
-    one.per_speed = 1.0 / (per * math.hypot(vx, vy) * critical * critical)
+    one.per_speed = 1.0 / (per * hypot(vx, vy) * critical * critical)
 
 
 @kernel
@@ -113,11 +114,11 @@ def _both_rotate(body, c1, c2, hh, two):
     critical, vx, vy, inertia = balance(body, c1, c2)
     two.v1x, two.v1y = hh * vx, hh * vy
     two.per_angle1 = c1 / critical
-    two.per_speed1 = inertia / (scale * math.hypot(vx, vy) * critical * critical)
+    two.per_speed1 = inertia / (scale * hypot(vx, vy) * critical * critical)
     critical, vx, vy, inertia = statue_balance(body, c2)
     two.v2x, two.v2y = hh * vx, hh * vy
     two.per_angle2 = c2 / critical
-    two.per_speed2 = inertia / (scale * math.hypot(vx, vy) * critical * critical)
+    two.per_speed2 = inertia / (scale * hypot(vx, vy) * critical * critical)
 
 
 @kernel

@@ -25,9 +25,9 @@ from rockfrag.rocking.kernels.roots import (
 from rockfrag.rocking.kernels.taylor import (
     ORDER,
     keep_rates,
+    quick_sine_cosine,
     rate_at,
     rates_of_one,
-    sine_cosine,
     travel,
 )
 
@@ -94,7 +94,7 @@ def advance(lane, g):
         a_end = lane.ground_end[i]
         per = 1.0 / left
         w = omega * left
-        turn = sine_cosine(theta)
+        turn = quick_sine_cosine(theta)
         rates = _rates(lane.gx[i], lane.gy[i], turn, w, left, (a * down, (a_end - a) * down))
         keep_rates(lane.rates, i, rates)
         end = theta + travel(rates, 1.0)
@@ -158,7 +158,7 @@ def go_back(lane, i, g):
     lane.ground_end[i], lane.was_ground[i] = end, a
     down = -1.0 / g
     ground = a * down, (end - a) * down
-    rates = _rates(lane.gx[i], lane.gy[i], sine_cosine(theta), omega * left, left, ground)
+    rates = _rates(lane.gx[i], lane.gy[i], quick_sine_cosine(theta), omega * left, left, ground)
     keep_rates(lane.rates, i, rates)
 
 
@@ -182,7 +182,7 @@ def next_event(one, lane, i, series, g):
 @kernel
 def least_hold(one, theta, omega, ground, g):
     """Least contact moment of the closed contact; negative if it would have to pull."""
-    turn = sine_cosine(theta)
+    turn = quick_sine_cosine(theta)
     s, c = turn
     alpha = one.gx * c + one.gy * s - ground / g * (one.gy * c - one.gx * s)
     return min(

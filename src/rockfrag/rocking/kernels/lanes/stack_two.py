@@ -14,9 +14,9 @@ from rockfrag.rocking.kernels.single import fill_gap, first_closing
 from rockfrag.rocking.kernels.taylor import (
     ORDER,
     keep_rates,
+    quick_sine_cosine,
     rate_at,
     rates_of_two,
-    sine_cosine,
     travel,
 )
 
@@ -82,8 +82,8 @@ def advance(lane, g):
         a = lane.ground[i]
         a_end = lane.ground_end[i]
         rise = (a_end - a) * (span / left)
-        s1, c1 = sine_cosine(t1)
-        s2, c2 = sine_cosine(t2)
+        s1, c1 = quick_sine_cosine(t1)
+        s2, c2 = quick_sine_cosine(t2)
         sd = s2 * c1 - c2 * s1
         cd = c2 * c1 + s2 * s1
         e = lane.e[i]
