@@ -182,13 +182,13 @@ def checked_scales(
             f"scales: expected finite numbers of shape (scales,) or ({count}, scales), "
             f"got {shown(scales)}."
         )
+    check_case_count(factors.size)
     for i, values in enumerate(motions):
         strongest = float(np.abs(factors[i]).max(initial=0.0)) * float(np.abs(values).max())
         if strongest > STRONGEST:
             raise InputError(
                 f"scales: motions[{i}] is scaled to {strongest:.3g} m/s², which is beyond any earthquake."
             )
-    check_case_count(factors.size)
     # a copy: kernels would be compiled anew for a view that cannot be written to
     return np.array(factors, order="C")
 
