@@ -171,6 +171,9 @@ def checked_scales(
     InputError
         If the shape does not fit the motions, a factor is not finite, or a scaled motion is beyond any earthquake.
     """
+    if isinstance(scales, np.ndarray):
+        # before anything is asked of so many numbers
+        check_case_count(scales.size)
     factors = real_array("scales", scales)
     count = len(motions)
     if factors.ndim == 0:
