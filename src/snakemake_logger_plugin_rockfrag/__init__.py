@@ -12,7 +12,7 @@ from typing import Any
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from rockfrag.stages.log import last_finding, last_seconds
+from rockfrag.stages.log import last_finding, last_seconds, says_why
 
 __all__ = ["LogHandler"]
 
@@ -29,6 +29,7 @@ class LogHandler(LogHandlerBase):
         self.total = 0
         self.done = 0
         self.running: dict[int, tuple[str, str]] = {}
+        self.begun: dict[int, float] = {}
         self.waiting: dict[str, int] = {}
         self.expected: dict[str, float] = {}
         self.expected_done = 0.0
@@ -67,8 +68,9 @@ class LogHandler(LogHandlerBase):
             self._begin(record.__dict__)
         elif event == LogEvent.JOB_FINISHED:
             self._finish(int(record.job_id))  # type: ignore[attr-defined]
-        elif event == LogEvent.JOB_ERROR or str(record.msg).startswith("RuleException"):
-            # the job itself has said what is wrong, and where its log is
+        elif event == LogEvent.JOB_ERROR:
+            self._fail(int(record.jobid))  # type: ignore[attr-defined]
+        elif str(record.msg).startswith("RuleException"):
             self.failed = True
         elif hasattr(record, "report"):
             self.report = str(record.report)
@@ -92,6 +94,17 @@ class LogHandler(LogHandlerBase):
     def _begin(self, job: dict[str, Any]) -> None:
         log = job["log"][0] if job["log"] else ""
         self.running[job["jobid"]] = (job["rule_name"], log)
+        self.begun[job["jobid"]] = time.time()
+
+    def _fail(self, job: int) -> None:
+        """Say that a job died, unless it has said itself what is wrong and where its log is."""
+        self.failed = True
+        rule, log = self.running.pop(job, ("a job", ""))
+        if not says_why(Path(log), self.begun.get(job, 0.0)):
+            _say(
+                f"{rule} failed: it was killed or ran out of memory; run the study again, with fewer "
+                f"cores if it was memory (log: {log})"
+            )
 
     def _finish(self, job: int) -> None:
         rule, log = self.running.pop(job, ("all", ""))

@@ -9,7 +9,11 @@ from snakemake.utils import update_config
 from rockfrag.errors import InputError
 from rockfrag.guests import study_stages
 from rockfrag.stages.running import prepared
+from rockfrag.stages.same_numbers import same_numbers
 from rockfrag.yaml_file import read_yaml
+
+# jobs inherit it: no number depends on what the processor at hand could do beyond others of its kind
+os.environ |= same_numbers(os.environ)
 
 # Snakemake puts the interpreter's path into shell commands as it is, so spaces in it must be quoted
 sys.executable = shlex.quote(sys.executable)

@@ -15,8 +15,7 @@ def run(job: Job[Study]) -> Results:
 
     settings, measures = job.study.fragility, job.table("measures")
     sweep = pd.concat([job.table(name) for name in job.study.sweep_tables], ignore_index=True)
-    motions = job.motions("motions/floors")
-    record_set = record_set_hash(motions)
+    record_set = record_set_hash(job.motions("motions/records"))
     columns = list(settings.measures)
     measured = with_measures(sweep, measures, columns)
     found = fragility_tables(measured, columns, record_set=record_set, level=settings.confidence)
@@ -51,7 +50,7 @@ def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
 STAGE = Stage(
     name="fragility",
     run=run,
-    inputs=lambda study: ("measures", "motions/floors.parquet", *study.sweep_tables),
+    inputs=lambda study: ("measures", "motions/records.parquet", *study.sweep_tables),
     outputs=(
         "fragility",
         "fragility_bands",

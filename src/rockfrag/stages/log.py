@@ -1,11 +1,13 @@
 """Logs of the workflow's jobs: what each found and how long it took, and one sentence if it failed."""
 
+import errno
 import logging
+import os
 import re
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from rockfrag.errors import InputError
@@ -28,28 +30,63 @@ def logged(path: str, name: str) -> Iterator[logging.Logger]:
     name
         Name of the job.
     """
-    Path(path).parent.mkdir(parents=True, exist_ok=True)
     log = logging.getLogger("rockfrag")
-    log.setLevel(logging.INFO)
-    log.propagate = False
-    to_file = logging.FileHandler(path, mode="w", encoding="utf-8")
-    to_file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
-    log.handlers = [to_file]
-    logging.captureWarnings(True)
-    logging.getLogger("py.warnings").handlers = [to_file]
     start = time.monotonic()
     try:
+        _log_to(path, log)
         yield log
         took = time.monotonic() - start
         log.info("took %.1f s, %.1f s of processors", took, time.process_time())
     except InputError as error:
         log.error("%s", error)
         _fail(name, str(error), path)
+    except KeyboardInterrupt:
+        log.error("stopped")
+        sys.exit(1)
     except Exception as error:
         log.exception("failed")
-        _fail(name, f"{type(error).__name__}: {error}", path)
+        _fail(name, in_words(error), path)
     finally:
-        to_file.close()
+        for handler in log.handlers:
+            # what a full disk has not taken is flushed once more, in vain
+            with suppress(OSError):
+                handler.close()
+
+
+def _log_to(path: str, log: logging.Logger) -> None:
+    """Let a log go to a file, without a traceback for each line that a full disk does not take."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    to_file = logging.FileHandler(path, mode="w", encoding="utf-8")
+    to_file.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    log.setLevel(logging.INFO)
+    log.propagate = False
+    log.handlers = [to_file]
+    logging.raiseExceptions = False
+    logging.captureWarnings(True)
+    logging.getLogger("py.warnings").handlers = [to_file]
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+_FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
+
+
+def in_words(error: Exception) -> str:
+    """Say an error in a sentence; what a machine lacks is said so that its owner can mend it."""
+    # PyArrow and others put the number of the system's error into their message
+    number = getattr(error, "errno", None)
+    text = " ".join(str(error).split())
+    if number in _FULL or any(os.strerror(one) in text for one in _FULL):
+        return (
+            f"the disk is full or a limit of it is reached; free space, and run it again ({text})."
+        )
+    if number in _FORBIDDEN:
+        name = getattr(error, "filename", None) or "a file"
+        return f"{name} may not be written or read; allow it, and run it again."
+    if isinstance(error, MemoryError):
+        return (
+            "there is not enough memory; close other programs or use fewer cores, and run it again."
+        )
+    return f"{type(error).__name__}: {text}"
 
 
 def _fail(name: str, sentence: str, path: str) -> None:
@@ -62,6 +99,14 @@ def last_finding(path: Path) -> str:
     """What the job of a log found: its last line but that of the time."""
     lines = [found[1] for line in _lines(path) if (found := _LINE.fullmatch(line))]
     return next((line for line in reversed(lines) if not _TOOK.fullmatch(line)), "done")
+
+
+def says_why(path: Path, since: float) -> bool:
+    """Whether a job that began at ``since`` has said in its log why it failed."""
+    try:
+        return path.stat().st_mtime >= since and any(" ERROR " in line for line in _lines(path))
+    except OSError:
+        return False
 
 
 def last_seconds(path: Path) -> float | None:

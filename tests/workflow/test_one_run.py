@@ -1,0 +1,136 @@
+"""A study runs once at a time, and a run that was killed is taken up without a hand."""
+
+import errno
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.stages.log import in_words, logged
+from rockfrag.stages.one_run import RUNS, only_run
+
+from .test_run import ROOT
+
+LAUNCHER = ROOT / "workflow" / "run.py"
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def holder(folder: Path, then: str) -> subprocess.Popen[str]:
+    """A process that runs the study ``tiny`` and does something."""
+    program = (
+        "import subprocess, sys, time\nfrom pathlib import Path\n"
+        "from rockfrag.stages.one_run import only_run\n"
+        f"with only_run('tiny', Path('results')):\n    {then}\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], cwd=folder, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline().strip() == "there"
+    return process
+
+
+def test_a_second_run_is_told_in_which_process_the_first_one_is(here: Path):
+    first = holder(here, "print('there', flush=True); time.sleep(60)")
+    try:
+        with (
+            pytest.raises(InputError, match=f"running in process {first.pid} since"),
+            only_run("tiny", here / "results"),
+        ):
+            pass
+        with only_run("another", here / "results"):
+            pass
+    finally:
+        first.kill()
+        first.communicate()
+
+
+def test_what_a_killed_run_left_running_or_half_written_goes(here: Path):
+    (here / "results" / "tiny").mkdir(parents=True)
+    part = here / "results" / "tiny" / ".tests.csv.abc.part"
+    part.write_text("half")
+    sleep = "[sys.executable, '-c', 'import time; time.sleep(60)'], stdout=-3"
+    first = holder(
+        here, f"job = subprocess.Popen({sleep}); print('there', flush=True); time.sleep(60)"
+    )
+    orphans = _children(first.pid)
+    assert orphans
+    first.kill()
+    first.wait()
+    assert first.stdout is not None
+    first.stdout.close()
+    assert all(_alive(one) for one in orphans)
+    with only_run("tiny", here / "results"):
+        assert not any(_alive(one) for one in orphans)
+        assert not part.exists()
+    assert json.loads((RUNS / "tiny.json").read_text()) == {}
+
+
+def _children(process: int) -> list[int]:
+    deadline = time.monotonic() + 10
+    listed: list[int] = []
+    while not listed and time.monotonic() < deadline:
+        text = Path(f"/proc/{process}/task/{process}/children").read_text()
+        listed = [int(word) for word in text.split()]
+    return listed
+
+
+def _alive(process: int) -> bool:
+    stat = Path(f"/proc/{process}/stat")
+    return stat.exists() and stat.read_text().rsplit(")", 1)[1].split()[0] != "Z"
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (OSError(errno.ENOSPC, "No space left on device", "t.csv"), "disk is full"),
+        (OSError("Error writing bytes to file. Detail: No space left on device"), "disk is full"),
+        (OSError(errno.EFBIG, "File too large"), "disk is full"),
+        (PermissionError(errno.EACCES, "Permission denied", "t.csv"), "t.csv may not be written"),
+        (MemoryError("Unable to allocate 1. TiB"), "not enough memory"),
+        (ValueError("a\nb"), "ValueError: a b"),
+    ],
+)
+def test_what_a_machine_lacks_is_said_in_a_sentence(error: Exception, words: str):
+    assert words in in_words(error)
+    assert "\n" not in in_words(error)
+
+
+def test_a_job_that_may_not_write_its_log_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(SystemExit), logged(str(tmp_path / "file" / "x.log"), "sweep"):
+        pass
+    said = capsys.readouterr().err
+    assert said.startswith("sweep failed: ")
+    assert said.count("\n") == 1
+
+
+@pytest.mark.slow
+def test_a_run_killed_at_any_level_ends_in_the_same_bytes(study_folder: Path):
+    from .test_run import tables_of
+
+    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    wanted = None
+    for wait in (None, 6.0, 12.0):
+        process = subprocess.Popen([*command, "--logger", "rockfrag"], cwd=study_folder)
+        if wait is not None:
+            time.sleep(wait)
+            process.kill()
+        process.wait()
+        done = subprocess.run(command, cwd=study_folder, capture_output=True, text=True, check=True)
+        assert "LockException" not in done.stderr
+        found = tables_of(study_folder)
+        wanted = wanted or found
+        assert found == wanted
+        subprocess.run(["rm", "-r", str(study_folder / "results")], check=True)

@@ -1,0 +1,54 @@
+"""Run a study: check it, see that no other run of it lives, and let Snakemake do the rest.
+
+    python workflow/run.py config/thesis.yaml --cores all
+
+What stands behind the study goes to Snakemake. Whatever goes wrong is said in one sentence.
+"""
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rockfrag.cli import main as rockfrag
+from rockfrag.errors import InputError
+from rockfrag.stages.log import in_words
+from rockfrag.stages.one_run import only_run
+from rockfrag.stages.running import results_folder
+from rockfrag.study.loading import load_any
+
+SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parents[1] / "Snakefile"))
+
+
+def main(study_file: str, arguments: Sequence[str]) -> int:
+    """Run a study; return 0, or another number if it could not be run to its end."""
+    status = rockfrag(["check-config", "--quiet", study_file])
+    if status:
+        return status
+    try:
+        study = load_any(study_file)
+        with only_run(study.name, results_folder(study)):
+            return _snakemake(study_file, ["--keep-going", *arguments])
+    except InputError as error:
+        print(error, file=sys.stderr)
+    except KeyboardInterrupt:
+        print("stopped; the same command takes it up again", file=sys.stderr)
+    except Exception as error:
+        print(in_words(error), file=sys.stderr)
+    return 1
+
+
+def _snakemake(study_file: str, arguments: Sequence[str]) -> int:
+    from snakemake.cli import main as snakemake
+
+    # our own lock knows whether its owner lives, Snakemake's does not
+    ours = ("--nolock", "--rerun-incomplete", "--workflow-profile", "none")
+    try:
+        snakemake(["--snakefile", str(SNAKEFILE), "--configfile", study_file, *ours, *arguments])
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], sys.argv[2:]))
