@@ -8,7 +8,7 @@ import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import psutil
 
@@ -69,7 +69,7 @@ def only_run(study: str, results: Path) -> Iterator[None]:
             _write(file, {})
 
 
-def _owner(file: IO[str]) -> dict[str, object]:
+def _owner(file: IO[str]) -> dict[str, Any]:
     file.seek(0)
     try:
         owner = json.load(file)
@@ -97,7 +97,7 @@ def _end_all(token: str) -> None:
 
 def _is_of(process: psutil.Process, token: str) -> bool:
     try:
-        return process.pid != os.getpid() and process.environ().get(TOKEN) == token
+        return process.pid != os.getpid() and bool(process.environ().get(TOKEN) == token)
     except (psutil.Error, OSError):
         # gone meanwhile, or somebody else's
         return False
