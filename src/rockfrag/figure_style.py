@@ -32,6 +32,9 @@ OKABE_ITO = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK, YELLOW)
 COLUMN_WIDTH, PAGE_WIDTH = 3.5, 7.0
 """Widths of figures for one and for two columns of a journal [in]."""
 
+WIDEST = 4.4
+"""Width of figures that need more than a column and are still to be read on a phone [in]."""
+
 DOTS_PER_INCH = 200
 
 CONFIGURATION_COLOURS = (ORANGE, BLUE, *OKABE_ITO[2:])

@@ -4,7 +4,7 @@ The one place that knows of the thesis. A new stage is added to the list here; a
 report in :mod:`rockfrag.report.sections`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.report.stages import CAMPAIGN_REPORT, MEASURED_TABLE
@@ -27,7 +27,8 @@ from rockfrag.study.study import Study
 from rockfrag.thesis import stages as thesis
 
 if TYPE_CHECKING:
-    from rockfrag.report.part import Part
+    from rockfrag.report.part import Answer, Part
+    from rockfrag.report.part import Results as ReportedResults
 
 _GENERAL: tuple[Stage[Study], ...] = (
     motions.STAGE,
@@ -63,6 +64,17 @@ def report_parts(study: Study) -> "Sequence[Part]":
     return with_thesis(PARTS)
 
 
+def report_answer(study: Study) -> "Callable[[ReportedResults], Answer]":
+    """Return what says what stands first in the report of a study."""
+    if study.compare_with != "thesis":
+        from rockfrag.report.answer import study_answer
+
+        return study_answer
+    from rockfrag.thesis.sections.first_page import thesis_answer
+
+    return thesis_answer
+
+
 def _report_stage(stages: Sequence[Stage[Study]]) -> Stage[Study]:
     """Return the last stage, which may read whatever the others write."""
     return Stage(
@@ -82,6 +94,7 @@ def _report(job: Job[Study]) -> Results:
     """Draw the figures and write the page."""
     from rockfrag.report.study_report import write_report
 
-    write_report(job.study, report_parts(job.study), job.folder, job.threads)
+    study = job.study
+    write_report(study, report_parts(study), report_answer(study), job.folder, job.threads)
     job.log.info("%s", job.folder / "report.html")
     yield from ()

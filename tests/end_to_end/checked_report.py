@@ -6,7 +6,11 @@ from collections.abc import Iterable
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
+
 from rockfrag.files import file_name
+from rockfrag.report.answer import study_answer
+from rockfrag.report.part import Results
 
 GUEST = re.compile(
     r"thesis|towers?\b|\bT[123]\b|\bGF\b|\bF[35]\b|\bC\d\d?\b|Tables? [34]\.\d|figures? [34]\.\d"
@@ -19,6 +23,10 @@ NOUNS = "record|test|motion|event|earthquake|pair|floor|object|configuration|swe
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
 SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
 VOID = {"meta", "link", "br", "img", "input", "hr"}
+
+
+MOST_WORDS = 2500
+"""Words of a page before anything on it is opened."""
 
 
 class Page(HTMLParser):
@@ -58,7 +66,7 @@ class Page(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         text = " ".join(data.split())
-        if not text or "style" in self.open:
+        if not text or {"style", "script"} & set(self.open):
             return
         (self.drawings if "svg" in self.open else self.words).append(text)
         if self.open[-1:] and {"td", "th"} & set(self.open):
@@ -86,6 +94,7 @@ def check_report(results: Path, names: Iterable[str] = (), guest: bool = False) 
         assert found is None, (
             f"“{found[0]}” in “…{whole[max(0, found.start() - 90) : found.end() + 60]}…”"
         )
+    assert words_before_opening(text) < MOST_WORDS
     _check_intervals(whole)
     _check_tables(page)
     _check_figures(results, page)
@@ -141,3 +150,35 @@ def _check_figures(results: Path, page: Page) -> None:
     assert len(page.labels) == len(drawn), f"{len(page.labels)} figures on the page of {drawn}"
     assert all(len(label) > 20 for label in page.labels), "a figure without words for it"
     assert all(path.stat().st_size > 500 for path in (results / "figures").glob("*.*g"))
+
+
+def check_first_page(results: Results) -> None:
+    """Assert that each number of what stands first is in the study's tables, and that it is short."""
+    answer = study_answer(results)
+    text = " ".join(one.said for one in answer.sentences)
+    for name in sorted({one.name for one in results.study.configurations}, key=len, reverse=True):
+        text = text.replace(name, "¤")
+    for name in [*results.objects, *results.tests["test"], *results.tests["motion"]]:
+        text = text.replace(name, "¤")
+    tables = [
+        results.table(name) for name in ("fragility", "tests", "as_recorded", "mean_amplitudes")
+    ]
+    if results.study.has_pairs:
+        tables.append(results.table("pedestal/effects"))
+    values = np.concatenate([one.select_dtypes("number").to_numpy(float).ravel() for one in tables])
+    values = values[np.isfinite(values)]
+    known = {f"{value:.{digits}f}" for value in values for digits in (1, 2, 3)}
+    known |= {f"{100 * abs(value - 1):.{digits}f}" for value in values for digits in (0, 1)}
+    counts = {str(n) for n in range(1 + max(len(one) for one in tables))}
+    levels = {f"{100 * results.study.fragility.confidence:g}", "95", "80", "10"}
+    strange = set(re.findall(r"\d+(?:\.\d+)?", text)) - known - counts - levels
+    # a ratio of amplitudes over sweeps is of no table of its own
+    strange = {one for one in strange if f"{one} times" not in text}
+    assert not strange, f"numbers that are in no table: {strange} in {text}"
+
+
+def words_before_opening(page: str) -> int:
+    """Words of a page outside its chapters, with the headings and messages of these."""
+    shown = re.sub(r"<(script|style|svg|head)\b.*?</\1>", " ", page, flags=re.DOTALL)
+    shown = re.sub(r'<div class="body">.*?</div>\s*</details>', " ", shown, flags=re.DOTALL)
+    return len(re.sub(r"<[^>]*>", " ", shown).split())

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from rockfrag.figure_style import figure_style, new_figure
 from rockfrag.report.page import Column, cell, render, table_html
-from rockfrag.report.part import FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw
 
 
@@ -32,8 +32,14 @@ def page(folder: Path) -> str:
     specs = [spec("one"), spec("two")]
     parts = [table_html(table, columns, "A"), *specs]
     pictures = {one.name: draw(one, folder) for one in specs}
-    section = Section("one", "One", ["Text & more"], parts)
-    return render("T", "lead", [Finding("Found", "this")], [section], pictures, {"Seed": "1"})
+    return render(
+        title="T",
+        lead="lead",
+        answer=Answer("Does it fall?", [Finding("Found", "this")], specs[0]),
+        sections=[Section("one", "One", "Message <s>", ["Text & more"], [parts[0], specs[1]])],
+        pictures=pictures,
+        provenance={"Seed": "1"},
+    )
 
 
 def test_the_page_loads_nothing_from_outside(tmp_path: Path):
@@ -64,7 +70,7 @@ def test_cells_carry_their_title_for_narrow_screens(tmp_path: Path):
 
 def test_the_page_escapes_what_users_name(tmp_path: Path):
     text = page(tmp_path)
-    assert not {"<b>", "<i>", "<u>"} & set(re.findall("<[^>]*>", text))
+    assert not {"<b>", "<i>", "<u>", "<s>"} & set(re.findall("<[^>]*>", text))
     assert "&lt;b&gt;" in text
     assert "P&amp;T1" in text
 

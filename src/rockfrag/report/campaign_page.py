@@ -17,9 +17,9 @@ from rockfrag.report.figures.campaign import (
     tests_figure,
 )
 from rockfrag.report.page import Column, render, table_html
-from rockfrag.report.part import FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import FIGURES, draw
-from rockfrag.report.wording import counted, estimate, listed, number, probability
+from rockfrag.report.wording import counted, estimate, listed, number, of_all, probability, sentence
 from rockfrag.stages.campaign import OURS, TABLES
 from rockfrag.stages.digest import source_digest
 from rockfrag.study.campaign import CampaignStudy
@@ -43,6 +43,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _object(tables),
         _conditioning(study, tables),
     ]
+    answer = _answer(study, tables, sections)
     pictures = {
         spec.name: draw(spec, folder / FIGURES)
         for section in sections
@@ -54,7 +55,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         title=study.title,
         lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
         f"{int(tests['overturned'].sum())} of them overturned, each simulated with the table’s own motion.",
-        findings=_findings(tables),
+        answer=answer,
         sections=sections,
         pictures=pictures,
         provenance={
@@ -84,6 +85,30 @@ def _who(name: str) -> str:
             measures = name.removeprefix(start).split(" and ")
             return start + " and ".join(name_and_unit(one)[0] for one in measures)
     return name
+
+
+def _answer(
+    study: CampaignStudy, tables: dict[str, pd.DataFrame], sections: Sequence[Section]
+) -> Answer:
+    """What stands first: how often the simulation is right, beside whom, and in which fragility."""
+    found, tests = _findings(tables), tables["tests"]
+    near = int(tests["near_critical"].sum())
+    specs = [one for section in sections for one in section.parts if isinstance(one, FigureSpec)]
+    return Answer(
+        asked="How often does the simulation say of a test what happened on the table?",
+        sentences=found[:3],
+        figure=next((one for one in specs if one.name == "tests"), None),
+        rests_on=[
+            f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, each "
+            "simulated with the motion measured on the table; intervals resample input motions.",
+            "What nobody measured of the object is chosen by some motions and judged by the others.",
+        ],
+        could_overturn=[
+            f"{sentence(of_all(near, len(tests), 'test'))} {'is' if near == 1 else 'are'} near-critical: "
+            "plausible ways to set the object up disagree there by more than one in ten.",
+            *(one.said for one in found[3:]),
+        ],
+    )
 
 
 def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
@@ -205,6 +230,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     return Section(
         "agreement",
         "Who is right how often",
+        _findings(tables)[0].said,
         [
             "What nobody measured is chosen by some motions and judged by the others; thresholds likewise. "
             "Other programs stand as their authors tuned them, in sample.",
@@ -276,6 +302,7 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     return Section(
         "fragility",
         "Fragility, measured and simulated",
+        found[0].said if found else "No curve rises.",
         [
             f"Lognormal curves with {100 * study.confidence:g} % intervals from resampled motions; the ratio is "
             "taken in each resample."
@@ -333,6 +360,7 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     return Section(
         "tests",
         "Where it is right, and where not",
+        f"{int(tests['right'].sum())} of {len(tests)} tests are simulated as they happened.",
         ["Votes are the share of plausible ways to set up the object under which it overturns."],
         [
             *parts,
@@ -424,10 +452,9 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
     return Section(
         "object",
         "How the object stood",
-        [
-            f"{len(likely)} of {len(trials)} trials are plausible by all tests: as right as the best within two "
-            "standard errors. This choice is in sample: it shows where they lie, and judges nothing.",
-        ],
+        f"{len(likely)} of {len(trials)} trials are plausible by all tests: as right as the best within two "
+        "standard errors.",
+        ["This choice is in sample: it shows where they lie, and judges nothing."],
         parts,  # type: ignore[arg-type]
     )
 
@@ -446,8 +473,7 @@ def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Sect
     return Section(
         "conditioning",
         "What conditioning the motions does",
-        [
-            f"The motions went through: {steps or 'no step'}. Others were tried with a part of the trials."
-        ],
+        f"The motions went through: {steps or 'no step'}.",
+        ["Others were tried with a part of the trials."],
         [table_html(shown, columns, "Share of right verdicts by conditioning.")],
     )

@@ -10,7 +10,9 @@ import pandas as pd
 from rockfrag.report.part import Finding
 from rockfrag.report.wording import (
     counted,
+    decimals_of,
     estimate,
+    estimates,
     has_interval,
     listed,
     number,
@@ -23,6 +25,83 @@ FRICTION = 0.6
 """Coefficient of friction of dry stone on stone, with which demands are compared [-]."""
 
 _RATIO_DECIMALS = 3
+
+
+_MOST_CONFIGURATIONS = 6
+"""So many are named with their numbers in a sentence."""
+
+
+def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
+    """Say at which peak half of the motions overturn each configuration; None without a curve.
+
+    Parameters
+    ----------
+    curves
+        Rows of :func:`rockfrag.fragility.fragility_table` with a median, of any measures and readings.
+    level
+        Level of the intervals in words, such as ``90 %``.
+    """
+    if curves.empty:
+        return None
+    rows = curves[
+        (curves["im"] == curves["im"].iloc[0]) & (curves["estimator"] == "mean_probability")
+    ]
+    if rows.empty:
+        return None
+    measure, unit = rows["im"].iloc[0], rows["unit"].iloc[0]
+    decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
+    texts = estimates(rows, ("theta", "theta_lower", "theta_upper"), decimals)
+    named = [f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)]
+    low, high = (
+        rows.loc[rows["theta"].idxmin()].to_dict(),
+        rows.loc[rows["theta"].idxmax()].to_dict(),
+    )
+    one = len(rows) == 1 or number(low["theta"], decimals) == number(high["theta"], decimals)
+    span = (
+        f"{number(low['theta'], decimals)} {unit}"
+        if one
+        else f"{number(low['theta'], decimals)} ({low['configuration']}) to "
+        f"{number(high['theta'], decimals)} {unit} ({high['configuration']})"
+    )
+    shown = named[:_MOST_CONFIGURATIONS]
+    rest = f" and {len(named) - len(shown)} more in the table" if len(shown) < len(named) else ""
+    sure = f", with {level} intervals" if any("[" in text for text in texts) else ""
+    return Finding(
+        f"It takes a {measure} of {span} to overturn in half of the cases",
+        f"Medians{sure}: {', '.join(shown)}{rest} {unit}.",
+    )
+
+
+def recorded_found(recorded: pd.DataFrame) -> Finding:
+    """Say what the motions as recorded overturn, and how much that depends on their exact strength.
+
+    Parameters
+    ----------
+    recorded
+        As :func:`rockfrag.stages.sweep.as_recorded` returns it, of every configuration.
+    """
+    cases, fallen = len(recorded), int(recorded["overturned"].sum())
+    near = int(recorded["share_near"].between(0, 1, inclusive="neither").sum())
+    by_name = recorded.groupby("configuration", sort=False)["overturned"].agg(["sum", "size"])
+    motions = int(by_name["size"].max())
+    if fallen in (0, cases):
+        what = "overturns nothing" if fallen == 0 else "overturns everything"
+        headline = f"In a repeat {'the one motion' if motions == 1 else f'each of {motions} motions'} {what}"
+    elif len(by_name) <= _MOST_CONFIGURATIONS:
+        each = [f"{name} under {row['sum']}" for name, row in by_name.iterrows()]
+        fall = "falls" if fallen == 1 else "fall"
+        headline = f"In a repeat of {counted(motions, 'motion')} there {fall} {listed(each)}"
+    else:
+        headline = (
+            f"In a repeat of the motions as recorded {of_all(fallen, cases, 'case')} overturn"
+        )
+    sure = (
+        "None of these verdicts is another if the shaking is a tenth weaker or stronger."
+        if near == 0
+        else f"{sentence(of_all(near, cases, 'verdict'))} {'depends' if near == 1 else 'depend'} on the exact "
+        "strength: within a tenth of it there are amplitudes that overturn and others that are survived."
+    )
+    return Finding(headline, sure)
 
 
 def amplitudes_found(tests: pd.DataFrame) -> Finding:

@@ -14,9 +14,9 @@ from rockfrag.files import write_text
 from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure, surface_figure
 from rockfrag.report.page import Column, render, table_html
-from rockfrag.report.part import FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import FIGURES, draw
-from rockfrag.report.wording import counted, estimates, probability
+from rockfrag.report.wording import counted, estimates, listed, probability
 from rockfrag.stages.digest import package_digest
 from rockfrag.study.measured_table import MeasuredTable
 
@@ -99,9 +99,9 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
         title=study.title,
         lead=f"{counted(len(tests), 'measured test')} with {counted(motions, 'motion')}, "
         f"{fell} of them overturned.",
-        findings=_findings(found),
+        answer=_answer(study, found, specs),
         sections=[
-            _choice(tables["recommendation"], specs),
+            _choice(tables["recommendation"], specs, found.choice.words),
             _curves(study, tables, specs),
         ],
         pictures=pictures,
@@ -117,18 +117,49 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
     write_text(page, folder / "report.html")
 
 
-def _findings(found: UserFragility) -> list[Finding]:
+def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, FigureSpec]) -> Answer:
+    """What stands first: which measure, how strong it must be, and whether the curve fits."""
     name = found.choice.name
     headline = f"{name} predicts overturning best" if name else "No measure has a rising curve"
-    findings = [Finding(headline, found.choice.words)]
-    findings += [
-        Finding(f"Fit in {found.fits[measure].fit.im}", one.words)
-        for measure, one in found.goodness.items()
+    sentences = [Finding(headline, found.choice.words)]
+    best = found.table[found.table["theta"].notna()]
+    best = best[best["im"] == name] if name in set(best["im"]) else best
+    if len(best):
+        row = best.to_dict("records")[0]
+        (theta,) = estimates(best.head(1), ("theta", "theta_lower", "theta_upper"))
+        (beta,) = estimates(best.head(1), ("beta", "beta_lower", "beta_upper"))
+        unit = f" {row['unit']}" if row["unit"] else ""
+        sentences.append(
+            Finding(
+                f"Half of the tests overturn at {row['im']} of {theta}{unit}",
+                f"Dispersion β {beta}; intervals of {100 * study.confidence:g} % from resampled motions.",
+            )
+        )
+    doubtful = [
+        found.fits[measure].fit.im for measure, one in found.goodness.items() if one.p_value < 0.05
     ]
-    return findings
+    if found.goodness:
+        sentences.append(
+            Finding(
+                f"The curves in {listed(doubtful)} do not describe the tests"
+                if doubtful
+                else "The lognormal curves describe the tests",
+                f"Tested with {counted(len(found.goodness), 'measure')}; the deviances stand with the curves.",
+            )
+        )
+    motions = found.tests["motion"].nunique()
+    return Answer(
+        asked="How strong must the motion be that the tested object overturns, and which measure tells best?",
+        sentences=sentences,
+        figure=specs["measures"],
+        rests_on=[
+            f"{counted(len(found.tests), 'measured test')} under {counted(motions, 'motion')}."
+        ],
+        could_overturn=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
+    )
 
 
-def _choice(choice: pd.DataFrame, figures: Mapping[str, FigureSpec]) -> Section:
+def _choice(choice: pd.DataFrame, figures: Mapping[str, FigureSpec], message: str) -> Section:
     columns = [
         Column("im", "Measure"),
         Column("unit", "Unit"),
@@ -144,13 +175,14 @@ def _choice(choice: pd.DataFrame, figures: Mapping[str, FigureSpec]) -> Section:
     return Section(
         "measure",
         "Choice of the intensity measure",
+        message,
         [
             "AIC decides; β is the efficiency, AUC the probability that an overturned test had the "
             "larger measure. A small p says that the measure leaves something for that column to tell."
         ],
         [
             table_html(choice, columns, "Measures compared on the same tests, best first."),
-            *[figures[name] for name in ("measures", "surface") if name in figures],
+            *[figures[name] for name in ("surface",) if name in figures],
         ],
     )
 
@@ -183,6 +215,7 @@ def _curves(
     return Section(
         "fragility",
         "Fragility curves",
+        " ".join(goodness["finding"]) or "No measure has a rising curve.",
         [f"Lognormal curves with intervals of {level}, from resampled motions.", *warnings],
         [
             table_html(fitted, curves, f"Medians and dispersions, {level} intervals."),

@@ -11,12 +11,29 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.report.part import FigureSpec, Finding, Section
+from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED
+from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.report.wording import number
 
 _PIXELS_PER_POINT = 96 / 72 * 1.22
 _COLUMN = 252 * _PIXELS_PER_POINT
 _LONGEST_LINE = 28
+_NOTHING = Markup("")
+
+_SCHEME = {
+    "#000000": "ink",
+    "#ffffff": "paper",
+    GREY: "rule",
+    BAND: "band",
+    "#cccccc": "faint",
+    "#999999": "rule",
+    BLUE.lower(): "blue",
+    RED.lower(): "red",
+    GREEN.lower(): "green",
+    PURPLE.lower(): "violet",
+}
+"""Colours of drawings that follow the reader's scheme, light or dark, and their names in the style."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +93,7 @@ def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> 
         )
         for row in table.to_dict("records")
     )
-    return framed(caption, head, rows)
+    return framed(caption, head, rows, len(columns))
 
 
 def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
@@ -84,12 +101,13 @@ def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
     return Markup('<td class="{}" data-title="{}">{}</td>').format(kind, title, content)
 
 
-def framed(caption: str, head: Markup, rows: Markup) -> Markup:
-    """A table with its caption, in a frame that scrolls where it is wider than the page."""
+def framed(caption: str, head: Markup, rows: Markup, columns: int) -> Markup:
+    """A table with its caption; the more columns, the sooner its rows become lists."""
+    kind = "few" if columns <= 4 else "some" if columns <= 7 else "many"
     return Markup(
-        '<figure class="table"><figcaption>{}</figcaption><div class="scroll"><table>'
-        "<thead><tr>{}</tr></thead><tbody>{}</tbody></table></div></figure>"
-    ).format(caption, head, rows)
+        '<figure class="table"><figcaption>{}</figcaption><table class="{}">'
+        "<thead><tr>{}</tr></thead><tbody>{}</tbody></table></figure>"
+    ).format(caption, kind, head, rows)
 
 
 def _kind(table: pd.DataFrame, column: Column) -> str:
@@ -122,11 +140,6 @@ class Picture:
         return round(float(found[1]) * _PIXELS_PER_POINT) if found else round(_COLUMN)
 
     @property
-    def wide(self) -> bool:
-        """Whether it needs more than a column."""
-        return self.width > 1.5 * _COLUMN
-
-    @property
     def inline(self) -> Markup:
         """The drawing as part of the page: its text can be searched, its identifiers are its own."""
         return inline_svg(self.svg, self.spec.name, self.spec.alt)
@@ -152,6 +165,8 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     inner = re.sub(r' id="([^"]*)"', own, inner)
     inner = re.sub(r'(url\(#|href="#)', rf"\g<1>{name}-", inner)
     inner = re.sub(r">\s+<", "><", inner)
+    for colour, name in _SCHEME.items():
+        inner = inner.replace(colour, f"var(--{name})")
     box = re.search(r'viewBox="([^"]*)"', start[0])
     # the drawing is matplotlib's, which has escaped every name in it
     return Markup(
@@ -165,29 +180,32 @@ def read_picture(spec: FigureSpec, path: Path) -> Picture:
     return Picture(spec, path.read_text(encoding="utf-8"))
 
 
-def _blocks(
-    section: Section, pictures: Mapping[str, Picture]
-) -> list[tuple[str, Markup | list[Picture]]]:
-    """Parts of a section, neighbouring pictures in one row."""
-    blocks: list[tuple[str, Any]] = []
-    for part in section.parts:
-        if isinstance(part, FigureSpec):
-            if not blocks or blocks[-1][0] != "pictures":
-                blocks.append(("pictures", []))
-            blocks[-1][1].append(pictures[part.name])
-        elif part:
-            blocks.append(("html", part))
-    return blocks
+@dataclass(frozen=True)
+class _Chapter:
+    """A section with its pictures and its tables apart, as they stand on the page."""
+
+    section: Section
+    pictures: Sequence[Picture]
+    tables: Sequence[Markup]
+
+
+def _chapter(section: Section, pictures: Mapping[str, Picture]) -> _Chapter:
+    drawn = [pictures[one.name] for one in section.parts if isinstance(one, FigureSpec)]
+    return _Chapter(
+        section, drawn, [one for one in section.parts if isinstance(one, Markup) and one]
+    )
 
 
 def render(
+    *,
     title: str,
     lead: str,
-    findings: Sequence[Finding],
+    answer: Answer,
     sections: Sequence[Section],
     pictures: Mapping[str, Picture],
     provenance: Mapping[str, str],
     basis: str = "simulated",
+    live: Markup = _NOTHING,
 ) -> str:
     """Return the page as HTML; the same arguments give the same bytes.
 
@@ -195,16 +213,18 @@ def render(
     ----------
     title, lead
         Heading of the page, and the sentence below it.
-    findings
-        What was found, most important first.
+    answer
+        What stands first.
     sections
-        Sections in order.
+        Chapters in order, which open on demand.
     pictures
-        The figures of all sections by name.
+        The figures of the answer and of all sections by name.
     provenance
         What a reader needs to get the same results again.
     basis
         Whether its figures are ``simulated`` or ``measured``; the page warns of the first.
+    live
+        The simulation that runs in the page, see :func:`rockfrag.report.live.live_kernel`.
     """
     environment = Environment(
         loader=PackageLoader("rockfrag.report"),
@@ -214,13 +234,15 @@ def render(
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    style = environment.get_template("style.css").render()
     return environment.get_template("report.html.j2").render(
         title=title,
         lead=lead,
-        findings=findings,
-        sections=[(section, _blocks(section, pictures)) for section in sections],
+        answer=answer,
+        answer_picture=answer.figure and pictures[answer.figure.name],
+        chapters=[_chapter(section, pictures) for section in sections],
         provenance=provenance,
         basis=basis,
-        style=Markup(style),
+        live=live,
+        style=Markup(environment.get_template("style.css").render()),
+        script=Markup(environment.get_template("page.js").render()),
     )

@@ -47,13 +47,57 @@ class Finding:
     headline: str
     text: str
 
+    @property
+    def said(self) -> str:
+        """All of it in a row."""
+        return f"{self.headline}. {self.text}".strip()
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What stands first on a page: the question, and what was found.
+
+    Attributes
+    ----------
+    asked
+        The question, in a sentence.
+    sentences
+        What was found, with numbers and how sure they are, most important first; three at most.
+    figure
+        The one figure that shows it.
+    rests_on, could_overturn
+        What it rests on, and what would make it wrong, each in a sentence or two.
+    questions
+        What a keeper of the objects would ask, each with the anchor of the chapter that answers it.
+    """
+
+    asked: str
+    sentences: Sequence[Finding]
+    figure: FigureSpec | None = None
+    rests_on: Sequence[str] = ()
+    could_overturn: Sequence[str] = ()
+    questions: Sequence[tuple[str, str]] = ()
+
 
 @dataclass(frozen=True)
 class Section:
-    """A section of the page: paragraphs, then tables and figures in order."""
+    """A chapter of the page, which opens on demand.
+
+    Attributes
+    ----------
+    anchor, title
+        Its place and its heading.
+    message
+        What it found, in a sentence or two that stand on the page before it is opened.
+    paragraphs
+        How to read it.
+    parts
+        Its figures, and the tables behind them.
+    """
 
     anchor: str
     title: str
+    message: str
     paragraphs: Sequence[str] = ()
     parts: Sequence[Markup | FigureSpec] = ()
 
@@ -109,10 +153,6 @@ def _always(_: Study) -> bool:
     return True
 
 
-def _nothing(_: Results) -> list[Finding]:
-    return []
-
-
 @dataclass(frozen=True)
 class Part:
     """A part of the report.
@@ -123,13 +163,10 @@ class Part:
         Names of the tables that it reads.
     section
         Writes its section, or None where there is nothing to show.
-    findings
-        What of it stands at the head of the page.
     asked
         Whether a study has it.
     """
 
     tables: tuple[str, ...]
     section: Callable[[Results], Section | None]
-    findings: Callable[[Results], list[Finding]] = field(default=_nothing)
     asked: Callable[[Study], bool] = field(default=_always)

@@ -1,13 +1,13 @@
 """The report of a study: its parts in order, every figure drawn once, and one page."""
 
 import multiprocessing
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rockfrag.figure_style import save_figure
 from rockfrag.files import write_text
 from rockfrag.report.page import Picture, read_picture, render
-from rockfrag.report.part import FigureSpec, Finding, Part, Results, Section
+from rockfrag.report.part import Answer, FigureSpec, Part, Results, Section
 from rockfrag.report.provenance import provenance
 from rockfrag.report.wording import counted
 from rockfrag.study.study import Study
@@ -16,13 +16,13 @@ FIGURES = "figures"
 """Folder of the figures in that of the results, each as SVG and as PNG."""
 
 
-def report_tables(study: Study, parts: Sequence[Part]) -> list[str]:
-    """Names of all tables that the report of a study reads, each once."""
-    names = [name for part in parts if part.asked(study) for name in part.tables]
-    return list(dict.fromkeys([*names, "tests", "measures", "fragility"]))
-
-
-def write_report(study: Study, parts: Sequence[Part], folder: Path, processes: int = 1) -> None:
+def write_report(
+    study: Study,
+    parts: Sequence[Part],
+    answer: Callable[[Results], Answer],
+    folder: Path,
+    processes: int = 1,
+) -> None:
     """Draw the figures of a study and write its page, ``report.html``.
 
     Parameters
@@ -31,19 +31,21 @@ def write_report(study: Study, parts: Sequence[Part], folder: Path, processes: i
         The study.
     parts
         What its report may have; those that it did not ask for are left out.
+    answer
+        Says what stands first.
     folder
-        Folder of its results, with the tables of :func:`report_tables`, the sweeps, and the ground
-        motions in ``motions``.
+        Folder of its results, with the tables that its parts name, the sweeps, and the motions.
     processes
         How many may draw at once.
     """
     results = Results(study, folder)
     asked = [part for part in parts if part.asked(study)]
     sections = [section for part in asked if (section := part.section(results)) is not None]
-    findings = [finding for part in asked for finding in part.findings(results)]
+    first = answer(results)
     specs = [one for section in sections for one in section.parts if isinstance(one, FigureSpec)]
+    specs += [first.figure] if first.figure else []
     pictures = draw_all(specs, folder / FIGURES, processes)
-    page = study_page(results, findings, sections, pictures)
+    page = study_page(results, first, sections, pictures)
     write_text(page, folder / "report.html")
 
 
@@ -78,7 +80,7 @@ def draw(spec: FigureSpec, folder: Path) -> Picture:
 
 def study_page(
     results: Results,
-    findings: Sequence[Finding],
+    answer: Answer,
     sections: Sequence[Section],
     pictures: dict[str, Picture],
 ) -> str:
@@ -87,7 +89,7 @@ def study_page(
     return render(
         title=study.title,
         lead=_lead(study),
-        findings=findings,
+        answer=answer,
         sections=sections,
         pictures=pictures,
         provenance=provenance(results),

@@ -10,8 +10,12 @@ from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
+from rockfrag.units import STANDARD_GRAVITY
 
 FALLEN = ("", "pedestal", "statue")
+
+NEAR = 1 + 0.01 * np.arange(-10, 11)
+"""Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""
 
 BATCH = 12
 """Motions shaken at a time: few enough for little memory, enough to keep every core busy."""
@@ -20,7 +24,7 @@ BATCH = 12
 def run(job: Job[Study]) -> Results:
     """Yield the sweep of every configuration."""
     motions = job.motions("motions/floors")
-    histories = 0
+    histories, recorded = 0, []
     for configuration in job.study.configurations:
         parts = [
             sweep(configuration, motions[i : i + BATCH], job.study.amplitudes, job.threads)
@@ -28,8 +32,10 @@ def run(job: Job[Study]) -> Results:
         ]
         table = pd.concat(parts, ignore_index=True)
         yield f"sweep/{configuration.slug}", table
+        recorded.append(as_recorded(configuration, motions, job.threads))
         histories += len(table)
         job.log.info("%s: %d histories so far", configuration.name, histories)
+    yield "as_recorded", pd.concat(recorded, ignore_index=True)
     job.log.info("%d response histories", histories)
 
 
@@ -94,12 +100,59 @@ def sweep(
     )
 
 
+def as_recorded(
+    configuration: Configuration, motions: Sequence[Motion], threads: int = 1
+) -> pd.DataFrame:
+    """Shake one configuration by every motion as it was recorded.
+
+    Parameters
+    ----------
+    configuration
+        What stands on the table.
+    motions
+        Motions of the table.
+    threads
+        Threads to use; the result does not depend on it.
+
+    Returns
+    -------
+    One row per motion: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``, ``event``,
+    ``floor``, ``pga_g``, ``overturned``, ``overturned_body``, ``peak_rotation`` (of the object, |θ| over the
+    critical angle), ``share_near`` (share that overturns of the motions up to a tenth weaker or stronger).
+    """
+    from rockfrag.rocking import overturns
+
+    result = overturns(
+        [configuration.body],
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        np.tile(NEAR, (len(motions), 1)),
+        threads=threads,
+    )
+    itself = len(NEAR) // 2
+    return pd.DataFrame(
+        {
+            "configuration": configuration.name,
+            "object": configuration.object,
+            "pedestal": configuration.label,
+            "motion": [motion.name for motion in motions],
+            "event": [motion.metadata.get("event") or motion.name for motion in motions],
+            "floor": [motion.metadata["floor"] for motion in motions],
+            "pga_g": [motion.pga / STANDARD_GRAVITY for motion in motions],
+            "overturned": result.overturned[0, :, itself],
+            "overturned_body": np.take(FALLEN, result.overturned_body[0, :, itself]),
+            "peak_rotation": result.peak_rotation[0, :, itself],
+            "share_near": result.overturned[0].mean(axis=1),
+        }
+    )
+
+
 STAGE = Stage(
     name="sweep",
     run=run,
     inputs=("motions/floors.parquet",),
     files=lambda study: study.body_files,
-    outputs=lambda study: study.sweep_tables,
+    outputs=lambda study: [*study.sweep_tables, "as_recorded"],
     settings=("bodies", "amplitudes"),
     parallel=True,
 )

@@ -5,7 +5,7 @@ one that overturned at the first step has an arrow down. Neither is in a mean: m
 :func:`rockfrag.shaketable.mean_amplitudes.mean_amplitudes`, over motions that overturned all.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -101,38 +101,27 @@ def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
         rows = drawn_tests(tests)
         _sides_panel(axes, rows, "object", objects, known)
         axes.set_ylim(0, top(rows))
-        _finish_sides(figure, [axes], tests, len(known.dropna(subset=["mean_g"])) > 0)
+        _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
     return figure
 
 
-def amplitudes_by_floor(
-    tests: pd.DataFrame, means: pd.DataFrame, *, panels: Sequence[str] = ()
-) -> Figure:
+def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     """Amplitudes on each floor, without and with a pedestal.
 
     Parameters
     ----------
     tests, means
         As of :func:`amplitudes_by_object`.
-    panels
-        Objects that get a panel each; by default one panel holds them all.
     """
     floors = list(dict.fromkeys(tests["floor"]))
     rows = drawn_tests(tests)
-    by = "object_floor" if panels else "floor"
-    known = means[means["by"] == by]
+    known = means[means["by"] == "floor"]
     with figure_style():
-        figure = new_figure(PAGE_WIDTH if panels else COLUMN_WIDTH, 2.8)
-        grid = figure.subplots(1, max(len(panels), 1), sharey=True, squeeze=False)[0]
-        if panels:
-            for axes, name in zip(grid, panels, strict=True):
-                part, own = rows[rows["object"] == name], known[known["object"] == name]
-                _sides_panel(axes, part, "floor", floors, own)
-                axes.set_title(shortened(name), loc="left")
-        else:
-            _sides_panel(grid[0], rows, "floor", floors, known)
-        grid[0].set_ylim(0, top(rows))
-        _finish_sides(figure, list(grid), tests, len(known.dropna(subset=["mean_g"])) > 0)
+        figure = new_figure(COLUMN_WIDTH, 2.8)
+        axes = figure.subplots()
+        _sides_panel(axes, rows, "floor", floors, known)
+        axes.set_ylim(0, top(rows))
+        _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
     return figure
 
 
@@ -175,8 +164,8 @@ def _join_pairs(axes: Axes, rows: pd.DataFrame) -> None:
     axes.add_collection(LineCollection(list(ends), colors="#cccccc", linewidths=0.5, zorder=1))
 
 
-def _finish_sides(figure: Figure, grid: Sequence[Axes], tests: pd.DataFrame, means: bool) -> None:
-    grid[0].set_ylabel(AMPLITUDE)
+def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) -> None:
+    axes.set_ylabel(AMPLITUDE)
     sides = [side for side in SIDES if (tests["pedestal"] == side).any()]
     handles = [
         Line2D(
@@ -197,55 +186,39 @@ def _finish_sides(figure: Figure, grid: Sequence[Axes], tests: pd.DataFrame, mea
         )
     handles += bound_handle(tests)
     if handles:
-        columns = 4 if len(grid) > 1 else 2
-        figure.legend(handles=handles, loc="outside upper center", ncols=columns)
+        figure.legend(handles=handles, loc="outside upper center", ncols=2)
 
 
-def pedestal_scatter(
-    tests: pd.DataFrame,
-    panels: str | None = None,
-    title: Callable[[str], str] = str,
-) -> Figure:
+def pedestal_scatter(tests: pd.DataFrame, title: str) -> Figure:
     """Amplitude with the pedestal against that without, of the same object under the same motion.
 
     Parameters
     ----------
     tests
         As of :func:`amplitudes_by_object`.
-    panels
-        ``floor`` or ``event`` for a panel each; None for one panel.
     title
-        Title of the panel of a level; of the one panel the level is ``all``.
+        What stands above it.
     """
     rows = drawn_tests(tests)
     keys = ["object", "event", "floor", "motion"]
     without = rows[rows["pedestal"] == "NP"]
     pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
-    levels = ["all"] if panels is None else list(dict.fromkeys(pairs[panels]))
     objects = list(dict.fromkeys(pairs["object"]))
-    columns = {1: 1, 2: 2, 4: 2}.get(len(levels), 3)
-    lines = -(-len(levels) // columns)
-    width = {1: COLUMN_WIDTH, 2: 5.0, 3: PAGE_WIDTH}[columns]
     upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
     with figure_style():
-        figure = new_figure(width, 0.45 + lines * (width / columns + 0.18))
-        grid = figure.subplots(lines, columns, sharex=True, sharey=True, squeeze=False)
-        for axes, level in zip(grid.flat, levels, strict=False):
-            part = pairs if panels is None else pairs[pairs[panels] == level]
-            _scatter_panel(axes, part, objects, upper)
-            # above the panel, where it hides no test
-            axes.set_title(title(level), loc="left", pad=4)
-        for axes in grid.flat[len(levels) :]:
-            axes.set_visible(False)
-        figure.supxlabel("Amplitude without pedestal, NP [g]", fontsize=8)
-        figure.supylabel("Amplitude with pedestal, P [g]", fontsize=8)
+        figure = new_figure(COLUMN_WIDTH, 0.6 + COLUMN_WIDTH)
+        axes = figure.subplots()
+        _scatter_panel(axes, pairs, objects, upper)
+        # above the panel, where it hides no test
+        axes.set_title(title, loc="left", pad=4)
+        axes.set_xlabel("Amplitude without pedestal, NP [g]")
+        axes.set_ylabel("Amplitude with pedestal, P [g]")
         if 1 < len(objects) <= len(MARKERS):
-            style = _styles(objects)
             handles = [
                 Line2D([], [], ls="", marker=m, mfc="none", mec=c, label=shortened(name))
-                for name, (m, c) in style.items()
+                for name, (m, c) in _styles(objects).items()
             ]
-            grid.flat[0].legend(handles=handles, loc="lower right", handletextpad=0.2)
+            axes.legend(handles=handles, loc="lower right", handletextpad=0.2)
     return figure
 
 
@@ -257,7 +230,7 @@ def _styles(names: Sequence[str]) -> dict[str, tuple[str, str]]:
 
 
 def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper: float) -> None:
-    """Points of one panel on the line of equality with its band of ±10 %."""
+    """Points on the line of equality with its band of ±10 %."""
     line = np.array([0.0, upper])
     axes.fill_between(line, line / 1.1, line * 1.1, color=BAND, lw=0)
     axes.plot(line, line, color=GREY, lw=0.8)
@@ -273,11 +246,7 @@ def _scatter_panel(axes: Axes, part: pd.DataFrame, objects: Sequence[str], upper
 
 
 def slenderness_figure(
-    tests: pd.DataFrame,
-    means: pd.DataFrame,
-    slenderness: Mapping[str, float],
-    *,
-    by_floor: bool = False,
+    tests: pd.DataFrame, means: pd.DataFrame, slenderness: Mapping[str, float]
 ) -> Figure:
     """Amplitude against slenderness, a panel without and one with the pedestal.
 
@@ -287,37 +256,27 @@ def slenderness_figure(
         As of :func:`amplitudes_by_object`.
     slenderness
         Height over width by object [-].
-    by_floor
-        A column of panels for each floor, and a row for each side; then no means are drawn.
     """
     rows = drawn_tests(tests)
     rows = rows.assign(x=rows["object"].map(slenderness))
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
-    floors, events = (list(dict.fromkeys(tests[name])) for name in ("floor", "event"))
-    shape = (2, len(floors)) if by_floor else (1, 2)
+    events = list(dict.fromkeys(tests["event"]))
     with figure_style():
-        figure = new_figure(PAGE_WIDTH if by_floor else 5.2, 4.2 if by_floor else 2.7)
-        grid = figure.subplots(*shape, sharex=True, sharey=True, squeeze=False)
-        for number, axes in enumerate(grid.flat):
-            line, column = divmod(number, shape[1])
-            side = SIDES[line if by_floor else column]
-            part, title = rows[rows["pedestal"] == side], SIDE_NAME[side]
-            if by_floor:
-                part, title = part[part["floor"] == floors[column]], f"{floors[column]}, {side}"
-            _against_slenderness(axes, part, events)
-            if not by_floor:
-                own = known[known["pedestal"] == side]
-                x = own["object"].map(slenderness).to_numpy(dtype=float)
-                axes.plot(x, own["mean_g"], color=BLACK, lw=1.0, marker="_", ms=13, mew=1.8)
-            axes.set_title(title, loc="left")
+        figure = new_figure(COLUMN_WIDTH, 3.0)
+        grid = figure.subplots(1, 2, sharex=True, sharey=True)
+        for axes, side in zip(grid, SIDES, strict=True):
+            _against_slenderness(axes, rows[rows["pedestal"] == side], events)
+            own = known[known["pedestal"] == side]
+            x = own["object"].map(slenderness).to_numpy(dtype=float)
+            axes.plot(x, own["mean_g"], color=BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
+            axes.set_title(SIDE_NAME[side], loc="left")
             axes.set_ylim(0, top(rows))
             axes.set_xticks(sorted(rows["x"].unique()))
         figure.supxlabel("Slenderness H/B [-]", fontsize=8)
         figure.supylabel(AMPLITUDE, fontsize=8)
         handles = _event_handles(events) + bound_handle(tests)
-        if not by_floor:
-            handles.append(Line2D([], [], color=BLACK, marker="_", ms=10, label="geometric mean"))
-        figure.legend(handles=handles, loc="outside upper center", ncols=6, handletextpad=0.3)
+        handles.append(Line2D([], [], color=BLACK, marker="_", ms=10, label="geometric mean"))
+        figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
     return figure
 
 

@@ -16,9 +16,9 @@ from rockfrag.figure_style import (
     CONFIGURATION_COLOURS,
     OKABE_ITO,
     ORANGE,
-    PAGE_WIDTH,
     RED,
     SKY,
+    WIDEST,
     figure_style,
     new_figure,
     plain_log,
@@ -95,11 +95,10 @@ def measures_figure(
     labels = [label for label, item in curves.items() if np.isfinite(item.fit.theta)]
     if not labels:
         raise InputError("measures figure: none of the measures has a curve.")
-    columns = min(len(labels), 3)
+    columns = min(len(labels), 2)
     rows = -(-len(labels) // columns)
     with figure_style():
-        width = COLUMN_WIDTH if columns == 1 else PAGE_WIDTH
-        figure = new_figure(width, 2.5 * rows)
+        figure = new_figure(COLUMN_WIDTH if columns == 1 else WIDEST, 2.4 * rows)
         grid_of_axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
         for axes in grid_of_axes.flat[len(labels) :]:
             axes.set_visible(False)

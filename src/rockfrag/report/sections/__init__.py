@@ -2,6 +2,7 @@
 
 from rockfrag.report.part import Part
 from rockfrag.report.sections.amplitudes import AMPLITUDES
+from rockfrag.report.sections.as_recorded import AS_RECORDED
 from rockfrag.report.sections.bodies import BODIES
 from rockfrag.report.sections.building import BUILDING
 from rockfrag.report.sections.comparisons import COMPARISONS
@@ -16,6 +17,7 @@ from rockfrag.report.sections.shaker import SHAKER
 from rockfrag.report.sections.validity import VALIDITY
 
 PARTS: tuple[Part, ...] = (
+    AS_RECORDED,
     AMPLITUDES,
     COMPARISONS,
     PEDESTAL,

@@ -6,21 +6,15 @@ import pandas as pd
 
 from rockfrag.files import file_name
 from rockfrag.report.figures.sweep import MOST_ROWS, verdict_map
-from rockfrag.report.findings import amplitudes_found, objects_compared, windows_found
+from rockfrag.report.findings import amplitudes_found, windows_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Finding, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import amplitude, of_all
 
 
-def _findings(results: Results) -> list[Finding]:
-    tests, windows = results.tests, results.table("survival_windows")
-    found = [amplitudes_found(tests)]
-    slenderness = {name: results.study.specimens[name].slenderness for name in results.objects}
-    found += objects_compared(results.table("mean_amplitudes"), slenderness)
-    return [*found, windows_found(windows, results.table("tests"))]
-
-
 def _section(results: Results) -> Section:
+    message = amplitudes_found(results.tests).said
+    windows = windows_found(results.table("survival_windows"), results.table("tests"))
     tests = results.tests
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = list(dict.fromkeys(tests["configuration"]))
@@ -30,13 +24,15 @@ def _section(results: Results) -> Section:
     return Section(
         "amplitudes",
         "Overturning amplitudes",
+        message,
         [
+            windows.said,
             "The amplitude is the peak of the motion that shakes the body: raised in steps from rest, "
             "and read just before the first overturning. Where a body never overturned, “>” stands "
             "before the largest amplitude that it survived; “<” stands where it overturned at the "
             "first step. Such bounds are in no mean.",
-            "Bars show every amplitude that overturns; gaps are amplitudes that are survived although "
-            "a weaker motion overturned the body, and an empty row is a motion that never did.",
+            "Bars show every amplitude that overturns; gaps are amplitudes survived although a weaker "
+            "motion overturned the body.",
         ],
         [
             table_html(shown, columns, "Overturning amplitude of every test, step protocol."),
@@ -75,4 +71,4 @@ def _maps(results: Results) -> list[FigureSpec]:
     return specs
 
 
-AMPLITUDES = Part(("tests", "mean_amplitudes", "survival_windows"), _section, _findings)
+AMPLITUDES = Part(("tests", "survival_windows"), _section)

@@ -1,7 +1,10 @@
 """What was tested: the bodies, and the acceleration at which each starts to rock."""
 
+import pandas as pd
+
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
+from rockfrag.report.wording import counted, number, sentence
 from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
 
 _COLUMNS = (
@@ -28,6 +31,7 @@ def _section(results: Results) -> Section:
     return Section(
         "bodies",
         "Bodies",
+        _message(shown),
         [
             "Rigid blocks with two edges to rock on, in the plane of the motion. The critical angle is "
             "that between the diagonal and the upright; a block starts to rock where the acceleration "
@@ -35,6 +39,12 @@ def _section(results: Results) -> Section:
         ],
         [table_html(shown, _COLUMNS, "The objects, alone and on what they stand on.")],
     )
+
+
+def _message(bodies: pd.DataFrame) -> str:
+    low, high = (number(value, 2) for value in (bodies["uplift_g"].min(), bodies["uplift_g"].max()))
+    span = f"at {low} g" if low == high else f"between {low} and {high} g"
+    return f"{sentence(counted(len(bodies), 'configuration'))}; rocking starts {span} at the base."
 
 
 BODIES = Part(("bodies",), _section)

@@ -2,10 +2,12 @@
 
 from functools import partial
 
+import pandas as pd
+
 from rockfrag.report.figures.building import AXIS_NAMES, floor_amplitudes
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import of_all, sentence
+from rockfrag.report.wording import number, of_all, sentence
 from rockfrag.study.study import Study
 
 _COLUMNS = (
@@ -33,6 +35,7 @@ def _section(results: Results) -> Section:
     return Section(
         "building",
         "The building as an assumption",
+        _message(span),
         [
             "One assumption about the building at a time is another. Lines are geometric means of the "
             "objects without pedestal over the motions that overturned them on every floor.",
@@ -52,6 +55,18 @@ def _section(results: Results) -> Section:
             ),
             table_html(span, _COLUMNS, "Range of the mean amplitude on each floor."),
         ],
+    )
+
+
+def _message(span: pd.DataFrame) -> str:
+    """Say which assumption moves the mean amplitude of a floor most."""
+    known = span[span["min"] > 0]
+    if known.empty:
+        return "No mean amplitude is known for other buildings."
+    row = known.loc[(known["max"] / known["min"]).idxmax()].to_dict()
+    return (
+        f"Most depends on the {str(row['axis']).lower()}: the mean amplitude on {row['floor']} lies between "
+        f"{number(row['min'], 2)} and {number(row['max'], 2)} g over the values tried."
     )
 
 

@@ -5,7 +5,7 @@ from rockfrag.report.figures.amplitudes import (
     amplitudes_by_object,
     pedestal_scatter,
 )
-from rockfrag.report.findings import mean_sentence, ratio_of
+from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import counted
@@ -20,7 +20,8 @@ _COLUMNS = (
 
 def _section(results: Results) -> Section | None:
     tests, means = results.tests, results.table("mean_amplitudes")
-    words = mean_sentence(means)
+    slenderness = {name: results.study.specimens[name].slenderness for name in results.objects}
+    found, words = objects_compared(means, slenderness), mean_sentence(means)
     figures = [_by_object(results)]
     if tests["floor"].nunique() > 1:
         figures.append(_by_floor(results))
@@ -39,7 +40,8 @@ def _section(results: Results) -> Section | None:
     return Section(
         "comparisons",
         "Objects, floors and sides compared",
-        [words],
+        found[0].said if found else words,
+        [words] if found else [],
         [*figures, *tables],
     )
 
@@ -75,7 +77,7 @@ def _scatter(results: Results) -> FigureSpec:
         "with_and_without_pedestal",
         alt,
         caption,
-        lambda: pedestal_scatter(results.tests, title=lambda level: ratio("whole", level)),
+        lambda: pedestal_scatter(results.tests, title=ratio("whole", "all")),
     )
 
 

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from rockfrag.figure_style import (
     BLACK,
     OKABE_ITO,
-    PAGE_WIDTH,
+    WIDEST,
     figure_style,
     new_figure,
 )
@@ -99,10 +99,10 @@ def _section(results: Results) -> Section | None:
     return Section(
         "explanation",
         "What could produce an effect of the pedestal",
+        words,
         [
             "One factor at a time departs from the ideal model, on the ladder of the protocol; the "
-            "rest is as in the study.",
-            words,
+            "rest is as in the study."
         ],
         [figure, table_html(shown, _COLUMNS, "Ratio P/NP over all floors.")],
     )
@@ -139,7 +139,7 @@ def explanation_figure(effects: pd.DataFrame) -> Figure:
         for number, floor in enumerate(floors)
     }
     with figure_style():
-        figure = new_figure(PAGE_WIDTH, 0.9 + 0.155 * len(rows))
+        figure = new_figure(WIDEST, 0.9 + 0.155 * len(rows))
         axes = figure.subplots()
         axes.axvspan(*NONE, color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
@@ -181,7 +181,7 @@ def explanation_figure(effects: pd.DataFrame) -> Figure:
                 for floor, (colour, marker) in styles.items()
             ]
         handles.append(Line2D([], [], color=BAND, lw=6, label="±10 %"))
-        figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 5))
+        figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 3))
         return figure
 
 

@@ -1,5 +1,7 @@
 """Fragility on each floor in the peak of that floor's own motion, for rocking and for overturning."""
 
+import pandas as pd
+
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.wording import estimates, listed
@@ -34,8 +36,20 @@ def _section(results: Results) -> Section | None:
         words.append(f"For other programs they stand in the folder exports: {listed(files)}.")
     level = f"{100 * results.study.fragility.confidence:g} %"
     caption = f"Curves by floor, with {level} intervals where there are any."
+    message = _message(shown[shown["state"] == "overturned"])
     return Section(
-        "floor_curves", "Fragility by floor", words, [table_html(shown, _COLUMNS, caption)]
+        "floor_curves", "Fragility by floor", message, words, [table_html(shown, _COLUMNS, caption)]
+    )
+
+
+def _message(fallen: pd.DataFrame) -> str:
+    """Say which configuration overturns earliest, and where."""
+    if fallen.empty:
+        return "There are curves of rocking only: too few overturned on a floor by itself."
+    weakest = fallen.loc[fallen["theta"].idxmin()].to_dict()
+    return (
+        f"The least median of overturning is that of {weakest['configuration']} on {weakest['floor']}: "
+        f"{weakest['theta_text']} g."
     )
 
 

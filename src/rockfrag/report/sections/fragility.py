@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from rockfrag.files import file_name
 from rockfrag.report.figures.fragility import fragility_figure
+from rockfrag.report.findings import strength_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import decimals_of, estimates, listed, number, probability
@@ -19,11 +20,13 @@ def _section(results: Results) -> Section:
     level = f"{100 * results.study.fragility.confidence:g} %"
     curves = _ordered(results)
     known = curves["theta"].notna()
+    known_curves = curves[known]
     notes = list(dict.fromkeys(note for note in curves["warnings"] if note))
     without = list(dict.fromkeys(curves.loc[~known, "configuration"]))
     return Section(
         "fragility",
         "Fragility",
+        _message(known_curves, level),
         [
             "Lognormal curves: the probability to overturn is Φ(ln(IM/θ)/β). Mean probability "
             "counts every amplitude, survival windows included; first and always overturning take "
@@ -34,8 +37,13 @@ def _section(results: Results) -> Section:
             *([f"There is not a curve of every reading for {listed(without)}."] if without else []),
             *notes,
         ],
-        [*_figures(results, curves), *_tables(curves[known], level)],
+        [*_figures(results, curves), *_tables(known_curves, level)],
     )
+
+
+def _message(curves: pd.DataFrame, level: str) -> str:
+    found = strength_found(curves, level)
+    return found.said if found else "No curve rises with the motion."
 
 
 def _ordered(results: Results) -> pd.DataFrame:

@@ -67,7 +67,7 @@ def _section(results: Results) -> Section:
         caption = "Measured effect of the pedestal."
         parts.append(table_html(shown_effects(effects), EFFECT_COLUMNS, caption))
     return Section(
-        "measured", "Measured tests", [words, *results.table("measured/notes")["note"]], parts
+        "measured", "Measured tests", words, list(results.table("measured/notes")["note"]), parts
     )
 
 

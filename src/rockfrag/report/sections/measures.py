@@ -1,7 +1,10 @@
 """Which intensity measure predicts overturning best."""
 
+import pandas as pd
+
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
+from rockfrag.report.wording import listed
 
 _COLUMNS = (
     Column("configuration", "Configuration"),
@@ -30,9 +33,18 @@ def _section(results: Results) -> Section:
     return Section(
         "measures",
         "Which intensity measure",
+        _message(best),
         words,
         [table_html(best, _COLUMNS, "Recommended measure of each configuration, with reasons.")],
     )
+
+
+def _message(best: pd.DataFrame) -> str:
+    """Say which measure is recommended for which configurations."""
+    if best.empty:
+        return "No measure can be recommended."
+    names = best.groupby("im", sort=False)["configuration"].agg(list)
+    return listed([f"{measure} for {listed(own)}" for measure, own in names.items()]) + "."
 
 
 MEASURES = Part(("measure_choice",), _section)

@@ -20,7 +20,7 @@ _COLUMNS = (
 def _section(results: Results) -> Section:
     measures = results.table("measures")
     table = table_html(measures, _COLUMNS, "Intensity of every motion, before it is scaled.")
-    return Section("motions", "Motions", [_floors(results)], [table, _accelerations(results)])
+    return Section("motions", "Motions", _floors(results), [], [table, _accelerations(results)])
 
 
 def _floors(results: Results) -> str:

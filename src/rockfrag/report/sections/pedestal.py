@@ -8,7 +8,7 @@ import pandas as pd
 from rockfrag.report.figures.effects import forest_figure
 from rockfrag.report.findings import pedestal_effect, ratio_of, ratio_text
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Finding, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import estimate, has_interval, listed, number, probability
 from rockfrag.shaketable.readings import READING
 from rockfrag.study.study import Study
@@ -67,6 +67,7 @@ def _detectable(row: Mapping[Hashable, Any]) -> str:
 def _section(results: Results) -> Section:
     effects, whole = results.table("pedestal/effects"), results.table("pedestal/whole")
     here = effects[effects["reading"] == READING]
+    found = pedestal_effect(effects)
     parts: list[Any] = []
     if len(here):
         methods = whole.assign(
@@ -88,7 +89,9 @@ def _section(results: Results) -> Section:
     return Section(
         "pedestal",
         "Effect of the pedestal",
+        found[0].said,
         [
+            *(one.said for one in found[1:]),
             "Ratio of the overturning amplitude with the pedestal (P) to that without (NP), paired "
             "by object and motion. Motions of one earthquake are not independent, so intervals rest "
             "on earthquakes where there are several. “Detectable” is the ratio that would be found "
@@ -122,10 +125,4 @@ def _forest(effects: pd.DataFrame) -> FigureSpec:
     return FigureSpec("pedestal_effect", alt, caption, lambda: forest_figure(shown))
 
 
-def _findings(results: Results) -> list[Finding]:
-    return pedestal_effect(results.table("pedestal/effects"))
-
-
-PEDESTAL = Part(
-    ("pedestal/effects", "pedestal/whole", "pedestal/notes"), _section, _findings, has_pairs
-)
+PEDESTAL = Part(("pedestal/effects", "pedestal/whole", "pedestal/notes"), _section, asked=has_pairs)

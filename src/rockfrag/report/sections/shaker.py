@@ -43,8 +43,8 @@ def _section(results: Results) -> Section:
     return Section(
         "shaker",
         "What the shaking table could do",
+        words,
         [
-            words,
             "The reading “step protocol shaker” carries this through the statistics of the pedestal; the "
             "other readings are free of it, since where the table starts is an assumption.",
         ],

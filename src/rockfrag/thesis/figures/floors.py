@@ -14,7 +14,7 @@ from rockfrag.figure_style import (
     COLUMN_WIDTH,
     GREEN,
     ORANGE,
-    PAGE_WIDTH,
+    WIDEST,
     figure_style,
     new_figure,
 )
@@ -103,7 +103,7 @@ def floor_statements(margins: pd.DataFrame, axis: str, reading: str) -> Figure:
     table = chosen.pivot_table(index="statement", columns="label", values="margin")
     table = table.reindex(index=list(STATEMENTS), columns=labels)
     with figure_style():
-        figure = new_figure(PAGE_WIDTH, 3.8)
+        figure = new_figure(WIDEST, 4.6)
         axes = figure.subplots()
         largest = 100 * max(0.1, float(np.nanmax(np.abs(table.to_numpy()), initial=0.0)))
         image = axes.imshow(

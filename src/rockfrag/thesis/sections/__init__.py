@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from rockfrag.report.part import Part
 from rockfrag.report.sections.comparisons import COMPARISONS
 from rockfrag.thesis.sections.counterparts import COUNTERPARTS
-from rockfrag.thesis.sections.first_page import FIRST_PAGE
 from rockfrag.thesis.sections.floor_order import FLOOR_ORDER
 from rockfrag.thesis.sections.measured import MEASURED_STATEMENTS
 from rockfrag.thesis.sections.printed import PRINTED
@@ -16,9 +15,8 @@ from rockfrag.thesis.sections.statements import STATEMENTS
 def with_thesis(parts: Sequence[Part]) -> list[Part]:
     """Return the parts of any study's report with those of the thesis.
 
-    What the thesis reports and what was found stands first. The counterparts of its figures take the
-    place of the figures that compare amplitudes, of which they are a finer version; the others follow at
-    the end.
+    The counterparts of its figures take the place of the figures that compare amplitudes, of which they are a
+    finer version; the others follow at the end.
     """
     replaced = [COUNTERPARTS if part is COMPARISONS else part for part in parts]
-    return [FIRST_PAGE, *replaced, SIGNS, FLOOR_ORDER, PRINTED, STATEMENTS, MEASURED_STATEMENTS]
+    return [*replaced, SIGNS, FLOOR_ORDER, PRINTED, STATEMENTS, MEASURED_STATEMENTS]

@@ -1,26 +1,47 @@
-"""The first findings of a study that is compared with the thesis."""
+"""What stands first on the page of a study that is compared with the thesis."""
 
 import pandas as pd
 
-from rockfrag.report.part import Finding, Part, Results, Section
+from rockfrag.report.answer import could_overturn, questions, rests_on, study_answer
+from rockfrag.report.part import Answer, FigureSpec, Results
 from rockfrag.report.sections.explanation import asks_explanation
-from rockfrag.report.sections.pedestal import has_pairs
+from rockfrag.shaketable.readings import READING
+from rockfrag.thesis.figures.answer import ratios_figure
 from rockfrag.thesis.first_page import first_page
 
 WIDE = "wide"
 """Study of many more earthquakes, whose result is set beside where it has been run (config/wide.yaml)."""
 
 
-def _findings(results: Results) -> list[Finding]:
+def thesis_answer(results: Results) -> Answer:
+    """Return what the thesis reports, what the model gives, and what would give an effect."""
     study = results.study
+    if not study.has_pairs:
+        return study_answer(results)
+    effects = results.table("pedestal/effects")
     explanation = results.table("explanation/effects") if asks_explanation(study) else None
+    wide = _wide(results)
+    found = first_page(effects, results.table("claims"), explanation, wide)
+    here = effects[effects["reading"] == READING]
+    return Answer(
+        asked="Does a pedestal make a statue overturn later on the ground and earlier on upper floors, as the "
+        "thesis reports of its shake-table tests, if its towers only rock?",
+        sentences=found,
+        figure=FigureSpec(
+            "answer",
+            f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
+            "Overturning amplitude with over that without pedestal, with 95 % intervals over earthquakes; grey is "
+            "±10 %. Arrows show on which side of 1 the thesis reports each floor.",
+            lambda: ratios_figure(here, None if wide is None else wide[wide["reading"] == READING]),
+        ),
+        rests_on=rests_on(results),
+        could_overturn=could_overturn(results),
+        questions=questions(results),
+    )
+
+
+def _wide(results: Results) -> pd.DataFrame | None:
     beside = results.folder.parent / WIDE / "pedestal" / "effects.parquet"
-    wide = pd.read_parquet(beside) if study.name != WIDE and beside.is_file() else None
-    return first_page(results.table("pedestal/effects"), results.table("claims"), explanation, wide)
-
-
-def _no_section(_: Results) -> Section | None:
-    return None
-
-
-FIRST_PAGE = Part(("pedestal/effects", "claims"), _no_section, _findings, has_pairs)
+    if results.study.name == WIDE or not beside.is_file():
+        return None
+    return pd.read_parquet(beside)

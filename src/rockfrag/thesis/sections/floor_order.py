@@ -2,10 +2,13 @@
 
 from functools import partial
 
+import pandas as pd
+
 from rockfrag.report.figures.building import AXIS_NAMES
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.sections.building import varies_building
+from rockfrag.report.wording import number
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.figures.floors import floor_order, floor_statements
 
@@ -37,13 +40,19 @@ def _section(results: Results) -> Section:
     return Section(
         "sensitivity",
         "The thesis’s floors in other buildings",
-        [words] if len(order) else [],
+        words if len(order) else _span_words(span),
+        [],
         [
             *([_order(results, words)] if len(order) else []),
             *(_statements(results, axis) for axis in axes),
             table_html(shown, _COLUMNS, "Range of the margins of each statement."),
         ],
     )
+
+
+def _span_words(span: pd.DataFrame) -> str:
+    low, high = (100 * float(value) for value in (span["min"].min(), span["max"].max()))
+    return f"Margins of the statements lie between {number(low, 1)} and {number(high, 1)} %."
 
 
 def _order(results: Results, words: str) -> FigureSpec:

@@ -3,7 +3,7 @@
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.measured import has_measured_tests
 from rockfrag.thesis.ledger_html import ledger_html
-from rockfrag.thesis.sections.statements import words_on_verdicts
+from rockfrag.thesis.sections.statements import verdicts_in_words, words_on_verdicts
 
 
 def _section(results: Results) -> Section | None:
@@ -13,6 +13,7 @@ def _section(results: Results) -> Section | None:
     return Section(
         "measured_claims",
         "The thesis’s statements on measured tests",
+        verdicts_in_words(claims),
         [words_on_verdicts(claims)],
         [ledger_html(claims)],
     )

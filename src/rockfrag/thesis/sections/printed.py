@@ -7,7 +7,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.report.page import cell_html, framed
-from rockfrag.report.part import Finding, Part, Results, Section
+from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.wording import listed, number
 
 _CAPTIONS = {
@@ -24,6 +24,7 @@ def _section(results: Results) -> Section:
     return Section(
         "printed",
         "The thesis’s printed tables",
+        _message(results),
         [
             "GF is the ground motion itself; F3 and F5 are floors of an assumed building, which the "
             "thesis does not describe. Below each value stands the printed one, with ✓ where they agree "
@@ -67,7 +68,7 @@ def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
         )
         for name in dict.fromkeys(comparison["name"])
     )
-    return framed(caption, head, body)
+    return framed(caption, head, body, 1 + len(titles))
 
 
 def _compared(row: Mapping[str, Any] | None) -> Markup:
@@ -81,18 +82,17 @@ def _compared(row: Mapping[str, Any] | None) -> Markup:
     )
 
 
-def _findings(results: Results) -> list[Finding]:
+def _message(results: Results) -> str:
     comparison = pd.concat([results.table(name) for name in _CAPTIONS], ignore_index=True)
     known = comparison[comparison["agrees"].notna()]
     if known.empty:
-        return []
+        return "None of these values is printed in the thesis."
     right = int(known["agrees"].sum())
     text = "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s²."
     wrong = known[~known["agrees"].astype(bool)]
     if len(wrong):
         text += f" Different: {listed(list(wrong['name'] + ' ' + wrong['quantity']))}."
-    headline = f"{right} of {len(known)} printed values of Tables 3.1, 3.3 and 4.1 come out"
-    return [Finding(headline, text)]
+    return f"{right} of {len(known)} printed values of Tables 3.1, 3.3 and 4.1 come out. {text}"
 
 
-PRINTED = Part(tuple(_CAPTIONS), _section, _findings)
+PRINTED = Part(tuple(_CAPTIONS), _section)

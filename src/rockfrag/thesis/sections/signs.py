@@ -36,7 +36,8 @@ def _section(results: Results) -> Section:
     return Section(
         "signs",
         "What would give the thesis’s signs",
-        [words],
+        words,
+        [],
         [table_html(shown, columns, "Mean ratio P/NP by floor.")],
     )
 

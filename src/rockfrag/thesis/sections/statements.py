@@ -3,9 +3,9 @@
 import pandas as pd
 
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Finding, Part, Results, Section
+from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.pedestal import has_pairs
-from rockfrag.report.wording import number, sentence
+from rockfrag.report.wording import listed, number
 from rockfrag.thesis.ledger_html import ledger_html, verdicts_by_kind
 
 _CONTRADICTIONS = (
@@ -28,6 +28,7 @@ def _section(results: Results) -> Section:
     return Section(
         "claims",
         "The thesis’s statements",
+        verdicts_in_words(claims),
         [words_on_verdicts(claims)],
         [
             table_html(verdicts_by_kind(claims), _KINDS, "Verdicts on the thesis’s statements."),
@@ -49,15 +50,11 @@ def words_on_verdicts(claims: pd.DataFrame) -> str:
     )
 
 
-def _findings(results: Results) -> list[Finding]:
-    claims = results.table("claims")
-    kinds = verdicts_by_kind(claims).to_dict("records")
-    return [
-        Finding(
-            f"{claims['number'].nunique()} statements of the thesis are tested",
-            sentence("; ".join(f"{row['kind']}: {row['verdicts']}" for row in kinds)) + ".",
-        )
-    ]
+def verdicts_in_words(claims: pd.DataFrame) -> str:
+    """Say how many statements are tested, and how many have each verdict."""
+    counts = claims["verdict"].value_counts()
+    each = listed([f"{count} {verdict}" for verdict, count in counts.items()])
+    return f"{claims['number'].nunique()} statements of the thesis are tested: {each}."
 
 
-STATEMENTS = Part(("claims", "contradictions"), _section, _findings, has_pairs)
+STATEMENTS = Part(("claims", "contradictions"), _section, asked=has_pairs)
