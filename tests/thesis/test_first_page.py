@@ -131,8 +131,8 @@ def test_signs_of_means_come_by_chance_and_intervals_do_not():
 def test_why_is_said_only_where_the_simulations_show_it():
     tests = build(noise=0.03)
     effects = effects_of(tests)
-    assert "lift the pedestal" in said(first_page(effects, claims_of(tests, 1.0)))
-    assert "lift the pedestal" not in said(first_page(effects, claims_of(tests, 0.98)))
+    assert "lifts the pedestal" in said(first_page(effects, claims_of(tests, 1.0)))
+    assert "lifts the pedestal" not in said(first_page(effects, claims_of(tests, 0.98)))
 
 
 def test_a_study_without_the_floors_says_what_it_has():
