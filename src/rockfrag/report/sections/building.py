@@ -63,7 +63,7 @@ def _message(span: pd.DataFrame) -> str:
     known = span[span["min"] > 0]
     if known.empty:
         return "No mean amplitude is known for other buildings."
-    row = known.loc[(known["max"] / known["min"]).idxmax()].to_dict()
+    row = max(known.to_dict("records"), key=lambda one: float(one["max"] / one["min"]))
     return (
         f"Most depends on the {str(row['axis']).lower()}: the mean amplitude on {row['floor']} lies between "
         f"{number(row['min'], 2)} and {number(row['max'], 2)} g over the values tried."

@@ -46,7 +46,7 @@ def _message(fallen: pd.DataFrame) -> str:
     """Say which configuration overturns earliest, and where."""
     if fallen.empty:
         return "There are curves of rocking only: too few overturned on a floor by itself."
-    weakest = fallen.loc[fallen["theta"].idxmin()].to_dict()
+    weakest = min(fallen.to_dict("records"), key=lambda one: float(one["theta"]))
     return (
         f"The least median of overturning is that of {weakest['configuration']} on {weakest['floor']}: "
         f"{weakest['theta_text']} g."
