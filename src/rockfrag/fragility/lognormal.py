@@ -195,8 +195,11 @@ def _pooled(outcomes: Outcomes) -> Outcomes:
 
 def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
     links = {"probit": sm.families.links.Probit, "logit": sm.families.links.Logit}
-    design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
-    counts = np.column_stack([outcomes.overturned, outcomes.trials - outcomes.overturned])
+    # tests at one value are one row of counts: the same likelihood, and a tenth of the time
+    values, level = np.unique(outcomes.log_im, return_inverse=True)
+    fell, trials = np.bincount(level, outcomes.overturned), np.bincount(level, outcomes.trials)
+    design = np.column_stack([np.ones(values.size), values])
+    counts = np.column_stack([fell, trials - fell])
     model = sm.GLM(counts, design, family=sm.families.Binomial(links[link]()))
     with python_warnings.catch_warnings():
         python_warnings.simplefilter("error", PerfectSeparationWarning)

@@ -1,7 +1,6 @@
 """The observations that every fragility estimator starts from, checked once at the door."""
 
 import re
-from collections.abc import Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -199,8 +198,7 @@ def labels(table: pd.DataFrame, column: str | None, source: str) -> NDArray[np.o
         raise InputError(
             f"{source}, row {missing[0] + 1}, column {column!r}: the label is missing; fill it in."
         )
-    labels: list[Hashable] = list(values)
-    return np.array(labels, dtype=object)
+    return values.to_numpy(dtype=object)
 
 
 def outcomes_from_table(

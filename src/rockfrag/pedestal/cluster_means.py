@@ -16,6 +16,7 @@ called one.
 """
 
 import math
+from collections.abc import Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -213,10 +214,28 @@ def mean_effect(table: pd.DataFrame, confidence: float = CONFIDENCE) -> Estimate
     The units are the events; within a single event they are its motions. A column ``resolution``,
     the half-width to which each d is known, widens the interval where pairs agree.
     """
-    unit = sampled_unit(table)
-    hidden = table.assign(d=tied_resolution(table["d"], _resolution_of(table)))
-    resolution = float(unit_means(hidden, unit).mean())
-    return t_estimate(unit_means(table, unit), confidence, resolution)
+    return next(iter(mean_effects(table.assign(whole=""), "whole", confidence).values()))
+
+
+def mean_effects(
+    table: pd.DataFrame, by: str, confidence: float = CONFIDENCE
+) -> dict[Hashable, Estimate]:
+    """`mean_effect` of every group of rows with the same value of a column, all at once."""
+    d, known = table["d"].to_numpy(dtype=float), _resolution_of(table)
+    hidden = np.zeros(len(table))
+    groups = table.groupby(by, sort=True).indices
+    for rows in groups.values():
+        hidden[rows] = tied_resolution(d[rows], known[rows])
+    work = table[[by, "event", "motion", "d"]].assign(hidden=hidden)
+    motions = work.groupby([by, "event", "motion"])[["d", "hidden"]].mean()
+    events = motions.groupby(level=[by, "event"]).mean()
+    of_motions = motions.groupby(level=by).indices
+    found = {}
+    for name, places in events.groupby(level=by).indices.items():
+        # what was sampled of a single event are its motions
+        units = events.iloc[places] if len(places) > 1 else motions.iloc[of_motions[name]]
+        found[name] = t_estimate(units["d"], confidence, float(units["hidden"].mean()))
+    return found
 
 
 def slope_effect(

@@ -5,15 +5,20 @@ varied alone.  The effect of a level is the mean of ln ratio there minus that of
 pair, tested over events as everywhere else.
 """
 
+import itertools
+
 import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import mean_effect
+from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 
 COLUMNS = ("factor", "level", "reference", "object", "event", "floor", "ratio")
+ALL = "all"
+"""What stands in the column of the floor for all floors together."""
+
 CHANGES, SAME, OPEN = "changes P/NP", "within ±10 %", "open"
 """What the intervals say of a level: p below 5 % over everything, equivalence, or neither."""
 
@@ -81,43 +86,44 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
     step = cells.groupby(key)["resolution"].max()
     reference = cells[cells["level"] == marked[0]].set_index(key)["d"]
     levels = sorted(cells["level"].unique(), key=lambda level: (level != marked[0], level))
+    both = cells.rename(columns={"d": "here"}).drop(columns="resolution")
+    both = both.join(reference.rename("reference"), on=key).join(step, on=key)
+    both["floor"] = both["floor"].astype(str)
+    both = pd.concat([both.assign(floor=ALL), both])
+    known = both.dropna(subset=["here", "reference"])
+    known = known.assign(scope=known["level"].astype(str) + "/" + known["floor"])
+    ratios = mean_effects(known.assign(d=known["here"]), "scope")
+    effects = mean_effects(
+        known.assign(d=known["here"] - known["reference"], resolution=2 * known["resolution"]),
+        "scope",
+    )
+    tried, pairs = (rows.groupby(["level", "floor"]).size() for rows in (both, known))
     found: list[dict[str, object]] = []
-    for level in levels:
-        here = cells[cells["level"] == level].set_index(key)["d"]
-        both = pd.DataFrame({"here": here, "reference": reference, "resolution": step})
-        known = both.dropna().reset_index()
-        if known.empty:
+    floors = [ALL, *sorted(set(known["floor"]) - {ALL})]
+    for level, floor in itertools.product(levels, floors):
+        scope = f"{level}/{floor}"
+        if scope not in effects:
             continue
-        for floor in ("all", *sorted(known["floor"].unique())):
-            part = known if floor == "all" else known[known["floor"] == floor]
-            total = (
-                len(both)
-                if floor == "all"
-                else int((both.index.get_level_values("floor") == floor).sum())
-            )
-            ratio = mean_effect(part.assign(d=part["here"]))
-            change = part.assign(
-                d=part["here"] - part["reference"], resolution=2 * part["resolution"]
-            )
-            effect = mean_effect(change)
-            found.append(
-                {
-                    "factor": name,
-                    "level": level,
-                    "floor": floor,
-                    "ratio": ratio.ratio,
-                    "ratio_lower": ratio.ratio_lower,
-                    "ratio_upper": ratio.ratio_upper,
-                    "effect": effect.ratio,
-                    "effect_lower": effect.ratio_lower,
-                    "effect_upper": effect.ratio_upper,
-                    "p": effect.p if level != marked[0] else np.nan,
-                    "pairs": len(part),
-                    "events": effect.units,
-                    "left_out": total - len(part),
-                    "p_equivalence": equivalence(effect).p if level != marked[0] else np.nan,
-                }
-            )
+        ratio, effect = ratios[scope], effects[scope]
+        found.append(
+            {
+                "factor": name,
+                "level": level,
+                "floor": floor,
+                "ratio": ratio.ratio,
+                "ratio_lower": ratio.ratio_lower,
+                "ratio_upper": ratio.ratio_upper,
+                "effect": effect.ratio,
+                "effect_lower": effect.ratio_lower,
+                "effect_upper": effect.ratio_upper,
+                "p": effect.p if level != marked[0] else np.nan,
+                "pairs": int(pairs[level, floor]),
+                "events": effect.units,
+                "left_out": int(tried[level, floor] - pairs[level, floor]),
+                "p_equivalence": equivalence(effect).p if level != marked[0] else np.nan,
+            }
+        )
     result = pd.DataFrame(found)
     result["p_holm"] = holm(result["p"])
     return result
+

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -39,6 +38,9 @@ from rockfrag.rocking.response import PATTERNS, Response
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
+
+KINDS = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter"}
+"""What the kinds of events are called."""
 
 
 def initial_state(
@@ -200,30 +202,27 @@ def _response(
 
 
 def _event_table(events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
-    kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter"}
+    before, after = events["before"], events["after"]
 
-    def each(state: np.void, name: str) -> tuple[float, ...]:
-        return tuple(float(state[name + block]) for block in blocks)
+    def each(state: NDArray[np.void], name: str) -> list[tuple[float, ...]]:
+        return list(zip(*(state[name + block].tolist() for block in blocks), strict=True))
 
-    rows: list[dict[str, Any]] = [
+    def patterns(state: NDArray[np.void]) -> list[str]:
+        return [PATTERNS[pair] for pair in zip(state["c1"].tolist(), state["c2"].tolist(), strict=True)]
+
+    return pd.DataFrame(
         {
-            "time": event["time"],
-            "kind": kinds[int(event["kind"])],
-            "from": PATTERNS[int(event["before"]["c1"]), int(event["before"]["c2"])],
-            "to": PATTERNS[int(event["after"]["c1"]), int(event["after"]["c2"])],
-            "omega_before": each(event["before"], "omega"),
-            "omega_after": each(event["after"], "omega"),
-            "theta": each(event["after"], "theta"),
-            "energy_before": event["energy_before"],
-            "energy_after": event["energy_after"],
+            "time": events["time"],
+            "kind": [KINDS[kind] for kind in events["kind"].tolist()],
+            "from": patterns(before),
+            "to": patterns(after),
+            "omega_before": each(before, "omega"),
+            "omega_after": each(after, "omega"),
+            "theta": each(after, "theta"),
+            "energy_before": events["energy_before"],
+            "energy_after": events["energy_after"],
         }
-        for event in events
-    ]
-    columns = [
-        "time", "kind", "from", "to", "omega_before", "omega_after", "theta",
-        "energy_before", "energy_after",
-    ]  # fmt: skip
-    return pd.DataFrame(rows, columns=columns)
+    )
 
 
 def _energy_table(
