@@ -24,13 +24,13 @@ smoke: STUDY := config/smoke.yaml
 smoke: run
 
 test: .venv/installed
-	@$(RUN) pytest -n auto -m "not slow"
+	@$(RUN) pytest -n auto --dist worksteal -m "not slow"
 
 validate: .venv/installed
 	@$(RUN) pytest -m slow
 
 coverage: .venv/installed
-	@$(RUN) pytest -n auto -m "not slow" --cov --cov-report=term --cov-report=xml
+	@$(RUN) pytest -n auto --dist worksteal -m "not slow" --cov --cov-report=term --cov-report=xml
 
 lint: .venv/installed
 	@$(RUN) ruff check .

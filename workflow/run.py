@@ -41,8 +41,9 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
 def _snakemake(study_file: str, arguments: Sequence[str]) -> int:
     from snakemake.cli import main as snakemake
 
-    # our own lock knows whether its owner lives, Snakemake's does not
-    ours = ("--nolock", "--rerun-incomplete", "--workflow-profile", "none")
+    # our own lock knows whether its owner lives, Snakemake's does not; for some ten jobs the best
+    # schedule takes longer to find than it saves
+    ours = ("--nolock", "--rerun-incomplete", "--workflow-profile", "none", "--scheduler", "greedy")
     try:
         snakemake(["--snakefile", str(SNAKEFILE), "--configfile", study_file, *ours, *arguments])
     except SystemExit as end:

@@ -10,13 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-import statsmodels.api as sm
 from numpy.typing import ArrayLike
+from statsmodels.genmod import families
+from statsmodels.genmod.generalized_linear_model import GLM
 from statsmodels.tools.sm_exceptions import (
     ConvergenceWarning,
     PerfectSeparationError,
     PerfectSeparationWarning,
 )
+from statsmodels.tools.tools import add_constant
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, labels, name_and_unit, positive, verdicts
@@ -140,12 +142,12 @@ def _fit(table: pd.DataFrame, name: str, unit: str) -> StepHazard:
             f"{fell} of {len(table)} shakes overturned: a hazard needs shakes that overturned and "
             "shakes that did not."
         )
-    design = sm.add_constant((table["log_im"] - 0.5 * table["width"]).to_numpy())
+    design = add_constant((table["log_im"] - 0.5 * table["width"]).to_numpy())
     codes, motions = pd.factorize(table["motion"])
-    model = sm.GLM(
+    model = GLM(
         table["overturned"].to_numpy(),
         design,
-        family=sm.families.Binomial(sm.families.links.CLogLog()),
+        family=families.Binomial(families.links.CLogLog()),
         offset=np.log(table["width"].to_numpy()),
     )
     with python_warnings.catch_warnings():

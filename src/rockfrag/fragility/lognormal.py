@@ -4,9 +4,10 @@ import warnings as python_warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
-import statsmodels.api as sm
 from numpy.typing import ArrayLike
 from scipy import special
+from statsmodels.genmod import families
+from statsmodels.genmod.generalized_linear_model import GLM
 from statsmodels.tools.sm_exceptions import (
     ConvergenceWarning,
     PerfectSeparationError,
@@ -194,13 +195,13 @@ def _pooled(outcomes: Outcomes) -> Outcomes:
 
 
 def _statsmodels(outcomes: Outcomes, link: Link) -> tuple[Floats, Floats]:
-    links = {"probit": sm.families.links.Probit, "logit": sm.families.links.Logit}
+    links = {"probit": families.links.Probit, "logit": families.links.Logit}
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
     values, level = np.unique(outcomes.log_im, return_inverse=True)
     fell, trials = np.bincount(level, outcomes.overturned), np.bincount(level, outcomes.trials)
     design = np.column_stack([np.ones(values.size), values])
     counts = np.column_stack([fell, trials - fell])
-    model = sm.GLM(counts, design, family=sm.families.Binomial(links[link]()))
+    model = GLM(counts, design, family=families.Binomial(links[link]()))
     with python_warnings.catch_warnings():
         python_warnings.simplefilter("error", PerfectSeparationWarning)
         python_warnings.simplefilter("error", ConvergenceWarning)

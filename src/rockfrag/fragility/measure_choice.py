@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-import statsmodels.api as sm
 from numpy.typing import NDArray
 from scipy import stats
+from statsmodels.regression.linear_model import OLS
+from statsmodels.tools.tools import add_constant
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.held_out import paired_p, share_best, verdict_scores
@@ -94,7 +95,7 @@ def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.obje
     if len(names) < 3 or np.ptp(column) == 0:
         return float("nan")
     scaled = (column - column.mean()) / column.std()
-    result = sm.OLS(residual, sm.add_constant(scaled)).fit(
+    result = OLS(residual, add_constant(scaled)).fit(
         cov_type="cluster", cov_kwds={"groups": codes, "use_correction": True}
     )
     error = float(np.sqrt(result.cov_params()[1, 1]))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-import statsmodels.api as sm
 from numpy.typing import ArrayLike
 from scipy import optimize, special
+from statsmodels.genmod import families
+from statsmodels.genmod.generalized_linear_model import GLM
 from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSeparationWarning
 
 from rockfrag.errors import InputError
@@ -98,7 +99,7 @@ def fit_surface(
         coefficients, information = _penalised(design, verdict)
         method = "probit, penalised likelihood (Firth)"
     else:
-        model = sm.GLM(verdict, design, family=sm.families.Binomial(sm.families.links.Probit()))
+        model = GLM(verdict, design, family=families.Binomial(families.links.Probit()))
         with python_warnings.catch_warnings():
             python_warnings.simplefilter("error", PerfectSeparationWarning)
             try:

@@ -126,4 +126,3 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
     result = pd.DataFrame(found)
     result["p_holm"] = holm(result["p"])
     return result
-

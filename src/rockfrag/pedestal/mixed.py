@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-import statsmodels.formula.api as smf
 from scipy import optimize, stats
+from statsmodels.regression.linear_model import OLS
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import CONFIDENCE, Array
@@ -149,7 +149,7 @@ def fit_mixed(rows: pd.DataFrame, formula: str) -> MixedFit:
             "Mixed model: it needs at least two events and three motions to tell their variances; "
             "add motions or read the means only."
         )
-    model = smf.ols(formula, rows)
+    model = OLS.from_formula(formula, rows)
     y, x = np.asarray(model.endog, dtype=float), np.asarray(model.exog, dtype=float)
     terms = list(model.exog_names)
     least_squares: Array = np.linalg.lstsq(x, y, rcond=None)[0]

@@ -208,7 +208,9 @@ def _event_table(events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
         return list(zip(*(state[name + block].tolist() for block in blocks), strict=True))
 
     def patterns(state: NDArray[np.void]) -> list[str]:
-        return [PATTERNS[pair] for pair in zip(state["c1"].tolist(), state["c2"].tolist(), strict=True)]
+        return [
+            PATTERNS[pair] for pair in zip(state["c1"].tolist(), state["c2"].tolist(), strict=True)
+        ]
 
     return pd.DataFrame(
         {
