@@ -68,5 +68,5 @@ def random_frictions(rng: np.random.Generator, body: Body) -> tuple[float, ...]:
 
 
 def as_friction(mus: tuple[float, ...]) -> float | tuple[float, ...]:
-    """Frictions as `simulate_with_friction` takes them."""
+    """Frictions as `simulate` takes them."""
     return mus[0] if len(mus) == 1 else mus

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking.contact import simulate_with_friction
 from rockfrag.rocking.contact.reference import simulate_reference
+from rockfrag.rocking.contact.simulation import simulate_with_friction
 
 from .cases import DT, as_friction, random_block, random_frictions, random_motion, random_stack
 from .time_stepping import time_stepping

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag.rocking import Block, Stack, overturns, simulate
-from rockfrag.rocking.contact import overturns_with_friction, simulate_with_friction
+from rockfrag.rocking.contact.simulation import simulate_with_friction
 
 from .cases import DT, random_block, random_motion, random_stack
 
@@ -19,9 +19,7 @@ def differing_verdicts(stacks: bool, bodies: int, seed: int) -> tuple[int, int, 
     ]
     motions = [random_motion(rng) for _ in range(20)]
     pure = overturns(drawn, motions, DT, SCALES).overturned
-    general = overturns_with_friction(
-        drawn, motions, DT, SCALES, friction=[np.inf] * bodies
-    ).overturned
+    general = overturns(drawn, motions, DT, SCALES, friction=[np.inf] * bodies).overturned
     return int((pure != general).sum()), int(pure.sum()), pure.size
 
 

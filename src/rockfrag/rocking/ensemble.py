@@ -12,6 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.body_record import Restitution, body_record, lone_restitution
+from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
+from rockfrag.rocking.contact.friction import (
+    FrictionInput,
+    check_impacts_follow,
+    listed_frictions,
+)
 from rockfrag.rocking.inputs import (
     STACK_STEP,
     STEP,
@@ -19,10 +25,12 @@ from rockfrag.rocking.inputs import (
     check_case_count,
     check_one_per_body,
     checked_scales,
+    checked_start,
     checked_switch,
     checked_threads,
     free_samples,
     listed,
+    listed_vertical,
     step_count,
 )
 from rockfrag.rocking.kernels.equations import BODY
@@ -59,6 +67,11 @@ class EnsembleResult:
         Number of impacts until the verdict was certain.
     closest_approach
         Least distance from an unstable equilibrium, as in :class:`Response`; infinite if it never rocked.
+    slip_ground, slip_interface
+        Displacement along the ground and along the pedestal's top at the end [m], positive to the right; zero
+        without friction.
+    peak_slip_ground, peak_slip_interface
+        Largest displacement either way [m].
     scales
         Factors on the motions, shape (motions, scales).
     """
@@ -71,18 +84,24 @@ class EnsembleResult:
     peak_velocity: Array
     impacts: NDArray[np.int64]
     closest_approach: Array
+    slip_ground: Array
+    slip_interface: Array
+    peak_slip_ground: Array
+    peak_slip_interface: Array
     scales: Array
 
     def table(self) -> pd.DataFrame:
         """Return the results as a table, a row per case, the scale running fastest.
 
         Columns: ``body``, ``motion`` (positions in the lists given), ``scale`` and every attribute of that
-        shape, with its unit in the name: ``overturning_time_s``, ``peak_velocity_rad_s``.
+        shape, with its unit in the name: ``overturning_time_s``, ``peak_velocity_rad_s``,
+        ``slip_ground_m``.
         """
         shape = self.overturned.shape
         body = np.arange(shape[0])[:, np.newaxis, np.newaxis]
         motion = np.arange(shape[1])[:, np.newaxis]
         units = {"overturning_time": "_s", "peak_velocity": "_rad_s"}
+        units |= {name: "_m" for name in vars(self) if "slip" in name}
         columns: dict[str, Any] = {"body": body, "motion": motion, "scale": self.scales}
         columns |= {
             name + units.get(name, ""): values
@@ -131,6 +150,8 @@ def overturns(
     omega0: Sequence[Start] | None = None,
     restitution: Sequence[Restitution] | None = None,
     linear: bool = False,
+    friction: float | Sequence[FrictionInput] | None = None,
+    vertical: MotionLike | Sequence[MotionLike] | None = None,
     g: float = STANDARD_GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -155,6 +176,10 @@ def overturns(
         One entry per body, each as in :func:`simulate`; None conserves momentum in all.
     linear
         Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
+    friction
+        One entry per body, each as in :func:`simulate`, or one number for all; None: nothing slides.
+    vertical
+        Vertical accelerations, upwards [m/s²], one for each motion and sampled as it; they are scaled with it.
     g
         Acceleration of gravity [m/s²].
     step
@@ -172,7 +197,7 @@ def overturns(
     -----
     Cases with a start of their own, or with linearised equations, are marched one by one as :func:`simulate`
     does, which follows every impact and takes some ten times as long; a fall is then certain when a block lies
-    down.
+    down.  With friction or vertical motion a block has also fallen when it has left the edge of its pedestal.
     """
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)
@@ -182,6 +207,15 @@ def overturns(
     for name, start in (("theta0", theta0), ("omega0", omega0)):
         check_one_per_body(name, start, len(body_list))
     result = _empty_result(factors, len(body_list))
+    if friction is not None or vertical is not None:
+        check_impacts_follow(restitution, checked_switch("linear", linear))
+        frictions = listed_frictions(body_list, math.inf if friction is None else friction)
+        up = listed_vertical(vertical, values, dts)
+        checked_scales(factors, up or values)
+        if result.overturned.size:
+            starts = [_starts(body_list, theta0, "theta0"), _starts(body_list, omega0, "omega0")]
+            _fill_with_friction(result, setting, Standing(body_list, frictions, *starts), up)
+        return result
     if not result.overturned.size:
         return result
     if checked_switch("linear", linear) or theta0 is not None or omega0 is not None:
@@ -215,8 +249,48 @@ def _empty_result(factors: Array, n_bodies: int) -> EnsembleResult:
         peak_velocity=np.zeros(shape),
         impacts=np.zeros(shape, dtype=np.int64),
         closest_approach=np.full(shape, np.inf),
+        slip_ground=np.zeros(shape),
+        slip_interface=np.zeros(shape),
+        peak_slip_ground=np.zeros(shape),
+        peak_slip_interface=np.zeros(shape),
         scales=factors,
     )
+
+
+def _starts(
+    bodies: list[Body], given: Sequence[Start] | None, name: str
+) -> list[tuple[float, ...]]:
+    """Rotations or angular velocities at the start of each body."""
+    each = given if given is not None else [None] * len(bodies)
+    return [checked_start(body, one, name) for body, one in zip(bodies, each, strict=True)]
+
+
+def _fill_with_friction(
+    result: EnsembleResult, setting: _Setting, standing: Standing, up: list[Array]
+) -> None:
+    """Write what becomes of bodies that may slide and fly into the result."""
+    wanted = np.ones(result.overturned.shape, dtype=bool)
+    moving = Moving(setting.motions, up, setting.dts, setting.factors)
+    found = contact_outcomes(standing, moving, wanted, setting.g, setting.step, setting.threads)
+    lone = np.array([isinstance(body, Block) for body in standing.bodies])[:, None, None]
+    fell = np.where(lone & (found["fallen"] > 0), 2, found["fallen"])
+    upper = np.where(lone, 0, 1)[..., None]
+
+    def of_upper(name: str) -> Array:
+        return np.take_along_axis(found[name], upper, axis=-1)[..., 0]
+
+    result.overturned[:] = fell > 0
+    result.overturned_body[:] = fell
+    result.overturning_time[:] = np.where(fell > 0, found["time"], np.nan)
+    result.peak_rotation[:] = np.where(fell == 2, np.inf, of_upper("peak"))
+    below = np.where(lone, 0.0, found["peak"][..., 0])
+    result.peak_rotation_pedestal[:] = np.where(fell == 1, np.inf, below)
+    result.peak_velocity[:] = of_upper("peak_speed")
+    result.impacts[:] = found["impacts"]
+    result.closest_approach[:] = np.nan
+    for k, place in enumerate(("ground", "interface")):
+        getattr(result, f"slip_{place}")[:] = found["slip"][..., k]
+        getattr(result, f"peak_slip_{place}")[:] = found["peak_slip"][..., k]
 
 
 def _one_by_one(setting: _Setting, given: _Bodies, starts: list[np.void], linear: bool) -> _Found:

@@ -32,6 +32,38 @@ def _acceleration(arm: Vector, turning: _Turning) -> tuple[Array, Array]:
     return alpha * y - omega * omega * x, -alpha * x - omega * omega * y
 
 
+def centres(body: Body, state: NDArray[np.int64], theta: Array) -> Array:
+    """Centres of gravity of a body that rocks without sliding, relative to the moving ground [m].
+
+    Parameters
+    ----------
+    state, theta
+        As in :class:`Response`, shape (n, blocks).
+
+    Returns
+    -------
+    x and y, shape (n, blocks, 2).
+    """
+    found = np.zeros((*theta.shape, 2))
+    signs = np.where(state == 0, 1, state)
+    if isinstance(body, Block):
+        for pole in (+1, -1):
+            rows = signs[:, 0] == pole
+            found[rows, 0] = np.transpose(_turned(body.arm(pole), theta[rows, 0]))
+            found[rows, 0, 0] += body.centre.x - body.arm(pole).x
+        return found
+    for one in (+1, -1):
+        arm = body.pedestal.arm(one)
+        for two in (+1, -1):
+            rows = (signs[:, 0] == one) & (signs[:, 1] == two)
+            first, second = theta[rows, 0], theta[rows, 1]
+            found[rows, 0] = np.transpose(_turned(arm, first))
+            found[rows, 1] = np.transpose(_turned(body.reach(one, two), first))
+            found[rows, 1] += np.transpose(_turned(body.statue_arm(two), second))
+            found[rows, :, 0] += body.pedestal.centre.x - arm.x
+    return found
+
+
 def contact_forces(
     body: Body,
     ground: Array,

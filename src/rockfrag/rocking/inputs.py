@@ -1,5 +1,6 @@
 """Checks of what users give, and the step sizes that follow from it."""
 
+import math
 import numbers
 import os
 import warnings
@@ -79,6 +80,54 @@ def checked_motion(
     return values, interval
 
 
+def checked_vertical(
+    vertical: MotionLike | None,
+    horizontal: NDArray[np.float64],
+    interval: float,
+    name: str = "vertical",
+) -> NDArray[np.float64]:
+    """Return the vertical accelerations that belong to horizontal ones [m/s²]; none for None.
+
+    Raises
+    ------
+    InputError
+        If they cannot be used, or are not sampled at the same times.
+    """
+    if vertical is None:
+        return np.zeros(0)
+    if isinstance(vertical, Motion) and not math.isclose(vertical.dt, interval, rel_tol=1e-9):
+        raise InputError(
+            f"{name}: sampled every {vertical.dt:g} s, the horizontal motion every {interval:g} s; "
+            "resample one of them."
+        )
+    own = None if isinstance(vertical, Motion) else interval
+    values, _ = checked_motion(vertical, own, name)
+    if values.size != horizontal.size:
+        raise InputError(
+            f"{name}: {values.size} samples for {horizontal.size} horizontal ones; cut or pad one of them."
+        )
+    return values
+
+
+def checked_start(body: Body, value: object, name: str) -> tuple[float, ...]:
+    """Return rotations or angular velocities at the start, one for each block; zeros for None.
+
+    Raises
+    ------
+    InputError
+        If there is not one finite number for each block, or a block lies on its side already.
+    """
+    blocks = 1 if isinstance(body, Block) else 2
+    if value is None:
+        return (0.0,) * blocks
+    values = np.atleast_1d(real_array(name, value))
+    if values.shape != (blocks,) or not np.isfinite(values).all():
+        raise InputError(f"{name}: expected {blocks} finite number(s), got {shown(value)}.")
+    if name == "theta0" and (np.abs(values) >= math.pi / 2).any():
+        raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
+    return tuple(values.tolist())
+
+
 def listed_bodies(bodies: object) -> list[Body]:
     """Return the bodies as a list.
 
@@ -129,20 +178,47 @@ def listed(
     return body_list, [values for values, _ in checked], np.array([h for _, h in checked])
 
 
-def _listed_motions(motions: MotionLike | Sequence[MotionLike]) -> list[MotionLike]:
+def _listed_motions(
+    motions: MotionLike | Sequence[MotionLike], name: str = "motions"
+) -> list[MotionLike]:
     if isinstance(motions, Motion):
         return [motions]
     if isinstance(motions, np.ndarray) and motions.ndim == 1 and motions.dtype != object:
         return [motions]
     if motions is None or isinstance(motions, (str, bytes, Mapping)) or not np.iterable(motions):
         raise InputError(
-            f"motions: expected a Motion, accelerations or a list of them, got {shown(motions)}."
+            f"{name}: expected a Motion, accelerations or a list of them, got {shown(motions)}."
         )
     each = list(motions)
     if each and all(isinstance(value, numbers.Real) for value in each):
         # one motion given as a list of numbers
         return [motions]  # type: ignore[list-item]
     return each
+
+
+def listed_vertical(
+    vertical: MotionLike | Sequence[MotionLike] | None,
+    horizontal: Sequence[NDArray[np.float64]],
+    intervals: NDArray[np.float64],
+) -> list[NDArray[np.float64]]:
+    """Return the vertical accelerations of each motion [m/s²]; of None none.
+
+    Raises
+    ------
+    InputError
+        If there is not one for each motion, or one cannot be used.
+    """
+    if vertical is None:
+        return []
+    each = _listed_motions(vertical, "vertical")
+    if len(each) != len(horizontal):
+        raise InputError(
+            f"vertical: expected {len(horizontal)} entries, one per motion, got {len(each)}."
+        )
+    return [
+        checked_vertical(up, values, float(interval), f"vertical[{i}]")
+        for i, (up, values, interval) in enumerate(zip(each, horizontal, intervals, strict=True))
+    ]
 
 
 def check_one_per_body(name: str, given: object, count: int) -> None:

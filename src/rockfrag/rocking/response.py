@@ -25,6 +25,30 @@ PATTERNS = {
 }
 """Names of thesis Fig. 2.3 for the contact states (ground, interface)."""
 
+FLIGHT = 2
+"""Contact state of an interface that is open at both ends."""
+
+MODES = {
+    0: "stands",
+    +1: "rocks right",
+    -1: "rocks left",
+    FLIGHT: "flies",
+}
+"""What an interface does in each contact state."""
+
+
+def pattern_name(ground: int, interface: int) -> str:
+    """Name of the pattern of two contact states: that of the thesis, or "flight"."""
+    return "flight" if FLIGHT in (ground, interface) else PATTERNS[ground, interface]
+
+
+def mode_name(state: int, slides: int) -> str:
+    """Say what an interface does, such as "rocks right, slides left"."""
+    way = "" if slides == 0 else ("slides right" if slides > 0 else "slides left")
+    if state == 0 and way:
+        return way
+    return MODES[state] + (f", {way}" if way else "")
+
 
 @dataclass(frozen=True)
 class Response:
@@ -40,13 +64,27 @@ class Response:
         Times of the samples [s], shape (n,); the motion and the free rocking after it.
     ground_acceleration
         Acceleration of the ground at these times [m/s²], shape (n,).
+    position
+        x and y of the centres of gravity relative to the moving ground [m], shape (n, blocks, 2); the middle of
+        the lowest base stood at 0.
     theta, omega, alpha
         Rotations [rad], angular velocities [rad/s] and accelerations [rad/s²], shape (n, blocks).
     state
-        Contact states +1, -1 (rocking on the right, left pole) or 0 (full contact), shape (n, blocks).
+        Contact states +1, -1 (rocking on the right, left pole), 0 (full contact) or, with friction, 2 (flight),
+        shape (n, blocks).
+    slides
+        Whether the upper side of each interface sticks (0) or slides to the right (+1) or left (-1), shape
+        (n, blocks).
+    slip
+        Displacement along each interface of the corner that carries, from where it stood at first [m], shape
+        (n, blocks); positive to the right.
     events
         One row per opening, impact or closed chatter: ``time`` [s], ``kind``, ``from``, ``to`` (patterns),
-        ``omega_before``, ``omega_after`` [rad/s] (tuples), ``energy_before``, ``energy_after`` (kinetic) [J].
+        ``omega_before``, ``omega_after`` [rad/s], ``theta`` [rad] (tuples), ``energy_before``, ``energy_after``
+        (kinetic) [J].  With friction there are also the kinds ``slip`` and ``stick``, ``flight``, ``edge`` (a
+        corner of the statue passes an edge of the pedestal), ``closing`` (a contact closes without an impact),
+        ``paradox`` and ``fall``, and the columns ``modes`` (what each interface does from now on) and ``slip`` [m]
+        (tuples).
     overturned
         Whether a block fell.
     overturned_body
@@ -55,23 +93,32 @@ class Response:
         When it lay down [s], NaN if it did not.
     energy
         Table over time [J]: ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_ground``
-        and ``lost_interface`` (in impacts so far), and ``residual``, which is zero but for rounding.
+        and ``lost_interface`` (in impacts so far), with friction ``lost_friction``, and ``residual``, which is
+        zero but for rounding.
     normal_force, friction_force
-        Forces of each interface on the block above it [N], shape (n, blocks).
+        Forces of each interface on the block above it [N], shape (n, blocks); with friction across and along the
+        face that carries.
     impacts, grazings
         Numbers of impacts, and of contacts that met with less than 1e-3 rad/s.
+    paradoxes, forced
+        With friction, times that no mode of contact was consistent, and that accumulating events were ended more
+        coarsely than usual (``docs/contact.md``).
     closest_approach
         Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
-        p times it for the velocity); a small number means that the verdict was close to flipping.
+        p times it for the velocity); a small number means that the verdict was close to flipping.  NaN once a
+        block has slid or flown.
     """
 
     body: Body
     time: NDArray[np.float64]
     ground_acceleration: NDArray[np.float64]
+    position: NDArray[np.float64]
     theta: NDArray[np.float64]
     omega: NDArray[np.float64]
     alpha: NDArray[np.float64]
     state: NDArray[np.int64]
+    slides: NDArray[np.int64]
+    slip: NDArray[np.float64]
     events: pd.DataFrame
     overturned: bool
     overturned_body: str
@@ -81,10 +128,12 @@ class Response:
     friction_force: NDArray[np.float64]
     impacts: int
     grazings: int
+    paradoxes: int
+    forced: int
     closest_approach: float
 
     def plot(self, title: str = "") -> "Figure":
-        """Draw the ground's acceleration [g], rotations over the critical angle with impacts, and patterns."""
+        """Draw the ground's acceleration [g], rotations over the critical angle, any slip, and patterns."""
         # matplotlib is loaded only by those who draw
         from rockfrag.rocking.response_figure import response_figure
 
@@ -92,11 +141,20 @@ class Response:
 
     @property
     def pattern(self) -> NDArray[np.str_]:
-        """Pattern of rocking at each sample ("rest", "4a", …), shape (n,)."""
+        """Pattern of rocking at each sample ("rest", "4a", …, "flight"), shape (n,)."""
         state = self.state
         if state.shape[1] == 1:
             state = np.column_stack([np.zeros(len(state), dtype=int), state])
-        return np.array([PATTERNS[int(one), int(two)] for one, two in state])
+        return np.array([pattern_name(int(one), int(two)) for one, two in state])
+
+    @property
+    def mode(self) -> NDArray[np.str_]:
+        """What each interface does at each sample ("stands", "rocks right, slides left", …), shape (n, blocks)."""
+        codes = self.state * 3 + self.slides
+        known, which = np.unique(codes, return_inverse=True)
+        slides = (known + 1) % 3 - 1
+        names = [mode_name(int((c - s) // 3), int(s)) for c, s in zip(known, slides, strict=True)]
+        return np.array(names)[which.reshape(codes.shape)]
 
     @property
     def least_normal_force(self) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""One response: the ground's acceleration, the rotations, and the pattern of rocking."""
+"""One response: the ground's acceleration, the rotations, any slip, and the pattern of rocking."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,11 +18,11 @@ from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.response import Response
 from rockfrag.units import STANDARD_GRAVITY
 
-_PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b")
+_PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 
 def response_figure(response: Response, title: str) -> Figure:
-    """Draw acceleration [g], rotations over the critical angle with impacts, and the pattern over time."""
+    """Draw acceleration [g], rotations over the critical angle with impacts, slip and the pattern over time."""
     body = response.body
     single = isinstance(body, Block)
     critical = (
@@ -32,11 +32,14 @@ def response_figure(response: Response, title: str) -> Figure:
     )
     names = ["body"] if single else ["pedestal", "statue"]
     colours = [BLUE] if single else [ORANGE, BLUE]
+    slides = bool((response.slides != 0).any())
+    heights = [2, 3, 2, 2] if slides else [2, 3, 2]
     with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 4.2)
-        ground, rotation, pattern = figure.subplots(
-            3, 1, sharex=True, gridspec_kw={"height_ratios": [2, 3, 2]}
+        figure = new_figure(COLUMN_WIDTH, 0.6 * sum(heights))
+        panels = figure.subplots(
+            len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
         )
+        ground, rotation, *between, pattern = panels
         ground.plot(
             response.time, response.ground_acceleration / STANDARD_GRAVITY, color=BLACK, lw=0.5
         )
@@ -62,12 +65,24 @@ def response_figure(response: Response, title: str) -> Figure:
         if not single or len(impacts):
             rotation.legend(loc="upper right", ncols=3)
         if response.overturned:
-            for panel in (ground, rotation, pattern):
+            for panel in panels:
                 panel.axvline(response.overturning_time, color=RED, lw=0.8)
+        for panel in between:
+            _slips(panel, response, colours)
         _patterns(pattern, response)
         pattern.set_xlabel("Time [s]")
         pattern.set_xlim(0, response.time[-1])
         return figure
+
+
+def _slips(panel: Axes, response: Response, colours: list[str]) -> None:
+    """Draw how far each interface has slid."""
+    names = ["ground", "interface"]
+    for i, (name, colour) in enumerate(zip(names, colours, strict=False)):
+        panel.plot(response.time, 1000 * response.slip[:, i], color=colour, lw=0.8, label=name)
+    panel.set_ylabel("Slip [mm]")
+    if len(colours) > 1:
+        panel.legend(loc="upper right", ncols=2)
 
 
 def _patterns(panel: Axes, response: Response) -> None:

@@ -10,14 +10,17 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.body_record import Restitution, body_record
-from rockfrag.rocking.checks import real_array, shown
-from rockfrag.rocking.forces import contact_forces
+from rockfrag.rocking.contact.friction import FrictionInput, check_impacts_follow
+from rockfrag.rocking.contact.simulation import simulate_with_friction
+from rockfrag.rocking.forces import centres, contact_forces
 from rockfrag.rocking.inputs import (
     MOST_SAMPLES,
     STEP,
     MotionLike,
     checked_motion,
+    checked_start,
     checked_switch,
+    checked_vertical,
     free_samples,
     step_count,
     warn_if_weak,
@@ -57,20 +60,9 @@ def initial_state(
     """
     initial: np.void = np.zeros(1, STATE)[0]
     for name, given in (("theta", theta0), ("omega", omega0)):
-        initial[name + "1"], initial[name + "2"] = _pair_of_blocks(body, given, name + "0")
+        values = checked_start(body, given, name + "0")
+        initial[name + "1"], initial[name + "2"] = (0.0, *values)[-2:]
     return initial
-
-
-def _pair_of_blocks(body: Body, value: object, name: str) -> tuple[float, float]:
-    if value is None:
-        return 0.0, 0.0
-    blocks = 1 if isinstance(body, Block) else 2
-    values = np.atleast_1d(real_array(name, value))
-    if values.shape != (blocks,) or not np.isfinite(values).all():
-        raise InputError(f"{name}: expected {blocks} finite number(s), got {shown(value)}.")
-    if name == "theta0" and (np.abs(values) >= math.pi / 2).any():
-        raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
-    return (0.0, float(values[0])) if blocks == 1 else (float(values[0]), float(values[1]))
 
 
 def simulate(
@@ -82,9 +74,14 @@ def simulate(
     omega0: float | Sequence[float] | None = None,
     restitution: Restitution = None,
     linear: bool = False,
+    friction: FrictionInput | None = None,
+    vertical: MotionLike | None = None,
     g: float = STANDARD_GRAVITY,
 ) -> Response:
-    """Simulate the rocking of a block, or of a statue on its pedestal, under a horizontal motion.
+    """Simulate a block, or a statue on its pedestal, under the motion of the ground.
+
+    Without ``friction`` bodies rock and never slide; with it they stick, slide, rock, do both, fly and land
+    (``docs/contact.md``).
 
     Parameters
     ----------
@@ -102,6 +99,12 @@ def simulate(
         default, conserves momentum (thesis eq. 2.14, 2.76-2.86).
     linear
         Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
+    friction
+        Coefficient of friction of a lone block, (ground, interface) of a stack, or one number for both; a pair
+        (static, kinetic) may stand in place of each number, and numbers may be infinite.  None: nothing slides
+        and, without ``vertical``, nothing jumps.
+    vertical
+        Vertical acceleration of the ground or floor, upwards [m/s²], sampled as ``motion``.
     g
         Acceleration of gravity [m/s²].
 
@@ -113,6 +116,12 @@ def simulate(
     values, interval = checked_motion(motion, dt)
     warn_if_weak(values)
     record = body_record(body, restitution, checked_switch("linear", linear), g)
+    if friction is not None or vertical is not None:
+        check_impacts_follow(restitution, linear)
+        return simulate_with_friction(
+            body, values, interval, friction=math.inf if friction is None else friction,
+            vertical=checked_vertical(vertical, values, interval), theta0=theta0, omega0=omega0, g=g,
+        )  # fmt: skip
     initial = initial_state(body, theta0, omega0)
     shaking = shaking_of(body, values, interval, 1.0, g, STEP)
     most = values.size + shaking.free_samples
@@ -184,10 +193,13 @@ def _response(
         body=body,
         time=time,
         ground_acceleration=ground,
+        position=centres(body, state, theta),
         theta=theta,
         omega=omega,
         alpha=alpha,
         state=state,
+        slides=np.zeros_like(state),
+        slip=np.zeros_like(theta),
         events=_event_table(events, blocks),
         overturned=fallen > 0,
         overturned_body=("", "pedestal", "block" if isinstance(body, Block) else "statue")[fallen],
@@ -197,6 +209,8 @@ def _response(
         friction_force=friction,
         impacts=int(summary["impacts"]),
         grazings=int(summary["grazings"]),
+        paradoxes=0,
+        forced=0,
         closest_approach=float(summary["closest"]),
     )
 

@@ -1,12 +1,4 @@
-"""Blocks that slide, rock and fly: planar contact with Coulomb's friction (``docs/contact.md``)."""
+"""Blocks that slide, rock and fly: planar contact with Coulomb's friction (``docs/contact.md``).
 
-from rockfrag.rocking.contact.ensemble import ContactEnsemble, overturns_with_friction
-from rockfrag.rocking.contact.response import ContactResponse
-from rockfrag.rocking.contact.simulation import simulate_with_friction
-
-__all__ = [
-    "ContactEnsemble",
-    "ContactResponse",
-    "overturns_with_friction",
-    "simulate_with_friction",
-]
+:func:`rockfrag.rocking.simulate` and :func:`rockfrag.rocking.overturns` come here when given ``friction``.
+"""

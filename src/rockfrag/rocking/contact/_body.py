@@ -77,6 +77,7 @@ WORK = np.dtype(
         ("touching", INT, (2, 2)),
         ("moves", INT, (2,)),
         ("limit", F, (2,)),
+        ("old_v", F, (6,)),
         ("old_closed", INT, (2, 2)),
         ("old_slides", INT, (2,)),
         ("best_closed", INT, (2, 2)),

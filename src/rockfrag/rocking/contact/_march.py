@@ -4,6 +4,7 @@ import math
 
 from rockfrag.rocking.contact._modes import (
     approach,
+    kinetic_energy,
     project,
     settle,
     strike,
@@ -29,20 +30,23 @@ MOST_EVENTS = 300
 MOST_IDLE = 30
 """Events on the spot after which a step is taken without looking for more."""
 
-HISTORY = 22
-"""Columns of a history: q (6), v (6), slip (2), normal force (2), shear (2), work, rubbed, struck, mode."""
+HISTORY = 24
+"""Columns of a history: q (6), v (6), slip (2), normal force (2), shear (2), work, rubbed, struck, mode, angular
+acceleration (2)."""
 
-EVENT = 7
-"""Columns of the events: time, kind, mode before, mode after, slip of both interfaces, loss."""
-CHANGE, IMPACT, PARADOX, FALLEN = 0.0, 1.0, 2.0, 3.0
+EVENT = 14
+"""Columns of the events: time, kind, mode before and after, slip of both interfaces [m], kinetic energy before and
+after [J], rotations (2), angular velocities before (2) and after (2)."""
+CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
+"""Kinds of events: the last is a corner that passes an edge while nothing else changes."""
 
 
 @entry_kernel
 def march_cases(
-    first, last, bodies, horizontal, vertical, offsets, dts, factors, substeps, free_samples, closing,
+    cases, bodies, horizontal, vertical, offsets, dts, factors, substeps, free_samples, closing,
     starts, outcome, history, events, w,
 ):  # fmt: skip
-    """March the cases ``first`` to ``last`` of bodies × motions × scales, and keep their outcomes.
+    """March some ``cases`` of bodies × motions × scales, and keep their outcomes.
 
     Parameters
     ----------
@@ -56,7 +60,7 @@ def march_cases(
     """
     scales = factors.shape[1]
     motions = factors.shape[0]
-    for case in range(first, last):
+    for case in cases:
         b = case // (motions * scales)
         m = case // scales - b * motions
         scale = factors[m, case - (b * motions + m) * scales]
@@ -232,12 +236,16 @@ def _begin(p, w, start):
         w.q[d] = start[0, d]
         w.v[d] = start[1, d]
         w.a[d] = 0.0
+    look_at(p, w, w.q)
     for k in range(2):
         w.slides[k] = 0
         for end in range(2):
             w.closed[k, end] = 0
             w.kind[k, end] = 0
             w.touching[k, end] = 0
+            if k < p.count:
+                _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
+                w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
     w.work = w.rubbed = w.struck = 0.0
     for k in range(2):
         w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
@@ -292,15 +300,18 @@ def _handle(p, w, time, ah, av, closing, all_ends, exclude, events, count):
     -------
     Number of events so far.
     """
+    for d in range(3 * p.count):
+        w.old_v[d] = w.v[d]
     for k in range(2):
         w.old_slides[k] = w.slides[k]
         for end in range(2):
             w.old_closed[k, end] = w.closed[k, end]
+    passes = False
     if not all_ends:
         for k in range(p.count):
             if w.fails[k, FALL] == 1:
                 w.fallen = k + 1
-                return _note(p, w, time, FALLEN, 0.0, events, count)
+                return _note(p, w, time, FALLEN, events, count)
     look_at(p, w, w.q)
     for k in range(p.count):
         leaves0, leaves1 = 0, 0
@@ -309,6 +320,7 @@ def _handle(p, w, time, ah, av, closing, all_ends, exclude, events, count):
                 if w.closed[k, end] == 1 and w.fails[k, GAP + end] == 1:
                     exclude = True
                 if w.closed[k, end] == 1 and w.fails[k, EDGE + end] == 1:
+                    passes = True
                     if w.closed[k, 1 - end] == 1:
                         w.kind[k, end] = 1 - w.kind[k, end]
                     elif end == 0:
@@ -337,8 +349,7 @@ def _handle(p, w, time, ah, av, closing, all_ends, exclude, events, count):
         if leaves1 == 1:
             w.touching[k, 1] = 0
     _shut(p, w)
-    kind = CHANGE
-    lost = w.struck
+    kind = PASSING if passes else CHANGE
     hit = False
     for k in range(p.count):
         for end in range(2):
@@ -360,7 +371,7 @@ def _handle(p, w, time, ah, av, closing, all_ends, exclude, events, count):
             w.slips += 1
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
             w.flights += 1
-    return _note(p, w, time, kind, w.struck - lost, events, count)
+    return _note(p, w, time, kind, events, count)
 
 
 @kernel
@@ -433,19 +444,25 @@ def _mode_number(p, closed, slides):
 
 
 @kernel
-def _note(p, w, time, kind, loss, events, count):
+def _note(p, w, time, kind, events, count):
+    """Write an event, if there is room; return the number of events so far."""
     before = _mode_number(p, w.old_closed, w.old_slides)
     after = _mode_number(p, w.closed, w.slides)
     if kind == CHANGE and before == after:
         return count
     if count < events.shape[0]:
-        events[count, 0] = time
-        events[count, 1] = kind
-        events[count, 2] = before
-        events[count, 3] = after
+        event = events[count]
+        event[0] = time
+        event[1] = kind
+        event[2] = before
+        event[3] = after
+        event[6] = kinetic_energy(p, w.old_v)
+        event[7] = kinetic_energy(p, w.v)
         for k in range(p.count):
-            events[count, 4 + k] = slip(p, w, k)
-        events[count, 6] = loss
+            event[4 + k] = slip(p, w, k)
+            event[8 + k] = w.q[3 * k + 2]
+            event[10 + k] = w.old_v[3 * k + 2]
+            event[12 + k] = w.v[3 * k + 2]
     return count + 1
 
 
@@ -479,6 +496,7 @@ def _keep(p, w, i, ah, av, history):
         history[i, 12 + k] = slip(p, w, k)
         history[i, 14 + k] = w.normal[k, 0] + w.normal[k, 1]
         history[i, 16 + k] = w.shear[k]
+        history[i, 22 + k] = w.out[3 * k + 2]
     history[i, 18] = w.work
     history[i, 19] = w.rubbed
     history[i, 20] = w.struck

@@ -229,11 +229,11 @@ def settle(p, w, ah, av, exclude):
 
 
 @kernel
-def kinetic_energy(p, w):
-    """Kinetic energy relative to the ground [J]."""
+def kinetic_energy(p, v):
+    """Kinetic energy of the velocities ``v`` relative to the ground [J]."""
     total = 0.0
     for d in range(3 * p.count):
-        total += 0.5 * w.v[d] * w.v[d] / p.inverse[d]
+        total += 0.5 * v[d] * v[d] / p.inverse[d]
     return total
 
 
@@ -244,7 +244,7 @@ def strike(p, w, ah, av, closing, push):
     ``closing``: speed [m/s] below which a contact that parts and would fall shut again stays closed.  ``push``:
     nothing approaches, but no mode was consistent; see ``docs/contact.md``, 7.
     """
-    before = kinetic_energy(p, w)
+    before = kinetic_energy(p, w.v)
     for k in range(p.count):
         w.moves[k] = 0
         w.limit[k] = p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
@@ -263,7 +263,7 @@ def strike(p, w, ah, av, closing, push):
         for d in range(3 * p.count):
             w.v[d] = w.out[d]
     project(p, w)
-    w.struck += before - kinetic_energy(p, w)
+    w.struck += before - kinetic_energy(p, w.v)
     w.impacts += 1
 
 

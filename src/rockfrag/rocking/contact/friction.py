@@ -1,6 +1,7 @@
 """What a user says about friction, checked: static and kinetic coefficients of each interface."""
 
 import math
+import numbers
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
+from rockfrag.rocking.checks import shown
 
 
 class Friction(NamedTuple):
@@ -25,7 +27,9 @@ FrictionInput = float | Sequence[float | tuple[float, float]]
 """A number for a lone block; (ground, interface) for a stack; a pair (static, kinetic) in place of a number."""
 
 
-def interface_frictions(body: Body, friction: FrictionInput) -> tuple[Friction, ...]:
+def interface_frictions(
+    body: Body, friction: FrictionInput, name: str = "friction"
+) -> tuple[Friction, ...]:
     """Return the friction of each interface of a body, the ground first.
 
     Parameters
@@ -42,37 +46,84 @@ def interface_frictions(body: Body, friction: FrictionInput) -> tuple[Friction, 
         If the numbers do not fit the body, one is negative or not a number, or a static coefficient is
         less than the kinetic one.
     """
-    if isinstance(friction, (int, float, np.number)):
+    if isinstance(friction, numbers.Real) and not isinstance(friction, (bool, np.bool_)):
         given: list[object] = [friction] * (1 if isinstance(body, Block) else 2)
     elif isinstance(body, Block):
         given = [friction]
     else:
-        if not isinstance(friction, (list, tuple)) or len(friction) != 2:
+        if not isinstance(friction, (list, tuple, np.ndarray)) or len(friction) != 2:
             raise InputError(
-                f"friction: a stack takes (ground, interface), each a coefficient or a pair (static, "
-                f"kinetic), got {friction!r}."
+                f"{name}: a stack takes (ground, interface), each a coefficient or a pair (static, "
+                f"kinetic), got {shown(friction)}."
             )
         given = list(friction)
-    names = ("ground", "interface")
-    return tuple(_one(name, value) for name, value in zip(names, given, strict=False))
+    places = ("ground", "interface")
+    return tuple(
+        _one(f"{name} of the {place}", value) for place, value in zip(places, given, strict=False)
+    )
+
+
+def listed_frictions(
+    bodies: Sequence[Body], friction: FrictionInput | Sequence[FrictionInput]
+) -> list[tuple[Friction, ...]]:
+    """Return the friction of each interface of each body; one number holds everywhere.
+
+    Raises
+    ------
+    InputError
+        If there is not one entry for each body, or one does not fit its body.
+    """
+    if isinstance(friction, numbers.Real):
+        friction = [friction] * len(bodies)  # type: ignore[list-item]
+    if not isinstance(friction, (list, tuple, np.ndarray)) or len(friction) != len(bodies):
+        raise InputError(
+            f"friction: expected a number or a list with {len(bodies)} entries, one per body, "
+            f"got {shown(friction)}."
+        )
+    return [
+        interface_frictions(body, one, f"friction[{i}]")  # type: ignore[arg-type]
+        for i, (body, one) in enumerate(zip(bodies, friction, strict=True))
+    ]
+
+
+def check_impacts_follow(restitution: object, linear: bool) -> None:
+    """Refuse what bodies that slide and fly cannot have.
+
+    Raises
+    ------
+    InputError
+        For a measured restitution or linearised equations.
+    """
+    if linear:
+        raise InputError(
+            "linear: with friction or vertical motion only the full equations are solved."
+        )
+    if _is_measured(restitution):
+        raise InputError(
+            "restitution: with friction or vertical motion the impacts follow from Coulomb's law; leave it out."
+        )
+
+
+def _is_measured(restitution: object) -> bool:
+    if isinstance(restitution, (list, tuple, np.ndarray)):
+        return any(_is_measured(one) for one in restitution)
+    return restitution is not None
 
 
 def _one(name: str, value: object) -> Friction:
-    pair = (value, value) if isinstance(value, (int, float, np.number)) else value
-    if not isinstance(pair, (list, tuple)) or len(pair) != 2:
+    pair = (value, value) if isinstance(value, numbers.Real) else value
+    if not isinstance(pair, (list, tuple, np.ndarray)) or len(pair) != 2:
         raise InputError(
-            f"friction of the {name}: expected a coefficient or a pair, got {value!r}."
+            f"{name}: expected a coefficient or a pair (static, kinetic), got {shown(value)}."
         )
     for number in pair:
-        known = isinstance(number, (int, float, np.number)) and not isinstance(number, bool)
+        known = isinstance(number, numbers.Real) and not isinstance(number, (bool, np.bool_))
         if not known or math.isnan(number) or number < 0:
-            raise InputError(
-                f"friction of the {name}: a coefficient is 0 or more, got {number!r} in {value!r}."
-            )
+            raise InputError(f"{name}: a coefficient is 0 or more, got {shown(number)}.")
     static, kinetic = (min(float(number), ROUGHEST) for number in pair)
     if kinetic > static:
         raise InputError(
-            f"friction of the {name}: the static coefficient {static} is less than the kinetic one "
-            f"{kinetic}; give (static, kinetic)."
+            f"{name}: the static coefficient {static:g} is less than the kinetic one {kinetic:g}; "
+            "give (static, kinetic)."
         )
     return Friction(static, kinetic)

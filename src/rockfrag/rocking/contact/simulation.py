@@ -7,28 +7,43 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
+from rockfrag.rocking.checks import positive_number
 from rockfrag.rocking.contact._body import contact_body, posed, working_memory
-from rockfrag.rocking.contact._march import EVENT, HISTORY, march
+from rockfrag.rocking.contact._march import (
+    CHANGE,
+    EVENT,
+    FALLEN,
+    HISTORY,
+    IMPACT,
+    PARADOX,
+    PASSING,
+    march,
+)
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
-from rockfrag.rocking.contact.response import ContactResponse, mode_names
 from rockfrag.rocking.inputs import (
     STEP,
     checked_motion,
+    checked_start,
+    checked_vertical,
     free_samples,
     step_count,
-    warn_if_weak,
 )
 from rockfrag.rocking.kernels.jit import compiling_alone
+from rockfrag.rocking.kernels.single import GRAZING_SPEED
+from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name
 from rockfrag.units import STANDARD_GRAVITY
 
 Array = NDArray[np.float64]
+Modes = tuple[tuple[int, int], ...]
+"""Contact state and sign of slip of each interface."""
 
 CLOSING = 1e-6
 """Parting speed over √(g b) below which a contact stays closed after an impact, where the history is kept."""
 
-_KINDS = ("change", "impact", "paradox", "fall")
+_KINDS = {IMPACT: "impact", PARADOX: "paradox", FALLEN: "fall", PASSING: "edge"}
+_STATES = (FLIGHT, -1, +1, 0)
+"""Contact state of an interface whose closed ends are the bits (left, right) of a number."""
 
 
 def simulate_with_friction(
@@ -43,27 +58,13 @@ def simulate_with_friction(
     g: float = STANDARD_GRAVITY,
     step: float = STEP,
     closing: float = CLOSING,
-) -> ContactResponse:
-    """Simulate a block, or a statue on its pedestal, that may slide, rock and fly.
+) -> Response:
+    """Simulate a block, or a statue on its pedestal, that may slide, rock and fly, by the contact kernels alone.
 
     Parameters
     ----------
-    body
-        A :class:`Block` or a :class:`Stack`.
-    acceleration
-        Horizontal acceleration of the ground or floor [m/s²], shape (n,), linear between samples and zero one
-        sample after the last, n ≥ 2.
-    dt
-        Sampling interval [s].
-    friction
-        Coefficient of friction, or a pair (static, kinetic), of a lone block; (ground, interface) of a stack.
-    vertical
-        Vertical acceleration, upwards [m/s²], shape (n,).
-    theta0, omega0
-        Rotations [rad] and angular velocities [rad/s] at the start, about the corners that these leave: a
-        number, or (pedestal, statue).
-    g
-        Acceleration of gravity [m/s²].
+    body, acceleration, dt, friction, vertical, theta0, omega0, g
+        As in :func:`rockfrag.rocking.simulate`.
     step
         Largest product of the frequency parameter and the step [-].
     closing
@@ -75,16 +76,13 @@ def simulate_with_friction(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    values, _ = checked_motion(acceleration, dt, "acceleration")
-    up = np.zeros(0) if vertical is None else checked_motion(vertical, dt, "vertical")[0]
-    if up.size not in (0, values.size):
-        raise InputError(f"vertical: {up.size} samples for {values.size} horizontal ones.")
-    warn_if_weak(values)
-    frictions = interface_frictions(body, friction)
-    p = contact_body(body, frictions, g)
+    values, interval = checked_motion(acceleration, dt)
+    up = checked_vertical(vertical, values, interval)
+    positive_number("g", g, "m/s²")
+    p = contact_body(body, interface_frictions(body, friction), g)
     blocks = int(p["count"])
-    start = posed(p, _start(theta0, blocks, "theta0"), _start(omega0, blocks, "omega0"))
-    free = int(free_samples(body, dt, g))
+    start = posed(p, checked_start(body, theta0, "theta0"), checked_start(body, omega0, "omega0"))
+    substeps, free = int(step_count(body, interval, g, step)), int(free_samples(body, interval, g))
     history = np.zeros((values.size + free, HISTORY))
     work = working_memory()
     capacity = 4096
@@ -92,85 +90,136 @@ def simulate_with_friction(
         events = np.zeros((capacity, EVENT))
         with compiling_alone(march):
             done, count, fall = march(
-                p, values, up, float(dt), 1.0, int(step_count(body, dt, g, step)), free, start, closing,
-                history, events, work,
-            )  # fmt: skip
+                p, values, up, interval, 1.0, substeps, free, start, closing, history, events, work
+            )
         if count <= capacity:
             break
         capacity = count
-    history = history[:done]
-    time = np.arange(done, dtype=np.float64) * float(dt)
+    history, events = history[:done], events[:count]
+    time = np.arange(done, dtype=np.float64) * interval
     centres = history[:, :6].reshape(done, 2, 3)[:, :blocks]
     speeds = history[:, 6:12].reshape(done, 2, 3)[:, :blocks]
+    modes = [_modes(number, blocks) for number in history[:, 21]]
     fallen = int(work["fallen"])
     names = ("", "block") if isinstance(body, Block) else ("", "pedestal", "statue")
-    return ContactResponse(
+    table = _event_table(events, blocks)
+    ground = np.zeros(done)
+    ground[: min(done, values.size)] = values[:done]
+    return Response(
         body=body,
         time=time,
+        ground_acceleration=ground,
         position=centres[:, :, :2],
         theta=centres[:, :, 2],
         omega=speeds[:, :, 2],
+        alpha=history[:, 22 : 22 + blocks],
+        state=np.array([[state for state, _ in mode] for mode in modes]),
+        slides=np.array([[slides for _, slides in mode] for mode in modes]),
         slip=history[:, 12 : 12 + blocks],
-        mode=np.array([mode_names(int(x), blocks) for x in history[:, 21]]),
-        events=_event_table(events[:count], blocks),
+        events=table,
         overturned=fallen > 0,
         overturned_body=names[fallen],
         overturning_time=float(fall),
-        energy=_energy_table(p, time, history, centres, speeds),
+        energy=_energy_table(p, time, history, events),
         normal_force=history[:, 14 : 14 + blocks],
         friction_force=history[:, 16 : 16 + blocks],
         impacts=int(work["impacts"]),
+        grazings=_grazings(table),
         paradoxes=int(work["paradoxes"]),
         forced=int(work["forced"]),
+        closest_approach=float("nan"),
     )
 
 
-def _start(value: float | Sequence[float] | None, blocks: int, name: str) -> Array:
-    """Rotations or angular velocities at the start, shape (2,)."""
-    start = np.zeros(2)
-    if value is not None:
-        values = np.atleast_1d(np.asarray(value, dtype=float))
-        if values.shape != (blocks,) or not np.isfinite(values).all():
-            raise InputError(f"{name}: expected {blocks} finite number(s), got {value!r}.")
-        if name == "theta0" and (np.abs(values) >= np.pi / 2).any():
-            raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
-        start[:blocks] = values
-    return start
+def _modes(number: float, blocks: int) -> Modes:
+    """Contact states and signs of slip in the number that the kernels keep."""
+    digits = [(int(number) >> (4 * k)) & 15 for k in range(blocks)]
+    return tuple((_STATES[digit & 3], (digit >> 2) - 1) for digit in digits)
 
 
 def _event_table(events: Array, blocks: int) -> pd.DataFrame:
-    rows: list[dict[str, Any]] = [
-        {
-            "time": row[0],
-            "kind": _KINDS[int(row[1])],
-            "from": mode_names(int(row[2]), blocks),
-            "to": mode_names(int(row[3]), blocks),
-            "slip": tuple(row[4 : 4 + blocks].tolist()),
-            "loss": row[6],
-        }
-        for row in events
-    ]
-    return pd.DataFrame(rows, columns=["time", "kind", "from", "to", "slip", "loss"])
+    rows: list[dict[str, Any]] = []
+    for event in events:
+        before, after = _modes(event[2], blocks), _modes(event[3], blocks)
+        rows.append(
+            {
+                "time": event[0],
+                "kind": _KINDS.get(int(event[1])) or _kind_of_change(before, after),
+                "from": _pattern(before),
+                "to": _pattern(after),
+                "omega_before": tuple(event[10 : 10 + blocks].tolist()),
+                "omega_after": tuple(event[12 : 12 + blocks].tolist()),
+                "theta": tuple(event[8 : 8 + blocks].tolist()),
+                "energy_before": event[6],
+                "energy_after": event[7],
+                "modes": tuple(mode_name(*mode) for mode in after),
+                "slip": tuple(event[4 : 4 + blocks].tolist()),
+            }
+        )
+    columns = [
+        "time", "kind", "from", "to", "omega_before", "omega_after", "theta",
+        "energy_before", "energy_after", "modes", "slip",
+    ]  # fmt: skip
+    return pd.DataFrame(rows, columns=columns)
 
 
-def _energy_table(
-    p: np.void, time: Array, history: Array, centres: Array, speeds: Array
-) -> pd.DataFrame:
-    blocks = centres.shape[1]
-    mass, inertia = p["mass"][:blocks], p["inertia"][:blocks]
-    kinetic = (mass * (speeds[:, :, 0] ** 2 + speeds[:, :, 1] ** 2) / 2).sum(axis=1)
-    kinetic += (inertia * speeds[:, :, 2] ** 2 / 2).sum(axis=1)
-    potential = float(p["g"]) * (mass * centres[:, :, 1]).sum(axis=1)
-    work, rubbed, struck = history[:, 18], history[:, 19], history[:, 20]
-    start = kinetic[0] + struck[0] + potential[0]
+def _kind_of_change(before: Modes, after: Modes) -> str:
+    """Name of an event without an impact: what opens first, then what slides."""
+    pairs = list(zip(before, after, strict=True))
+    assert CHANGE not in _KINDS
+    if any(new[0] == FLIGHT and old[0] != FLIGHT for old, new in pairs):
+        return "flight"
+    if any(new[0] != 0 and old[0] == 0 for old, new in pairs):
+        return "opening"
+    if any(new[0] != old[0] for old, new in pairs):
+        return "closing"
+    return "slip" if any(new[1] not in (0, old[1]) for old, new in pairs) else "stick"
+
+
+def _pattern(modes: Modes) -> str:
+    states = [state for state, _ in modes]
+    return pattern_name(states[0] if len(states) > 1 else 0, states[-1])
+
+
+def _grazings(events: pd.DataFrame) -> int:
+    """Impacts that met with less than the speed of grazing."""
+    speeds = [np.abs(np.diff([0.0, *omega])).max() for omega in events["omega_before"]]
+    return int(((events["kind"] == "impact") & (np.array(speeds) < GRAZING_SPEED)).sum())
+
+
+def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.DataFrame:
+    """Ledger of energy by cause over time [J]."""
+    blocks = int(p["count"])
+    coordinates = slice(0, 3 * blocks)
+    inertia = 1.0 / p["inverse"][coordinates]
+    kinetic = (inertia * history[:, 6:12][:, coordinates] ** 2).sum(axis=1) / 2
+    potential = float(p["g"]) * (p["mass"] * history[:, [1, 4]]).sum(axis=1)
+    struck = np.isin(events[:, 1], (IMPACT, PARADOX))
+    loss = np.where(struck, events[:, 6] - events[:, 7], 0.0)
+    # an impact closes the ground if the pedestal's contact changed, the interface otherwise
+    by_ground = np.array([_meets_ground(event, blocks) for event in events], dtype=bool)
+    at = np.searchsorted(time, events[:, 0] - 1e-12 * max(1.0, time[-1]))
+    lost = np.zeros((2, time.size + 1))
+    for row, mine in enumerate((by_ground, ~by_ground)):
+        np.add.at(lost[row], at, loss * mine)
+    ground, interface = np.cumsum(lost, axis=1)[:, : time.size]
+    work, rubbed = history[:, 18], history[:, 19]
+    start = kinetic[0] + potential[0] + ground[0] + interface[0]
     return pd.DataFrame(
         {
             "time": time,
             "kinetic": kinetic,
             "potential": potential,
             "input": work,
+            "lost_ground": ground,
+            "lost_interface": interface,
             "lost_friction": rubbed,
-            "lost_impacts": struck,
-            "residual": kinetic + potential + rubbed + struck - work - start,
+            "residual": kinetic + potential + ground + interface + rubbed - work - start,
         }
     )
+
+
+def _meets_ground(event: Array, blocks: int) -> bool:
+    """Whether the pedestal's contact changes, as it comes down."""
+    before, after = (_modes(number, blocks)[0][0] for number in event[2:4])
+    return blocks == 2 and before not in (0, after)
