@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 
 from rockfrag import Block
-from rockfrag.rocking.contact import simulate_with_friction
+from rockfrag.rocking import simulate
 from rockfrag.units import STANDARD_GRAVITY as G
 
 MODES = ("stands", "slides left", "rocks left", "rocks left, slides left")
@@ -25,8 +25,8 @@ COLOURS = (
 
 
 def first_mode(block: Block, acceleration: float, friction: float) -> int:
-    response = simulate_with_friction(block, np.full(2, acceleration), 1e-4, friction=friction)
-    return MODES.index(response.events["to"].iloc[0][0])
+    response = simulate(block, np.full(2, acceleration), 1e-4, friction=friction)
+    return MODES.index(str(response.mode[0, 0]))
 
 
 def demand(block: Block, acceleration: np.ndarray) -> np.ndarray:

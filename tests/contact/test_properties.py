@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag import read_motion
-from rockfrag.rocking import Block, Stack, overturns
+from rockfrag.rocking import Block, Response, Stack, overturns
 from rockfrag.rocking.contact.simulation import simulate_with_friction
 
 from .cases import (
@@ -38,8 +38,10 @@ def energies(body: Block | Stack) -> float:
     return 9.81 * sum(block.mass * block.h for block in blocks)
 
 
-def first_events(events: object, count: int) -> list[float]:
-    return list(events["time"][:count])
+def until_the_eighth_event(response: Response) -> int:
+    """Number of samples before the eighth event; all if there are fewer."""
+    times = response.events["time"].tolist()
+    return int(np.searchsorted(response.time, times[7] if len(times) > 7 else math.inf))
 
 
 @settings(max_examples=60, deadline=None)
@@ -75,7 +77,7 @@ def test_the_mirror_image_moves_as_the_mirror_image(seed: int) -> None:
     motion, up, mu = random_motion(rng), 0.5 * random_motion(rng), rng.uniform(0.2, 0.8)
     one = simulate_with_friction(block, motion, DT, friction=mu, vertical=up)
     other = simulate_with_friction(mirrored, -motion, DT, friction=mu, vertical=up)
-    n = np.searchsorted(one.time, [*first_events(one.events, 8), math.inf][-2])
+    n = until_the_eighth_event(one)
     np.testing.assert_allclose(one.theta[:n], -other.theta[:n], atol=1e-9)
     np.testing.assert_allclose(one.slip[:n], -other.slip[:n], atol=1e-9)
 
@@ -98,9 +100,7 @@ def test_a_larger_model_moves_alike_in_longer_time(seed: int, ratio: float) -> N
     other = simulate_with_friction(
         scaled(ratio), motion, DT * math.sqrt(ratio), friction=mus, vertical=up
     )
-    n = min(
-        np.searchsorted(one.time, [*first_events(one.events, 8), math.inf][-2]), len(other.time)
-    )
+    n = min(until_the_eighth_event(one), len(other.time))
     np.testing.assert_allclose(one.theta[:n], other.theta[:n], atol=1e-7)
     np.testing.assert_allclose(one.slip[:n], other.slip[:n] / ratio, atol=1e-7)
 
@@ -114,7 +114,7 @@ def test_a_later_motion_is_followed_later(seed: int) -> None:
     other = simulate_with_friction(
         body, np.append(wait, motion), DT, friction=friction, vertical=np.append(wait, up)
     )
-    n = np.searchsorted(one.time, [*first_events(one.events, 8), math.inf][-2])
+    n = until_the_eighth_event(one)
     np.testing.assert_allclose(one.theta[:n], other.theta[37 : n + 37], atol=1e-9)
 
 

@@ -114,7 +114,7 @@ UNUSABLE = [
     (simulated(friction=math.nan), "friction of the ground: a coefficient is 0 or more, got nan"),
     (simulated(friction=(0.3, 0.4)), "the static coefficient 0.3 is less than the kinetic one 0.4"),
     (simulated(STACK, friction=(0.3,)), "friction: a stack takes (ground, interface)"),
-    (simulated(friction=True), "friction of the ground: expected a coefficient or a pair"),
+    (simulated(friction=True), "friction of the ground: a coefficient is 0 or more, got True"),
     (
         simulated(friction=0.4, linear=True),
         "linear: with friction or vertical motion only the full",

@@ -1,5 +1,6 @@
 """Many bodies × motions × amplitudes at once."""
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -213,8 +214,9 @@ def overturns(
         up = listed_vertical(vertical, values, dts)
         checked_scales(factors, up or values)
         if result.overturned.size:
-            starts = [_starts(body_list, theta0, "theta0"), _starts(body_list, omega0, "omega0")]
-            _fill_with_friction(result, setting, Standing(body_list, frictions, *starts), up)
+            angles = _starts(body_list, theta0, "theta0")
+            standing = Standing(body_list, frictions, angles, _starts(body_list, omega0, "omega0"))
+            _fill_with_friction(result, setting, standing, up)
         return result
     if not result.overturned.size:
         return result

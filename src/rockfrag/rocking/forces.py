@@ -45,23 +45,36 @@ def centres(body: Body, state: NDArray[np.int64], theta: Array) -> Array:
     x and y, shape (n, blocks, 2).
     """
     found = np.zeros((*theta.shape, 2))
+    sine, cosine = _sines(theta)
     signs = np.where(state == 0, 1, state)
+
+    def turned(arm: Vector, rows: NDArray[np.bool_], block: int) -> Array:
+        s, c = sine[rows, block], cosine[rows, block]
+        return np.column_stack([arm.x * c + arm.y * s, -arm.x * s + arm.y * c])
+
     if isinstance(body, Block):
         for pole in (+1, -1):
             rows = signs[:, 0] == pole
-            found[rows, 0] = np.transpose(_turned(body.arm(pole), theta[rows, 0]))
+            found[rows, 0] = turned(body.arm(pole), rows, 0)
             found[rows, 0, 0] += body.centre.x - body.arm(pole).x
         return found
     for one in (+1, -1):
         arm = body.pedestal.arm(one)
         for two in (+1, -1):
             rows = (signs[:, 0] == one) & (signs[:, 1] == two)
-            first, second = theta[rows, 0], theta[rows, 1]
-            found[rows, 0] = np.transpose(_turned(arm, first))
-            found[rows, 1] = np.transpose(_turned(body.reach(one, two), first))
-            found[rows, 1] += np.transpose(_turned(body.statue_arm(two), second))
+            found[rows, 0] = turned(arm, rows, 0)
+            found[rows, 1] = turned(body.reach(one, two), rows, 0)
+            found[rows, 1] += turned(body.statue_arm(two), rows, 1)
             found[rows, :, 0] += body.pedestal.centre.x - arm.x
     return found
+
+
+def _sines(theta: Array) -> tuple[Array, Array]:
+    """Sine and cosine of rotations, the same on every processor."""
+    sine, cosine = np.empty_like(theta), np.empty_like(theta)
+    with compiling_alone(fill_sines):
+        fill_sines(theta, sine, cosine)
+    return sine, cosine
 
 
 def contact_forces(
@@ -88,9 +101,7 @@ def contact_forces(
     """
     normal = np.zeros_like(theta)
     friction = np.zeros_like(theta)
-    sine, cosine = np.empty_like(theta), np.empty_like(theta)
-    with compiling_alone(fill_sines):
-        fill_sines(theta, sine, cosine)
+    sine, cosine = _sines(theta)
 
     def turning(rows: NDArray[np.bool_], block: int) -> _Turning:
         return _Turning(*(values[rows, block] for values in (sine, cosine, omega, alpha)))

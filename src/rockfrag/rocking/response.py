@@ -154,7 +154,7 @@ class Response:
         known, which = np.unique(codes, return_inverse=True)
         slides = (known + 1) % 3 - 1
         names = [mode_name(int((c - s) // 3), int(s)) for c, s in zip(known, slides, strict=True)]
-        return np.array(names)[which.reshape(codes.shape)]
+        return np.asarray(np.array(names)[which.reshape(codes.shape)])
 
     @property
     def least_normal_force(self) -> NDArray[np.float64]:

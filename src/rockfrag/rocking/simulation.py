@@ -20,7 +20,6 @@ from rockfrag.rocking.inputs import (
     checked_motion,
     checked_start,
     checked_switch,
-    checked_vertical,
     free_samples,
     step_count,
     warn_if_weak,
@@ -120,7 +119,7 @@ def simulate(
         check_impacts_follow(restitution, linear)
         return simulate_with_friction(
             body, values, interval, friction=math.inf if friction is None else friction,
-            vertical=checked_vertical(vertical, values, interval), theta0=theta0, omega0=omega0, g=g,
+            vertical=vertical, theta0=theta0, omega0=omega0, g=g,
         )  # fmt: skip
     initial = initial_state(body, theta0, omega0)
     shaking = shaking_of(body, values, interval, 1.0, g, STEP)

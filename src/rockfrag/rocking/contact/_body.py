@@ -4,6 +4,7 @@ Bodies are numbered from below; interface k lies under body k.  Ends of an inter
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,9 +159,7 @@ def working_memory() -> np.void:
     return work
 
 
-def posed(
-    p: np.void, theta: NDArray[np.float64], omega: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray[np.float64]:
     """Coordinates and velocities, shape (2, 6), of bodies turned about the corners that this leaves them."""
     start = np.zeros((2, 6))
     standing = p["standing"]

@@ -28,7 +28,7 @@ FrictionInput = float | Sequence[float | tuple[float, float]]
 
 
 def interface_frictions(
-    body: Body, friction: FrictionInput, name: str = "friction"
+    body: Body, friction: object, name: str = "friction"
 ) -> tuple[Friction, ...]:
     """Return the friction of each interface of a body, the ground first.
 
@@ -46,7 +46,7 @@ def interface_frictions(
         If the numbers do not fit the body, one is negative or not a number, or a static coefficient is
         less than the kinetic one.
     """
-    if isinstance(friction, numbers.Real) and not isinstance(friction, (bool, np.bool_)):
+    if isinstance(friction, numbers.Real):
         given: list[object] = [friction] * (1 if isinstance(body, Block) else 2)
     elif isinstance(body, Block):
         given = [friction]
@@ -63,9 +63,7 @@ def interface_frictions(
     )
 
 
-def listed_frictions(
-    bodies: Sequence[Body], friction: FrictionInput | Sequence[FrictionInput]
-) -> list[tuple[Friction, ...]]:
+def listed_frictions(bodies: Sequence[Body], friction: object) -> list[tuple[Friction, ...]]:
     """Return the friction of each interface of each body; one number holds everywhere.
 
     Raises
@@ -74,14 +72,14 @@ def listed_frictions(
         If there is not one entry for each body, or one does not fit its body.
     """
     if isinstance(friction, numbers.Real):
-        friction = [friction] * len(bodies)  # type: ignore[list-item]
+        friction = [friction] * len(bodies)
     if not isinstance(friction, (list, tuple, np.ndarray)) or len(friction) != len(bodies):
         raise InputError(
             f"friction: expected a number or a list with {len(bodies)} entries, one per body, "
             f"got {shown(friction)}."
         )
     return [
-        interface_frictions(body, one, f"friction[{i}]")  # type: ignore[arg-type]
+        interface_frictions(body, one, f"friction[{i}]")
         for i, (body, one) in enumerate(zip(bodies, friction, strict=True))
     ]
 

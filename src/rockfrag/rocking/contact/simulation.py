@@ -23,6 +23,7 @@ from rockfrag.rocking.contact._march import (
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.inputs import (
     STEP,
+    MotionLike,
     checked_motion,
     checked_start,
     checked_vertical,
@@ -52,7 +53,7 @@ def simulate_with_friction(
     dt: float,
     *,
     friction: FrictionInput,
-    vertical: ArrayLike | None = None,
+    vertical: MotionLike | None = None,
     theta0: float | Sequence[float] | None = None,
     omega0: float | Sequence[float] | None = None,
     g: float = STANDARD_GRAVITY,
