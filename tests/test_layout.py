@@ -9,7 +9,7 @@ import pytest
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "rockfrag"
 ROOMS = (
     *("records", "motions", "building", "rocking", "shaketable", "fragility", "pedestal"),
-    *("study", "stages", "report", "thesis"),
+    *("study", "stages", "report", "assess", "thesis"),
 )
 """From left to right; a room imports from those before it."""
 

@@ -1,4 +1,4 @@
-"""The command line: what is in a record, how a body rocks, whether a configuration is right."""
+"""The command line: whether an object topples, what is in a record, how a body rocks, whether a study is right."""
 
 import argparse
 import os
@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TextIO
 
 from rockfrag import __version__
+from rockfrag.assess.commands import add_assess_command
 from rockfrag.errors import InputError
 from rockfrag.record_commands import add_record_commands
 from rockfrag.units import quantity
@@ -56,6 +57,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"rockfrag {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
+    add_assess_command(commands)
     add_record_commands(commands)
 
     one = commands.add_parser("simulate", help="shake one body by one record")

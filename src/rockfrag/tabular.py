@@ -157,7 +157,24 @@ def read_cells(path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
     InputError
         If the file cannot be read, is larger than :data:`MOST_BYTES`, or is not CSV in UTF-8.
     """
-    text = read_text(path, MOST_BYTES)
+    return cells_of(read_text(path, MOST_BYTES), path)
+
+
+def cells_of(text: str, path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
+    """Cells of every line of a text that is neither empty nor a comment, with the number of the line.
+
+    Parameters
+    ----------
+    text
+        The table.
+    path
+        Where it comes from, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is not CSV.
+    """
     numbered = [
         (number, line)
         for number, line in enumerate(text.splitlines(), start=1)

@@ -29,12 +29,26 @@ _INERTIAS = {
     "t_m2": (1000.0, 1.0),
     "lb_ft2": (0.45359237 * 0.3048**2, 1.0),
 }
+_ACCELERATIONS = {
+    "m_s2": (1.0, 1.0),
+    "cm_s2": (1.0, 100.0),
+    "gal": (1.0, 100.0),
+    "g": (STANDARD_GRAVITY, 1.0),
+}
+_VELOCITIES = {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)}
+_TIMES = {"s": (1.0, 1.0), "ms": (1.0, 1000.0)}
 DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
     "length": _LENGTHS,
     "mass": _MASSES,
     "moment of inertia": _INERTIAS,
+    "acceleration": _ACCELERATIONS,
+    "velocity": _VELOCITIES,
+    "time": _TIMES,
 }
-"""Of each dimension its units, and of each unit the factor and the divisor that lead to SI."""
+"""Of each dimension its units, and of each unit the factor and the divisor that lead to SI.
+
+A g beside an acceleration is that of gravity; as a unit to convert to it is the gram.
+"""
 
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 
@@ -96,9 +110,9 @@ def quantity(given: object, to: str, unit: str | None) -> float:
 
 
 def _as_in_names(written: str) -> str:
-    """``kg m²``, ``kg·m^2`` and ``kg*m2`` are ``kg_m2``."""
+    """``kg m²``, ``kg·m^2`` and ``kg*m2`` are ``kg_m2``, ``cm/s²`` is ``cm_s2``."""
     plain = written.replace("²", "2").replace("^", "")
-    return "_".join(re.split(r"[\s·*_]+", plain.strip()))
+    return "_".join(re.split(r"[\s·*_/]+", plain.strip()))
 
 
 def other_names(name: str) -> dict[str, str | None]:

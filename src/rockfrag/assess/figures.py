@@ -1,0 +1,61 @@
+"""What stands on the page of one object as drawings."""
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from rockfrag.assess.answer import Assessment
+from rockfrag.assess.words import NAMES
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure, plain_log
+
+_REACHED = 0.995
+"""Share of motions up to which the curves are shown."""
+
+
+def shares_figure(found: Assessment) -> Figure:
+    """Share of the motions that topple the object over the level of shaking, for each arrangement."""
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 2.7)
+        axes = figure.subplots()
+        ends = []
+        for colour, (name, verdicts) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
+            levels, shares = verdicts.ladder.levels, verdicts.shares()
+            axes.plot(levels, 100 * shares, color=colour, label=name)
+            shown = levels[(shares > 0) & (shares < _REACHED)]
+            ends += [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
+        if found.level is not None:
+            axes.axvline(found.level.value, color="#555555", linestyle="--", linewidth=0.9)
+            axes.annotate(
+                "the site",
+                (found.level.value, 98),
+                xytext=(3, 0),
+                textcoords="offset points",
+                va="top",
+                color="#555555",
+            )
+            ends.append(found.level.value)
+        axes.set(
+            xscale="log",
+            xlim=(0.8 * min(ends), 1.25 * max(ends)),
+            ylim=(0, 100),
+            xlabel=f"{found.measure.name} of the ground [{found.measure.unit}]",
+            ylabel="Motions that topple it [%]",
+        )
+        plain_log(axes, "x")
+        if len(found.arrangements) > 1:
+            axes.legend(loc="upper left" if found.level is None else "center right")
+    return figure
+
+
+def sources_figure(found: Assessment) -> Figure:
+    """How much each source of uncertainty adds to the interval."""
+    known = {
+        NAMES[name]: value
+        for name, value in sorted(found.main.sources.items(), key=lambda item: item[1])
+        if np.isfinite(value)
+    }
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 0.6 + 0.24 * len(known))
+        axes = figure.subplots()
+        axes.barh(list(known), list(known.values()), color=BLUE, height=0.6)
+        axes.set(xlabel="Standard deviation on the scale of the interval")
+    return figure

@@ -1,0 +1,206 @@
+"""A hazard curve: how often each level of shaking is exceeded at a site."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockfrag.assess.hazard.measure import Measure
+from rockfrag.errors import InputError
+
+Floats = NDArray[np.float64]
+
+HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
+"""Levels beyond which a curve is in another unit: g, g and cm/s."""
+
+HIGHEST_RATE = 100.0
+"""Shaking that is exceeded more often a year is no earthquake hazard [1/year]."""
+
+DAMAGING = {"PGA": 0.02, "SA": 0.02, "PGV": 1.0}
+"""A curve that ends below this level says nothing about what topples: g, g and cm/s."""
+
+EC8_SLOPE = 3.0
+"""Exponent of a hazard curve H ~ a^-k of which one point is known (EN 1998-1:2004, note to 2.1(4))."""
+
+EC8_SLOPE_SD = 0.6
+"""Standard deviation of that exponent: 2 to 4 are seen in Europe and America."""
+
+
+@dataclass(frozen=True, eq=False)
+class HazardCurve:
+    """Annual rates with which levels of a measure are exceeded; a power law between the points.
+
+    Attributes
+    ----------
+    measure
+        The intensity measure.
+    levels
+        Levels in the measure's unit, rising, shape (n,), n ≥ 2.
+    rates
+        Annual rates of exceedance [1/year], falling, shape (n,).
+    source
+        Where it comes from, in a few words.
+    quantiles
+        Curves of the same measure by their quantile, such as 0.16 and 0.84; empty where none are known.
+    """
+
+    measure: Measure
+    levels: Floats
+    rates: Floats
+    source: str
+    quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
+
+    def rate(self, level: ArrayLike) -> Floats:
+        """Annual rate with which levels are exceeded [1/year]; the ends are continued as they slope.
+
+        Parameters
+        ----------
+        level
+            Levels in the measure's unit, above 0.
+        """
+        x, slopes, at = (
+            np.log(np.asarray(level, dtype=np.float64)),
+            self._slopes,
+            self._places(level),
+        )
+        start = np.clip(at, 0, self.levels.size - 2)
+        line = np.log(self.rates[start]) + slopes[start] * (x - np.log(self.levels[start]))
+        return np.asarray(np.exp(line))
+
+    def level(self, rate: float) -> float:
+        """Level that is exceeded with an annual rate, in the measure's unit.
+
+        Parameters
+        ----------
+        rate
+            Annual rate [1/year].
+        """
+        logs, x = np.log(self.rates), np.log(self.levels)
+        start = int(np.clip(np.searchsorted(-logs, -math.log(rate)) - 1, 0, x.size - 2))
+        return float(np.exp(x[start] + (math.log(rate) - logs[start]) / self._slopes[start]))
+
+    @property
+    def _slopes(self) -> Floats:
+        return np.asarray(np.diff(np.log(self.rates)) / np.diff(np.log(self.levels)))
+
+    def _places(self, level: ArrayLike) -> NDArray[np.intp]:
+        return np.asarray(np.searchsorted(self.levels, np.asarray(level)) - 1)
+
+
+def make_curve(
+    measure: Measure, levels: Sequence[float], rates: Sequence[float], where: str, source: str = ""
+) -> HazardCurve:
+    """Make a curve of what a file says, or say in one sentence what is wrong with it.
+
+    Points that are never exceeded, and equal rates at either end, which are those of a probability that was
+    rounded, are left out.
+
+    Parameters
+    ----------
+    measure
+        The intensity measure.
+    levels, rates
+        Levels in its unit and annual rates [1/year], equally many.
+    where
+        File and place, for messages.
+    source
+        Where it comes from, in a few words; ``where`` if empty.
+
+    Raises
+    ------
+    InputError
+        If levels do not rise, rates do not fall or are no rates, fewer than two points are left, or the levels are
+        not those of the unit.
+    """
+    x, y = np.asarray(levels, dtype=np.float64), np.asarray(rates, dtype=np.float64)
+    if x.size != y.size:
+        raise InputError(f"{where}: {x.size} levels have {y.size} rates; give one rate a level.")
+    if not np.isfinite(x).all() or np.isnan(y).any():
+        raise InputError(f"{where}: a level or a rate of the hazard curve is not a finite number.")
+    if (y < 0).any() or (np.isfinite(y) & (y > HIGHEST_RATE)).any():
+        raise InputError(
+            f"{where}: rates of exceedance must lie from 0 to {HIGHEST_RATE:g} a year, found "
+            f"{y[(y < 0) | (y > HIGHEST_RATE)][0]:g}; check the column and the investigation time."
+        )
+    if (x < 0).any() or (np.diff(x) <= 0).any():
+        raise InputError(f"{where}: the levels of the hazard curve must rise from above 0.")
+    if (np.diff(y[np.isfinite(y)]) > 0).any():
+        raise InputError(
+            f"{where}: the rate of exceedance rises with the level, which no hazard curve does; check the columns."
+        )
+    kept = (x > 0) & np.isfinite(y) & (y > 0)
+    x, y = x[kept], y[kept]
+    # of equal neighbours the highest level says most
+    last = np.append(np.diff(y) < 0, True)
+    x, y = x[last], y[last]
+    if x.size < 2:
+        raise InputError(
+            f"{where}: the hazard curve has {x.size} usable point(s); at least two levels with different rates "
+            "above 0 are needed."
+        )
+    if x[-1] > HIGHEST[measure.kind] or x[-1] < DAMAGING[measure.kind]:
+        raise InputError(
+            f"{where}: {measure.name} up to {x[-1]:g} {measure.unit} is not the shaking that a hazard curve "
+            f"reaches ({DAMAGING[measure.kind]:g} to {HIGHEST[measure.kind]:g} {measure.unit}); check the unit."
+        )
+    return HazardCurve(measure, x, y, source or where)
+
+
+def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
+    """Annual rates of probabilities of exceedance in some years, by Poisson's law [1/year].
+
+    Parameters
+    ----------
+    poes
+        Probabilities, from 0 to 1; 1 stands for a rate without bound.
+    years
+        Investigation time [year].
+    where
+        File and place, for messages.
+
+    Raises
+    ------
+    InputError
+        If the time is not positive or a probability is none.
+    """
+    if not (math.isfinite(years) and years > 0):
+        raise InputError(f"{where}: the investigation time must be above 0 years, found {years:g}.")
+    p = np.asarray(poes, dtype=np.float64)
+    if np.isnan(p).any() or (p < 0).any() or (p > 1).any():
+        wrong = p[~((p >= 0) & (p <= 1))][0]
+        raise InputError(f"{where}: {wrong:g} is no probability of exceedance from 0 to 1.")
+    with np.errstate(divide="ignore"):
+        return np.asarray(-np.log1p(-p) / years)
+
+
+def curve_of_one_level(
+    measure: Measure, level: float, years: float, slope: float = EC8_SLOPE
+) -> HazardCurve:
+    """Continue one level with its return period as a power law.
+
+    Parameters
+    ----------
+    measure
+        The intensity measure.
+    level
+        Level in its unit.
+    years
+        Mean return period of its exceedance [year].
+    slope
+        Exponent of the power law.
+    """
+
+    def curve(k: float, source: str) -> HazardCurve:
+        factors = np.array([0.1, 1.0, 10.0])
+        return HazardCurve(measure, level * factors, factors**-k / years, source)
+
+    source = (
+        f"{measure.name} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
+        f"{slope:g} of EN 1998-1"
+    )
+    flanks = {0.16: slope + EC8_SLOPE_SD, 0.84: slope - EC8_SLOPE_SD}
+    main = curve(slope, source)
+    main.quantiles.update({q: curve(k, source) for q, k in flanks.items()})
+    return main

@@ -1,0 +1,79 @@
+"""Reading hazard files: which kind a file is of, and the mean with its quantiles out of several."""
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rockfrag.assess.hazard import nrml, openquake_csv, table, usgs
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.found import Found
+from rockfrag.errors import InputError
+from rockfrag.plain_text import read_text
+
+LARGEST_FILE = 50_000_000
+"""Bytes of a hazard file; that of one site has some thousand."""
+
+KINDS: tuple[tuple[Callable[[str], bool], Callable[[str, str], list[Found]]], ...] = tuple(
+    (kind.recognise, kind.read) for kind in (nrml, usgs, openquake_csv, table)
+)
+"""Whether a text is of a kind, and its reader, in the order in which they are asked; the last takes any."""
+
+
+def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
+    """Read the hazard curves of one site.
+
+    Parameters
+    ----------
+    paths
+        Files: OpenQuake's CSV or NRML, EFEHR's answer, the USGS's answer, or a table of levels and rates.
+        Files of a mean and of quantiles of one measure belong together.
+
+    Returns
+    -------
+    A curve for each measure, with its quantiles.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, holds no hazard curve or those of several sites, or two files give the
+        same curve.
+    """
+    found = [one for path in paths for one in _read_file(Path(path))]
+    curves = []
+    for measure in dict.fromkeys(one.curve.measure for one in found):
+        mine = [one for one in found if one.curve.measure == measure]
+        curves.append(_assembled(measure.name, mine))
+    return curves
+
+
+def _assembled(name: str, found: Sequence[Found]) -> HazardCurve:
+    """Put the quantiles of one measure to its mean; the median stands in for a mean that is not there."""
+    named: dict[str, Found] = {}
+    for one in found:
+        if one.statistic in named:
+            raise InputError(
+                f"{one.curve.source}: {name} ({one.statistic}) is given twice, in "
+                f"{named[one.statistic].curve.source} too; leave one out."
+            )
+        named[one.statistic] = one
+    quantiles = {
+        float(statistic.removeprefix("quantile-")): one.curve
+        for statistic, one in named.items()
+        if statistic.startswith("quantile-")
+    }
+    main = named["mean"].curve if "mean" in named else quantiles.get(0.5)
+    if main is None:
+        raise InputError(
+            f"{found[0].curve.source}: only {', '.join(sorted(named))} of {name} is given; give the mean or the "
+            "median curve too."
+        )
+    return replace(main, quantiles={q: c for q, c in sorted(quantiles.items()) if q != 0.5})
+
+
+def _read_file(path: Path) -> list[Found]:
+    text = read_text(path, LARGEST_FILE)
+    for recognise, read in KINDS:
+        if recognise(text):
+            return read(text, str(path))
+    raise AssertionError("the last kind takes any text")

