@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.checks import positive_number, real_number, shown
-from rockfrag.rocking.kernels.elementary import atan2, hypot, sin_cos
+from rockfrag.rocking.kernels import geometry
 from rockfrag.units import STANDARD_GRAVITY
 
 
@@ -26,8 +26,7 @@ class Vector(NamedTuple):
 
     def turned(self, angle: float) -> "Vector":
         """Turn clockwise by ``angle`` [rad]: R(angle)(x, y)."""
-        s, c = sin_cos(angle)
-        return Vector(self.x * c + self.y * s, -self.x * s + self.y * c)
+        return Vector(*geometry.turned(self.x, self.y, angle))
 
     def minus(self, other: "Vector") -> "Vector":
         """Return the vector from ``other``'s tip to this one's."""
@@ -81,7 +80,7 @@ class Block:
             positive_number("Block: cg_height", self.cg_height, "metres")
         real_number("Block: cg_offset", self.cg_offset, "metres")
         real_number("Block: lean", self.lean, "radians")
-        if not min(self.critical_angle(+1), self.critical_angle(-1)) > 0:
+        if not geometry.can_stand(self.shape):
             raise InputError(
                 f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
                 f"gravity is not above its base of {self.width} m, so it cannot stand."
@@ -164,10 +163,23 @@ class Block:
         shape = read_shape(path, mass=mass, density=density, metres_per_unit=metres_per_unit)
         return shape.block(direction_deg, contact_tolerance, edge_retreat)
 
+    @cached_property
+    def shape(self) -> geometry.Shape:
+        """The block as the kernels know it."""
+        return geometry.shape_of(
+            self.width,
+            self.height,
+            self.mass,
+            math.nan if self.inertia is None else self.inertia,
+            math.nan if self.cg_height is None else self.cg_height,
+            self.cg_offset,
+            self.lean,
+        )
+
     @property
     def b(self) -> float:
         """Half the width [m]."""
-        return self.width / 2
+        return self.shape.b
 
     @property
     def h(self) -> float:
@@ -177,28 +189,25 @@ class Block:
     @property
     def centroidal_inertia(self) -> float:
         """Moment of inertia about the centre of gravity [kg m²]."""
-        if self.inertia is not None:
-            return self.inertia
-        return self.mass * (self.width * self.width + self.height * self.height) / 12
+        return self.shape.inertia
 
     @property
     def slenderness(self) -> float:
         """Height over width, H/B [-]."""
         return self.height / self.width
 
-    @cached_property
+    @property
     def centre(self) -> Vector:
         """Centre of gravity of the standing block, from the middle of its base [m]."""
-        return Vector(self.cg_offset, self.h).turned(self.lean)
+        return Vector(self.shape.x, self.shape.y)
 
     def arm(self, pole: int) -> Vector:
         """Vector from the pole (+1 right, -1 left) to the centre of gravity as it stands [m]."""
-        return self.centre.minus(Vector(pole * self.b, 0.0))
+        return Vector(*geometry.arm(self.shape, pole))
 
     def critical_angle(self, pole: int) -> float:
         """Rotation about ``pole`` at which the block balances on it, a positive angle [rad]."""
-        arm = self.arm(pole)
-        return atan2(-pole * arm.x, arm.y)
+        return geometry.critical_angle(self.shape, pole)
 
     @property
     def alpha(self) -> float:
@@ -207,16 +216,15 @@ class Block:
 
     def radius(self, pole: int = 1) -> float:
         """Distance R from the pole to the centre of gravity [m]."""
-        return hypot(*self.arm(pole))
+        return geometry.radius(self.shape, pole)
 
     def pole_inertia(self, pole: int = 1) -> float:
         """Moment of inertia about the pole, I_O = I_C + m R² [kg m²]."""
-        arm = self.arm(pole)
-        return self.centroidal_inertia + self.mass * (arm.x * arm.x + arm.y * arm.y)
+        return geometry.pole_inertia(self.shape, pole)
 
     def frequency(self, pole: int = 1, g: float = STANDARD_GRAVITY) -> float:
         """Frequency parameter p = √(m g R / I_O) [1/s]; thesis eq. 2.16 with its square mended."""
-        return math.sqrt(self.mass * g * self.radius(pole) / self.pole_inertia(pole))
+        return geometry.frequency(self.shape, pole, g)
 
     def momentum_restitution(self, pole_before: int = 1) -> float:
         """Ratio of angular velocities after and before an impact that conserves momentum [-].
@@ -261,76 +269,54 @@ class Stack:
             if not isinstance(block, Block):
                 raise InputError(f"Stack: {name} must be a Block, got {shown(block)}.")
         real_number("Stack: offset", self.offset, "metres")
-        left, right = self._overlap
-        if left >= right:
+        fault = geometry.fault_of(self.pile)
+        if fault == geometry.BESIDE:
             raise InputError(
                 f"Stack: the statue's base (width {self.statue.width} m, offset {self.offset} m) "
                 f"does not lie on the pedestal (width {self.pedestal.width} m)."
             )
-        if not left < self.offset + self.statue.centre.x < right:
+        if fault == geometry.OFF_CONTACT:
             raise InputError(
                 "Stack: the statue's centre of gravity is not above the part of its base that lies "
                 "on the pedestal, so the stack cannot stand."
             )
-        for pole in (+1, -1):
-            # the statue must stand on its leaning pedestal, and both together on the ground
-            statue, whole = self.statue_arm(pole), self.common_arm(pole)
-            if pole * statue.x >= 0 or pole * whole.x >= 0:
-                raise InputError(
-                    "Stack: a centre of gravity is not above its base once the pedestal's lean "
-                    "is counted, so the stack cannot stand."
-                )
-            self._check_overhang(pole)
-
-    def _check_overhang(self, pole: int) -> None:
-        """Refuse a statue whose edge beyond the pedestal could touch the ground before anything has fallen.
-
-        The pedestal's upper edge is lowest where the pedestal, or both as one, balance on their pole; the
-        statue may have turned by a right angle on it by then.
-        """
-        end = self._overlap[1 if pole > 0 else 0]
-        overhang = pole * (self.offset - end) + self.statue.b
-        if overhang <= 1e-12 * self.pedestal.b:
-            return
-        edge = self.reach(pole, pole)
-        whole = self.common_arm(pole)
-        furthest = max(self.pedestal.critical_angle(pole), atan2(-pole * whole.x, whole.y))
-        lowest = min(edge.y, edge.turned(pole * furthest).y)
-        if overhang >= lowest:
+        if fault == geometry.TILTED_OFF:
             raise InputError(
-                f"Stack: the statue reaches {overhang:.4g} m beyond its pedestal, whose upper "
-                f"edge can come as low as {lowest:.4g} m, so it could touch the ground; such contacts "
-                "are not modelled."
+                "Stack: a centre of gravity is not above its base once the pedestal's lean "
+                "is counted, so the stack cannot stand."
+            )
+        if fault == geometry.REACHES_GROUND:
+            overhang, pole = max((geometry.overhang(self.pile, pole), pole) for pole in (1, -1))
+            raise InputError(
+                f"Stack: the statue reaches {overhang:.4g} m beyond its pedestal, whose upper edge can come as "
+                f"low as {geometry.lowest_edge(self.pile, pole):.4g} m, so it could touch the ground; such "
+                "contacts are not modelled."
             )
 
-    @property
-    def _overlap(self) -> tuple[float, float]:
-        """Ends of the contact, to the right of the pedestal's middle [m]."""
-        return (
-            max(-self.pedestal.b, self.offset - self.statue.b),
-            min(self.pedestal.b, self.offset + self.statue.b),
+    @cached_property
+    def pile(self) -> geometry.Pile:
+        """The stack as the kernels know it."""
+        pedestal, statue = self.pedestal, self.statue
+        return geometry.pile_of(
+            pedestal.shape, statue.shape, pedestal.height, pedestal.lean, self.offset
         )
-
-    @property
-    def _is_inside(self) -> bool:
-        """Whether the statue's base lies on the pedestal with all its width."""
-        return abs(self.offset) + self.statue.b <= self.pedestal.b * (1 + 1e-12)
 
     @property
     def contact_offset(self) -> float:
         """Distance of the middle of the contact to the right of the pedestal's middle [m]."""
-        return self.offset if self._is_inside else sum(self._overlap) / 2
+        pile = self.pile
+        return self.offset if pile.statue is pile.above else (pile.low + pile.high) / 2
 
     @cached_property
     def contact_statue(self) -> Block:
         """The statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
-        if self._is_inside:
+        pile = self.pile
+        if pile.statue is pile.above:
             return self.statue
-        left, right = self._overlap
         aside = Vector(self.contact_offset - self.offset, 0.0)
         centre = self.statue.centre.minus(aside).turned(-self.statue.lean)
         return Block(
-            width=right - left,
+            width=pile.high - pile.low,
             height=self.statue.height,
             mass=self.statue.mass,
             inertia=self.statue.centroidal_inertia,
@@ -341,29 +327,22 @@ class Stack:
 
     def interface_pole(self, pole: int) -> Vector:
         """Statue's pole as it stands, from the middle of the pedestal's base [m]."""
-        end = self.contact_offset + pole * self.contact_statue.b
-        return Vector(end, self.pedestal.height).turned(self.pedestal.lean)
+        return Vector(*(self.pile.right if pole > 0 else self.pile.left))
 
     def reach(self, ground_pole: int, statue_pole: int) -> Vector:
         """Vector d from the pedestal's pole to the statue's pole as they stand [m].
 
         Its length is l (poles on the same side) or l' (opposite sides) of thesis eq. 2.61, 2.63.
         """
-        return self.interface_pole(statue_pole).minus(Vector(ground_pole * self.pedestal.b, 0.0))
+        return Vector(*geometry.reach(self.pile, ground_pole, statue_pole))
 
     def statue_arm(self, statue_pole: int) -> Vector:
         """Vector r2 from the statue's pole to its centre of gravity as it stands [m]."""
-        return self.contact_statue.arm(statue_pole).turned(self.pedestal.lean)
+        return Vector(*geometry.statue_arm(self.pile, statue_pole))
 
     def common_arm(self, ground_pole: int) -> Vector:
         """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
-        m1, m2 = self.pedestal.mass, self.statue.mass
-        one = self.pedestal.arm(ground_pole)
-        reach, arm = self.reach(ground_pole, 1), self.statue_arm(1)
-        return Vector(
-            (m1 * one.x + m2 * (reach.x + arm.x)) / (m1 + m2),
-            (m1 * one.y + m2 * (reach.y + arm.y)) / (m1 + m2),
-        )
+        return Vector(*geometry.common_arm(self.pile, ground_pole))
 
     @property
     def mass(self) -> float:
@@ -372,25 +351,14 @@ class Stack:
 
     def rigidly_joined(self) -> Block:
         """Return the two as one rigid body, which is what rocks in pattern 3."""
-        m1, m2 = self.pedestal.mass, self.statue.mass
-        to_statue = self.reach(1, 1)
-        arm2 = self.statue_arm(1)
-        centre1 = self.pedestal.centre
-        centre2 = Vector(
-            self.pedestal.b + to_statue.x + arm2.x,
-            to_statue.y + arm2.y,
-        )
-        x = (m1 * centre1.x + m2 * centre2.x) / (m1 + m2)
-        y = (m1 * centre1.y + m2 * centre2.y) / (m1 + m2)
-        apart = centre1.minus(centre2)
-        spread = m1 * m2 / (m1 + m2) * (apart.x * apart.x + apart.y * apart.y)
+        whole = geometry.joined(self.pile)
         return Block(
             width=self.pedestal.width,
             height=self.pedestal.height + self.statue.height,
-            mass=m1 + m2,
-            inertia=self.pedestal.centroidal_inertia + self.statue.centroidal_inertia + spread,
-            cg_height=y,
-            cg_offset=x,
+            mass=whole.mass,
+            inertia=whole.inertia,
+            cg_height=whole.y,
+            cg_offset=whole.x,
         )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body, Stack, Vector
 from rockfrag.rocking.checks import positive_number, real_number, shown
+from rockfrag.rocking.kernels import geometry
 from rockfrag.rocking.kernels.equations import BODY
 
 Restitution = float | Sequence[float | None] | None
@@ -112,33 +113,25 @@ def body_record(
     if not isinstance(body, (Block, Stack)):
         raise InputError(f"body: expected a Block or a Stack, got {shown(body)}.")
     ground, interface = _pair(body, restitution)
-    p: np.void = np.zeros(1, BODY)[0]
+    store = np.zeros(1, BODY)
+    p: np.void = store[0]
     for name in ("eta1r", "eta1l", "eta2r", "eta2l"):
         p[name] = 1.0
     p["gravity"] = g
+    # a view whose fields are attributes, as those of records are in kernels
+    named = store.view(np.recarray)[0]
     if isinstance(body, Block):
-        statue, centre = body, body.centre
-        # a support that cannot move; its numbers never matter
-        p["m1"] = p["i1"] = p["b1"] = 1.0
-        p["ex"] = 1.0
-        p["fixed"] = True
+        statue = body
+        geometry.fill_block(named, body.shape)
         p["linear"] = 2 if linear else 0
     else:
         statue, pedestal = body.contact_statue, body.pedestal
-        p["m1"], p["i1"], p["b1"] = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
-        p["c1x"], p["c1y"] = pedestal.centre
-        right, left = body.interface_pole(+1), body.interface_pole(-1)
-        along = right.minus(left)
-        p["tx"], p["ty"] = (right.x + left.x) / 2, (right.y + left.y) / 2
-        p["ex"], p["ey"] = along.x / statue.width, along.y / statue.width
-        centre = statue.centre.turned(pedestal.lean)
+        geometry.fill_pile(named, body.pile)
         p["linear"] = 1 if linear else 0
         if ground is not None:
             p["eta1r"] = impulse_position(pedestal, ground, +1)
             p["eta1l"] = impulse_position(pedestal, ground, -1)
     p["measured"] = ground is not None or interface is not None
-    p["m2"], p["i2"], p["b2"] = statue.mass, statue.centroidal_inertia, statue.b
-    p["c2x"], p["c2y"] = centre
     if interface is not None:
         p["eta2r"] = impulse_position(statue, interface, +1)
         p["eta2l"] = impulse_position(statue, interface, -1)

@@ -126,3 +126,29 @@ class WholeCompiler(_KernelCompiler):
 
     library = Whole
     lowering = typed_passes.NativeLowering
+
+
+def whole_ir(function: Any, arguments: tuple[Any, ...]) -> tuple[str, str]:
+    """Return the code of a function and of all kernels that it needs, not optimised, and its name there.
+
+    Parameters
+    ----------
+    function : Python function
+    arguments : values with the types of its arguments
+    """
+    import numba
+
+    made = numba.njit(
+        nogil=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True,
+        pipeline_class=PartCompiler,
+    )(function)  # fmt: skip
+    made.compile(tuple(numba.typeof(argument) for argument in arguments))
+    (compiled,) = made.overloads.values()
+    entry = compiled.fndesc.llvm_func_name
+    parts = _callers_first([compiled.library])
+    whole = llvm.parse_assembly("")
+    # else nothing calls it, and linking would drop it
+    compiled.library._final_module.get_function(entry).linkage = "external"
+    for part in parts:
+        whole.link_in(part._final_module, preserve=True)
+    return str(whole), entry

@@ -34,7 +34,7 @@ from filelock import FileLock
 from numba import types
 from numba.extending import intrinsic, register_jitable
 
-from rockfrag.rocking.kernels import elementary
+from rockfrag.rocking.kernels import elementary, geometry
 
 TESTED_NUMBA = ("0.68.",)
 """Versions of numba whose private parts are known to be as this module takes them to be."""
@@ -89,10 +89,11 @@ _PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 if KNOWN:
     _PART["pipeline_class"] = PartCompiler
 
-for _function in list(vars(elementary).values()):
-    if isinstance(_function, FunctionType):
-        # plain Python, which kernels may call as if it were one of them
-        register_jitable(**_EVERY, **_PART)(_function)
+for _module in (elementary, geometry):
+    for _function in list(vars(_module).values()):
+        if isinstance(_function, FunctionType) and _function.__module__ == _module.__name__:
+            # plain Python, which kernels may call as if it were one of them
+            register_jitable(**_EVERY, **_PART)(_function)
 
 
 @cache
