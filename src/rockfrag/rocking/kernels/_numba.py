@@ -16,6 +16,9 @@ from numba.core.compiler_machinery import PassManager, register_pass
 class Part(JITCodeLibrary):
     """The code of one kernel, not optimised and not made machine code of, with references to those it calls."""
 
+    def _optimize_functions(self, module: Any) -> None:
+        """Leave optimising to whoever links this kernel."""
+
     def add_linking_library(self, library: Any) -> None:
         """Remember a kernel that is called; whoever links this one links it too."""
         self._linking_libraries.append(library)

@@ -1,0 +1,223 @@
+"""The module for pages is made from the kernels, and computes what ``simulate`` does, to the last bit."""
+
+import importlib.util
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from rockfrag.rocking import Block, Stack, simulate
+from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.body_record import body_record
+from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.rocking.inputs import STEP, free_samples, step_count
+from rockfrag.units import STANDARD_GRAVITY
+
+NODE = shutil.which("node")
+needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
+
+HISTORY = ["theta1", "omega1", "theta2", "omega2", "c1", "c2", "alpha1", "alpha2", "work"]
+
+RUN = """
+const fs = require("fs");
+const [wasm, cases, motions, out] = process.argv.slice(2);
+const bytes = new Float64Array(new Uint8Array(fs.readFileSync(motions)).buffer);
+rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
+  const found = [];
+  const told = JSON.parse(fs.readFileSync(cases)).map(({ given, start, count, ...rest }) => {
+    let body;
+    try {
+      body = kernel.bodyOf(given);
+    } catch (error) {
+      return { error: error.message };
+    }
+    const samples = bytes.subarray(start, start + count);
+    const r = kernel.march({ body, samples, ...rest });
+    const verdict = kernel.march({ body, samples, ...rest, history: false });
+    for (const name of HISTORY) found.push(Float64Array.from(r[name]));
+    for (const number of [(e) => e.time, (e) => e.energy_after, (e) => e.before.omega2]) {
+      found.push(Float64Array.from(r.events, number));
+    }
+    const numbers = ["done", "fallen", "fallTime", "impacts", "grazings", "closest", "peak1", "peak2"];
+    return {
+      ...Object.fromEntries(numbers.map((name) => [name, r[name]])),
+      record: Buffer.from(body.record).toString("hex"),
+      shaking: kernel.shakingOf(body, rest.dt),
+      kinds: r.events.map((e) => e.kind),
+      alike: numbers.every((name) => Object.is(r[name], verdict[name])),
+    };
+  });
+  fs.writeFileSync(out, Buffer.concat(found.map((values) => Buffer.from(values.buffer))));
+  console.log(JSON.stringify(told));
+});
+"""
+
+
+def given(block: Block) -> dict[str, float | None]:
+    return {
+        "width": block.width, "height": block.height, "mass": block.mass, "inertia": block.inertia,
+        "cgHeight": block.cg_height, "cgOffset": block.cg_offset, "lean": block.lean,
+    }  # fmt: skip
+
+
+def told(body: Body, **more):
+    if isinstance(body, Block):
+        return {"statue": given(body), **more}
+    both = {"statue": given(body.statue), "pedestal": given(body.pedestal)}
+    return {**both, "offset": body.offset, **more}
+
+
+def in_node(folder, cases, motion):
+    """Run cases in Node; what it says of each, and all its numbers."""
+    files = {name: folder / name for name in ("march.wasm", "cases.json", "motions", "found")}
+    files["march.wasm"].write_bytes(module_bytes())
+    files["cases.json"].write_text(json.dumps(cases))
+    files["motions"].write_bytes(motion.tobytes())
+    (folder / "run.cjs").write_text(f"{driver_text()}\nconst HISTORY = {HISTORY};\n{RUN}")
+    done = subprocess.run(
+        [NODE, folder / "run.cjs", *files.values()], capture_output=True, text=True
+    )
+    assert done.stderr == "" and done.returncode == 0
+    return json.loads(done.stdout), np.frombuffer(files["found"].read_bytes())
+
+
+def some_body(rng) -> Body:
+    """A block or a stack, some of them leaning, off their middle, or wider than their pedestal."""
+
+    def block(width, slenderness):
+        height = width * slenderness
+        odd = rng.random() < 0.5
+        return Block(
+            width, height, 2000 * width * height,
+            inertia=150 * width * height**3 if rng.random() < 0.3 else None,
+            cg_height=0.45 * height if rng.random() < 0.3 else None,
+            cg_offset=0.05 * width * rng.uniform(-1, 1) if odd else 0.0,
+            lean=0.02 * rng.uniform(-1, 1) if odd else 0.0,
+        )  # fmt: skip
+
+    statue = block(rng.uniform(0.1, 0.6), rng.uniform(2.5, 6.0))
+    if rng.random() < 0.4:
+        return statue
+    pedestal = block(statue.width * rng.uniform(0.9, 1.5), rng.uniform(0.5, 2.0))
+    return Stack(pedestal, statue, offset=0.03 * statue.width * rng.uniform(-1, 1))
+
+
+@needs_node
+def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
+    rng = np.random.default_rng(11)
+    motion = np.sin(np.arange(3000) * 0.06) * np.linspace(0.2, 1.0, 3000) * 5
+    motion += rng.normal(0.0, 1.0, motion.size)
+    cases, responses, records = [], [], []
+    while len(cases) < 50:
+        body, start = some_body(rng), int(rng.integers(0, 2000))
+        count, scale = int(rng.integers(200, 1000)), float(rng.uniform(0.2, 1.5))
+        linear, dt = bool(rng.random() < 0.3), float(rng.choice([0.005, 0.01, 0.02]))
+        released = bool(rng.random() < 0.3)
+        lean = 0.3 * (body.alpha if isinstance(body, Block) else body.statue.alpha)
+        angles = {"theta2": lean} if released else {}
+        theta0 = None if not released else lean if isinstance(body, Block) else (0.0, lean)
+        cases.append(
+            {
+                "given": told(body, linear=linear), "start": start, "count": count, "scale": scale, "dt": dt,
+                "initial": angles,
+            }
+        )  # fmt: skip
+        samples = scale * motion[start : start + count]
+        responses.append(simulate(body, samples, dt, linear=linear, theta0=theta0))
+        records.append(body_record(body, None, linear))
+        assert math.isfinite(responses[-1].theta[-1, -1])
+    said, numbers = in_node(tmp_path, cases, motion)
+    found = iter(np.split(numbers, np.cumsum([n for one in said for n in lengths(one)])))
+    for case, one, response, record in zip(cases, said, responses, records, strict=True):
+        body, events = response.body, response.events
+        assert one["record"] == record.tobytes().hex()
+        assert one["shaking"] == {
+            "substeps": step_count(body, case["dt"], STANDARD_GRAVITY, STEP),
+            "freeSamples": free_samples(body, case["dt"], STANDARD_GRAVITY),
+        }
+        assert one["done"] == len(response.time)
+        history = dict(zip(HISTORY, (next(found) for _ in HISTORY), strict=True))
+        blocks = ("2",) if isinstance(body, Block) else ("1", "2")
+        for name in ("theta", "omega", "alpha", "state"):
+            short = "c" if name == "state" else name
+            columns = np.column_stack([history[short + block] for block in blocks])
+            np.testing.assert_array_equal(columns, getattr(response, name))
+        np.testing.assert_array_equal(history["work"], response.energy["input"])
+        times, energies, speeds = next(found).reshape(3, -1)
+        np.testing.assert_array_equal(times, events["time"])
+        np.testing.assert_array_equal(energies, events["energy_after"])
+        np.testing.assert_array_equal(speeds, [omega[-1] for omega in events["omega_before"]])
+        assert one["kinds"] == events["kind"].tolist()
+        assert (one["fallen"] > 0) == response.overturned
+        assert one["fallTime"] == response.overturning_time or not response.overturned
+        assert (one["impacts"], one["grazings"]) == (response.impacts, response.grazings)
+        assert one["closest"] == response.closest_approach or one["closest"] is None
+        assert one["alike"], "a verdict alone is that of the history"
+    assert len(list(found)) == 1, "what is left is empty"
+    assert sum(response.overturned for response in responses) > 5
+    assert sum(len(response.events) for response in responses) > 500
+
+
+def lengths(one):
+    """How many numbers each array of a case has."""
+    return [one["done"]] * len(HISTORY) + [3 * len(one["kinds"])]
+
+
+@needs_node
+def test_bodies_that_cannot_stand_are_refused(tmp_path):
+    statue, wide = Block(0.3, 1.2, 200.0), Block(0.6, 1.2, 200.0)
+    base = Block(0.4, 0.2, 100.0)
+    bodies = {
+        "cannot stand": told(statue) | {"statue": given(statue) | {"cgOffset": 0.2}},
+        "does not lie on": told(Stack(base, statue)) | {"offset": 0.4},
+        "above the part": told(Stack(base, statue)) | {"offset": 0.25},
+        "once the pedestal's lean": told(Stack(base, statue))
+        | {"pedestal": given(base) | {"lean": 0.3}},
+        "touch the ground": {"statue": given(wide), "pedestal": given(Block(0.4, 0.05, 100.0))},
+        "mass of 0": {"statue": given(statue) | {"mass": 0}},
+        "width of null": {"statue": given(statue) | {"width": None}},
+    }
+    cases = [{"given": body, "start": 0, "count": 2, "dt": 0.01} for body in bodies.values()]
+    said, numbers = in_node(tmp_path, cases, np.zeros(2))
+    assert numbers.size == 0
+    for words, one in zip(bodies, said, strict=True):
+        assert words in one["error"]
+
+
+def test_the_module_is_small_and_needs_nothing():
+    module = module_bytes()
+    assert len(module) <= 60_000
+    # section 2 of a module would list what it imports
+    at, kinds = 8, []
+    while at < len(module):
+        kind, size, shift, at = module[at], 0, 0, at + 1
+        while True:
+            size |= (module[at] & 127) << shift
+            at, shift, more = at + 1, shift + 7, module[at] & 128
+            if not more:
+                break
+        kinds.append(kind)
+        at += size
+    assert kinds[:2] == [1, 3]
+    assert kinds[-1] == 0
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    importlib.util.find_spec("ziglang") is None, reason="ziglang, the linker, is not installed"
+)
+@pytest.mark.parametrize("seed", ["1", "2"])
+def test_the_module_is_that_of_the_kernels(seed, tmp_path):
+    again = "import sys; from rockfrag.rocking.browser.build import build; sys.stdout.buffer.write(build())"
+    done = subprocess.run(
+        [sys.executable, "-c", again],
+        env={**os.environ, "PYTHONHASHSEED": seed},
+        check=True,
+        capture_output=True,
+    )
+    assert done.stdout == module_bytes(), "make it anew: python -m rockfrag.rocking.browser.build"
