@@ -22,8 +22,8 @@ called from Python                    calls
 ====================================  =========================================================================
 
 All of them stand on ``equations`` (the two-block model), ``taylor`` (series), ``roots`` (instants),
-``contact_states``, ``impact``, ``chatter`` and ``elementary`` (sine and its like, in plain Python that bodies
-use too); ``jit`` says how they are compiled.
+``contact_states``, ``impact``, ``chatter``, ``elementary`` (sine and its like) and ``geometry`` (bodies as they
+stand), the last two in plain Python that bodies use too; ``jit`` says how they are compiled.
 
 **Data** are records with named fields: BODY, STATE (``equations``), SERIES (``taylor``), CASE
 (``stack_case``), LANE (of every kind of lane, a row of numbers for each field), OUTCOME (``case``), SAMPLE,
@@ -32,7 +32,7 @@ together is handed on as a named tuple: Ensemble and Motions (``case``), Worker 
 Shaking, Step, Ahead.
 
 **Types** are inferred by numba from records and tuples that annotations cannot name, so mypy is kept out of
-these modules (but not of ``jit`` and ``elementary``); what Python hands to them is typed where it is made.
+these modules (but not of ``jit``, ``elementary`` and ``geometry``); what Python hands to them is typed where it is made.
 
 ``docs/kernels.md`` says how to change them.
 """

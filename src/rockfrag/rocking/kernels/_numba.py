@@ -131,22 +131,15 @@ class WholeCompiler(_KernelCompiler):
     lowering = typed_passes.NativeLowering
 
 
-def whole_ir(function: Any, arguments: tuple[Any, ...]) -> tuple[str, str]:
-    """Return the code of a function and of all kernels that it needs, not optimised, and its name there.
+def whole_ir(kernel: Any, types: tuple[Any, ...]) -> tuple[str, str]:
+    """Return the code of a kernel that only kernels call, with all that it needs, not optimised; its name there.
 
     Parameters
     ----------
-    function : Python function
-    arguments : values with the types of its arguments
+    types : numba's, of its arguments
     """
-    import numba
-
-    made = numba.njit(
-        nogil=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True,
-        pipeline_class=PartCompiler,
-    )(function)  # fmt: skip
-    made.compile(tuple(numba.typeof(argument) for argument in arguments))
-    (compiled,) = made.overloads.values()
+    kernel.compile(types)
+    (compiled,) = kernel.overloads.values()
     entry = compiled.fndesc.llvm_func_name
     parts = _callers_first([compiled.library])
     whole = llvm.parse_assembly("")
