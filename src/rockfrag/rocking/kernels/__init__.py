@@ -32,7 +32,8 @@ together is handed on as a named tuple: Ensemble and Motions (``case``), Worker 
 Shaking, Step, Ahead.
 
 **Types** are inferred by numba from records and tuples that annotations cannot name, so mypy is kept out of
-these modules (but not of ``jit``, ``elementary`` and ``geometry``); what Python hands to them is typed where it is made.
+these modules (but not of ``jit``, ``elementary`` and ``geometry``); what Python hands to them is typed where it is
+made.
 
 ``docs/kernels.md`` says how to change them.
 """
