@@ -88,6 +88,12 @@ def test_no_effect_of_a_study_has_an_interval_without_width(tests_table):
     assert effects.loc[0, "tied"] == 35
 
 
+def test_notes_say_that_intervals_are_cautious_where_most_pairs_agree(tests_table):
+    cautious = "more cautious than their level"
+    assert any(cautious in note for note in study_pedestal(tied(tests_table), seed=1).notes)
+    assert not any(cautious in note for note in study_pedestal(tests_table(1), seed=1).notes)
+
+
 def test_pair_with_one_unfinished_side_is_counted_at_its_bound(tests_table):
     """The test that never overturned may be the largest effect of all; it must not be left out."""
     tests = tests_table(1)

@@ -1,8 +1,10 @@
-"""Tables of the documentation, written by the tests that compute them."""
+"""Tables of the documentation, written by the tests that compute them, each once it is complete."""
 
 from pathlib import Path
 
 import pandas as pd
+
+from rockfrag.files import write_text
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
@@ -25,4 +27,4 @@ def document(file: str, name: str, table: pd.DataFrame, digits: int = 3) -> None
     before, _, rest = text.partition(head)
     _, found, after = rest.partition(tail)
     assert found, f"{file} has no place for the table {name}"
-    path.write_text(f"{before}{head}\n{markdown(table, digits)}\n{tail}{after}", encoding="utf-8")
+    write_text(f"{before}{head}\n{markdown(table, digits)}\n{tail}{after}", path)

@@ -23,7 +23,8 @@ from .documented import document
 
 THETA, BETA, SHARED = 0.35, 0.4, 0.3
 DESIGNS = {4: (4, 1), 12: (4, 3), 44: (22, 2)}
-DATA_SETS, FEWER, SEED = 1000, 250, 20261121  # the slower bootstraps get fewer
+# kinds of data are to be known to ± half a percent, the slower bootstraps get fewer
+DATA_SETS, FEWER, OF_A_KIND, SEED = 1000, 250, 4000, 20261121
 
 
 # step of the ladder, share of the variance that motions of an event share, law, β, scatter of objects
@@ -37,7 +38,6 @@ KINDS = {
     "heavy tails (t, 3 df)": {"law": "t3"},
 }
 WARNED = ("heavy tails (t, 3 df)",)
-SHORT = ("events dominate",)
 COARSE = ("nearly all in one step (β = 0.03, ladder of 10 %)",)
 
 
@@ -130,7 +130,7 @@ def coverage(n: int, method: str, over: str, data_sets: int = DATA_SETS) -> pd.D
     return pd.DataFrame(rows)
 
 
-def of_kind(name: str, n: int = 12, data_sets: int = DATA_SETS) -> pd.DataFrame:
+def of_kind(name: str, n: int = 12, data_sets: int = OF_A_KIND) -> pd.DataFrame:
     """Coverage of the default limits, jackknife over events, where the data are of another kind."""
     events, each = DESIGNS[n]
     rng = np.random.default_rng([SEED, n, list(KINDS).index(name)])
@@ -169,17 +169,10 @@ def kinds() -> pd.DataFrame:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [one for one in KINDS if one not in (*WARNED, *COARSE, *SHORT)])
+@pytest.mark.parametrize("name", [one for one in KINDS if one not in (*WARNED, *COARSE)])
 def test_limits_hold_the_truth_whatever_the_kind_of_data(kinds, name):
-    # 1000 data sets know a coverage to ± 1 %
+    # 4000 data sets know a coverage to ± half a percent
     assert ((kinds.loc[[name], ["θ", "β"]] - 0.90).abs() < 0.035).all(axis=None)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SHORT)
-def test_dominant_events_leave_theta_alone_and_shorten_the_limits_of_beta_a_little(kinds, name):
-    assert (kinds.loc[[name], "θ"] - 0.90).abs().max() < 0.03
-    assert kinds.loc[[name], "β"].between(0.84, 0.93).all()
 
 
 @pytest.mark.slow
@@ -211,7 +204,10 @@ def methods() -> pd.DataFrame:
             for over in ("event", "motion") if events < n else ("event",):
                 parts.append(coverage(n, method, over, data_sets).assign(data_sets=data_sets))
     found = pd.concat(parts, ignore_index=True)
-    document("validation-fragility.md", "methods", found)
+    order = ["method", "resampled", "motions", "events", "data", "data_sets", "theta", "beta"]
+    shown = found.assign(warns=np.where(found["warns"], "yes", "no"))[[*order, "curve", "warns"]]
+    shown = shown.rename(columns={"theta": "θ", "beta": "β", "data_sets": "data sets"})
+    document("validation-fragility.md", "methods", shown)
     return found
 
 

@@ -191,7 +191,7 @@ def variances() -> pd.DataFrame:
     )
 
 
-def coverage_of_censored(data_sets: int = 40) -> float:
+def coverage_of_censored(data_sets: int = 200) -> float:
     """Share of 95 % intervals of the interval likelihood (jackknife over events) with the truth."""
     held = 0
     for seed in range(data_sets):
@@ -221,9 +221,9 @@ def test_leaving_censored_pairs_out_biases_the_effect_and_the_likelihood_does_no
     sets = [simulated(seed) for seed in range(40)]
     full = np.array([mean_effect(pairs_of(one)).mean for one in sets])
     kept = np.array([mean_effect(complete(cut(one))).mean for one in sets]) - full
-    likely = np.array([likely(cut(one)) for one in sets]) - full
+    modelled = np.array([likely(cut(one)) for one in sets]) - full
     assert abs(kept.mean()) > 3 * kept.std(ddof=1) / math.sqrt(len(sets))
-    assert abs(likely.mean()) < abs(kept.mean()) / 2
+    assert abs(modelled.mean()) < abs(kept.mean()) / 2
 
 
 @pytest.mark.slow
@@ -235,4 +235,9 @@ def test_variances_are_found():
 
 @pytest.mark.slow
 def test_censored_intervals_cover():
-    assert coverage_of_censored() >= 0.85
+    held = coverage_of_censored()
+    found = pd.DataFrame(
+        {"interval": ["interval likelihood, limit 0.5 g"], "coverage of 95 %": [held]}
+    )
+    document("validation-pedestal.md", "censored intervals", found)
+    assert held >= 0.87

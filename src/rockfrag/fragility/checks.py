@@ -17,6 +17,12 @@ from rockfrag.fragility.observations import Floats, Outcomes
 REJECTED = 0.05
 """A curve is said not to describe its data below this p value [-]."""
 
+TAILS = (
+    "The limits of β hold for lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
+    "goodness of fit seldom shows, nominal 90 % limits held in 83 %."
+)
+"""Said of every curve with limits of β, whether or not its fit is rejected; see the validation."""
+
 FEWEST_MOTIONS = 10
 """Below so many motions every table and export says how few they are."""
 
@@ -134,9 +140,10 @@ def _checks(
     if p_fit < REJECTED:
         notes.append(
             f"The lognormal curve does not describe the data (p = {p_fit:.3f}): where it matters use the "
-            f"empirical shares, whose median is {points[0]:.3g} {fit.unit} and β {points[1]:.2f}; the "
-            "limits of β may hold less often than they say."
+            f"empirical shares, whose median is {points[0]:.3g} {fit.unit} and β {points[1]:.2f}."
         )
+    if interval.method == "jackknife" and np.isfinite(interval.beta).all():
+        notes.append(TAILS)
     if fit.n_motions < FEWEST_MOTIONS and np.isfinite(fit.theta):
         notes.append(
             f"The curve rests on {fit.n_motions} motion{'s' if fit.n_motions > 1 else ''} only; it "

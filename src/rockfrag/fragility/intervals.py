@@ -29,6 +29,9 @@ FEWEST_BOOTSTRAP_GROUPS = 100
 MOST_BLOCKS = 100
 """More groups than this are left out in random blocks, which costs little and changes little."""
 
+BETA_POWER = -0.1
+"""Power of β that is jackknifed. With ln β limits held in 86 % where events dominate, see the validation."""
+
 IntervalMethod = Literal["percentile", "bca", "jackknife"]
 Over = Literal["motion", "event"]
 WeightedFit = Callable[[Floats], Floats]
@@ -390,21 +393,25 @@ def _jackknife_limits(
     factor = _student(level, groups)
     log_theta = float(_log_theta(estimate[None, :])[0])
     half = factor * float(_jackknife_error(_log_theta(deleted)))
-    log_beta = float(np.log(_beta(estimate[None, :])[0]))
-    left_out = np.log(_beta(deleted))
-    # the jackknife also takes out the first-order bias of ln β, which few groups make too small; where
+    # β of few groups has a long lower tail, also in its logarithm; this power of it has less of one
+    power = float(_beta(estimate[None, :])[0] ** BETA_POWER)
+    with np.errstate(divide="ignore"):
+        left_out = _beta(deleted) ** BETA_POWER
+    # the jackknife also takes out the first-order bias of β, which few groups make too small; where
     # that puts the limits beside the estimate, they are stretched to hold it
-    centre = groups * log_beta - (groups - 1) * float(left_out.mean())
+    centre = groups * power - (groups - 1) * float(left_out.mean())
     half_beta = factor * float(_jackknife_error(left_out))
     if not np.isfinite(half):
         half = np.inf
-    # of two groups each alone has no scatter, so two say nothing about β
-    if groups < 3 or not (np.isfinite(centre) and np.isfinite(half_beta)):
-        return (np.exp(log_theta - half), np.exp(log_theta + half)), (0.0, np.inf)
-    return (
-        (float(np.exp(log_theta - half)), float(np.exp(log_theta + half))),
-        (float(np.exp(centre - half_beta)), float(np.exp(centre + half_beta))),
-    )
+    theta = (float(np.exp(log_theta - half)), float(np.exp(log_theta + half)))
+    # of two groups each alone has no scatter, so two say nothing about β; nor do those without which
+    # there is no curve
+    known = np.isfinite(left_out).all() and (left_out > 0).all()
+    if groups < 3 or not known or not centre + half_beta > 0:
+        return theta, (0.0, np.inf)
+    lower = (centre + half_beta) ** (1 / BETA_POWER)
+    upper = (centre - half_beta) ** (1 / BETA_POWER) if centre > half_beta else np.inf
+    return theta, (float(lower), float(upper))
 
 
 def _pair(coefficients: Floats) -> tuple[float, float]:
