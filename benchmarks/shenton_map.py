@@ -12,7 +12,7 @@ from matplotlib.colors import ListedColormap
 
 from rockfrag import Block
 from rockfrag.rocking import simulate
-from rockfrag.units import STANDARD_GRAVITY as G
+from rockfrag.units import GRAVITY as G
 
 MODES = ("stands", "slides left", "rocks left", "rocks left, slides left")
 NAMES = ("rests", "slides", "rocks", "slides\nand rocks")

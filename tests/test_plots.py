@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Motion, Stack, simulate
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 STATUE = Block(0.3, 1.2, 200.0)
 STACK = Stack(Block(0.4, 0.3, 100.0), STATUE)
@@ -21,7 +21,7 @@ def test_a_motion_shows_acceleration_velocity_and_displacement() -> None:
     ]
     last = [panel.lines[1].get_ydata()[-1] for panel in constant.axes]
     # a, a t and a t²/2 after 2 s
-    assert last == pytest.approx([2.0 / STANDARD_GRAVITY, 400.0, 400.0])
+    assert last == pytest.approx([2.0 / GRAVITY, 400.0, 400.0])
 
 
 def test_a_response_shows_rotations_over_the_critical_angle_and_every_impact() -> None:

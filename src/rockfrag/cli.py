@@ -91,7 +91,7 @@ def _simulate(options: argparse.Namespace) -> int:
     from rockfrag.motions.scaling import scale_to_pga
     from rockfrag.records.read import read_motion
     from rockfrag.rocking import Stack, simulate
-    from rockfrag.units import STANDARD_GRAVITY
+    from rockfrag.units import GRAVITY
 
     _check_image(options.plot)
     statue = _block("--body", options.body)
@@ -108,7 +108,7 @@ def _simulate(options: argparse.Namespace) -> int:
     if restitution is not None and options.pedestal:
         restitution = (restitution, restitution)
     response = simulate(body, acceleration, motion.dt, restitution=restitution)
-    peak = abs(acceleration).max() / STANDARD_GRAVITY
+    peak = abs(acceleration).max() / GRAVITY
     print(
         f"{options.record}: peak {peak:.4f} g, {motion.acceleration.size} samples of {motion.dt} s"
     )
@@ -151,7 +151,7 @@ def _acceleration_doubt(peak: float, body: "Body") -> str:
     """Say that the motion looks as if it were in another unit, or return an empty text."""
     from rockfrag.plausibility import LEAST_PEAK, peak_warning
     from rockfrag.rocking import Block
-    from rockfrag.units import STANDARD_GRAVITY
+    from rockfrag.units import GRAVITY
 
     if 0 < peak < LEAST_PEAK:
         return ""  # `simulate` itself says so
@@ -161,7 +161,7 @@ def _acceleration_doubt(peak: float, body: "Body") -> str:
         else [arm(pole) for arm in (body.common_arm, body.statue_arm) for pole in (1, -1)]
     )
     # thesis eq. 2.1 and 2.21 to 2.25: the least acceleration that opens a contact
-    return peak_warning(peak, min(abs(arm.x) / arm.y for arm in arms) * STANDARD_GRAVITY)
+    return peak_warning(peak, min(abs(arm.x) / arm.y for arm in arms) * GRAVITY)
 
 
 def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]

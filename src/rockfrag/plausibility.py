@@ -1,7 +1,7 @@
 """What looks like a mistake of unit: densities no solid has, sizes and accelerations out of range."""
 
 from rockfrag.errors import InputError
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 DENSITIES = (20.0, 22_600.0)
 """Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
@@ -74,18 +74,16 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
     """
     if peak > LARGEST_PEAK:
         return (
-            f"the peak acceleration is {peak:.3g} m/s², {peak / STANDARD_GRAVITY:.3g} g; if the motion "
+            f"the peak acceleration is {peak:.3g} m/s², {peak / GRAVITY:.3g} g; if the motion "
             "is in cm/s², divide it by 100"
         )
     doubtful = (
-        least_uplift is not None
-        and peak <= LARGEST_IN_G
-        and peak < least_uplift <= peak * STANDARD_GRAVITY
+        least_uplift is not None and peak <= LARGEST_IN_G and peak < least_uplift <= peak * GRAVITY
     )
     if 0 < peak < LEAST_PEAK or doubtful:
         short = f", less than the {least_uplift:.3g} m/s² that start rocking" if doubtful else ""
         return (
             f"the peak acceleration is {peak:.3g} m/s²{short}; if the motion is in g, multiply it by "
-            f"{STANDARD_GRAVITY:g}"
+            f"{GRAVITY:g}"
         )
     return ""

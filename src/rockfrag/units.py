@@ -9,8 +9,11 @@ from collections.abc import Mapping
 
 from rockfrag.errors import InputError
 
-STANDARD_GRAVITY = 9.81
-"""Acceleration of gravity [m/s²] of the thesis; its tables follow from it to the printed digit."""
+GRAVITY = 9.81
+"""Acceleration of gravity [m/s²] of the thesis, whose tables follow from it to the printed digit.
+
+Standard gravity, which other programs mean by g, is 9.80665 m/s².
+"""
 
 CENTIMETRES_PER_METRE = 100.0
 

@@ -7,7 +7,7 @@ import pytest
 
 from rockfrag.campaign.table_motions import table_motions
 from rockfrag.errors import InputError
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 TIME = np.arange(0, 4, 0.005)
 SHAKING = 0.3 * np.sin(2 * np.pi * 2 * TIME) * np.hanning(len(TIME))
@@ -22,7 +22,7 @@ def archive(folder: Path, **motions: np.ndarray) -> Path:
 def test_an_archive_is_read_in_its_unit(tmp_path: Path):
     (motion,) = table_motions(archive(tmp_path, a=SHAKING), ["a"], unit="g", dt=0.005)
     assert motion.dt == 0.005
-    np.testing.assert_allclose(motion.acceleration, SHAKING * STANDARD_GRAVITY)
+    np.testing.assert_allclose(motion.acceleration, SHAKING * GRAVITY)
 
 
 def test_files_are_named_by_their_motion(tmp_path: Path):
@@ -43,7 +43,7 @@ def test_conditioning_takes_away_offset_and_spikes(tmp_path: Path):
     )
     # where the spike was stands a neighbour, which the slope of the motion sets apart
     slope = np.abs(np.diff(SHAKING)).max()
-    np.testing.assert_allclose(motion.acceleration / STANDARD_GRAVITY, SHAKING, atol=slope)
+    np.testing.assert_allclose(motion.acceleration / GRAVITY, SHAKING, atol=slope)
     assert motion.provenance[-1]["replaced"] == 1
 
 

@@ -8,7 +8,7 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PPoly, make_interp_spline
 
 from rockfrag.motions import integrate, peak_displacement, peak_velocity
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 TABLE_3_3 = [
     ("Friuli", 0.35, 22.020, 4.067),
@@ -26,7 +26,7 @@ accelerations = st.lists(st.integers(-5000, 5000), min_size=2, max_size=30).map(
 @pytest.mark.parametrize(("name", "pga_g", "pgv_cm_s", "pgd_cm"), TABLE_3_3)
 def test_table_3_3_to_the_printed_digit(four_records, name, pga_g, pgv_cm_s, pgd_cm):
     motion = four_records[name]
-    assert round(motion.pga / STANDARD_GRAVITY, 2) == pga_g
+    assert round(motion.pga / GRAVITY, 2) == pga_g
     assert round(100 * peak_velocity(motion.acceleration, motion.dt), 3) == pgv_cm_s
     assert round(100 * peak_displacement(motion.acceleration, motion.dt), 3) == pgd_cm
 

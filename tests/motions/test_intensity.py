@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.units import STANDARD_GRAVITY as G
+from rockfrag.units import GRAVITY as G
 
 
 @pytest.fixture(scope="module")

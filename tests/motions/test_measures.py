@@ -10,7 +10,7 @@ from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.files import write_table
 from rockfrag.records.motion import Motion
-from rockfrag.units import STANDARD_GRAVITY as G
+from rockfrag.units import GRAVITY as G
 
 COLUMNS = [
     *("name", "event", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),

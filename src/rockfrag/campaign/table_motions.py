@@ -13,9 +13,9 @@ from rockfrag.motions.processing import process
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
 from rockfrag.records.read import read_motion
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
-LARGEST_PEAK = 10 * STANDARD_GRAVITY
+LARGEST_PEAK = 10 * GRAVITY
 """Largest acceleration that a shake table is believed to make [m/s²]; volts and counts look larger."""
 
 KEY = "{motion}"
@@ -59,7 +59,7 @@ def table_motions(
     for count, motion in enumerate(_read(str(source), list(names), unit, dt, channel), start=1):
         if motion.pga > LARGEST_PEAK:
             raise InputError(
-                f"{source}: motion {motion.name} peaks at {motion.pga / STANDARD_GRAVITY:.3g} g, which no shake "
+                f"{source}: motion {motion.name} peaks at {motion.pga / GRAVITY:.3g} g, which no shake "
                 "table reaches; it may be in volts or counts, or another column: check unit and channel."
             )
         found.append(process(motion, conditioning))

@@ -8,6 +8,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pandas as pd
+from scipy import constants
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
@@ -33,7 +34,7 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     """
     spectral = _SPECTRAL.match(name)
     if name in ("PGA", "AvgSA") or spectral:
-        factors = {"g": 1.0, "m/s²": 1.0 / 9.80665}
+        factors = {"g": 1.0, "m/s²": 1.0 / constants.g}
     elif name == "PGV":
         factors = {"cm/s": 1.0, "m/s": 100.0}
     else:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rockfrag.motions.checks import not_negative, positive
 from rockfrag.motions.integration import peak_displacement, peak_velocity
 from rockfrag.records.motion import Motion
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -76,7 +76,7 @@ def cumulative_arias(motion: Motion) -> Floats:
     from scipy.integrate import cumulative_trapezoid
 
     energy = cumulative_trapezoid(motion.acceleration**2, dx=motion.dt, initial=0.0)
-    return np.asarray(energy * (math.pi / (2 * STANDARD_GRAVITY)))
+    return np.asarray(energy * (math.pi / (2 * GRAVITY)))
 
 
 def arias(motion: Motion) -> float:
@@ -332,7 +332,7 @@ def uplift_ratio(motion: Motion, alpha: float) -> float:
         If the angle is not positive.
     """
     alpha = positive("uplift_ratio", "alpha", alpha, "radians")
-    return pga(motion) / (STANDARD_GRAVITY * math.tan(alpha))
+    return pga(motion) / (GRAVITY * math.tan(alpha))
 
 
 def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
@@ -357,7 +357,7 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
     """
     alpha = positive("velocity_ratio", "alpha", alpha, "radians")
     p = not_negative("velocity_ratio", "p", p, "1/s")
-    return p * pgv(motion) / (STANDARD_GRAVITY * math.tan(alpha))
+    return p * pgv(motion) / (GRAVITY * math.tan(alpha))
 
 
 def frequency_ratio(pulse_period: float, p: float) -> float:

@@ -13,7 +13,7 @@ from rockfrag.motions.pulse_extraction import strongest_pulse
 from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 SPECTRAL_PERIODS = (0.3, 1.0)
 """Periods at which a table gives the 5 % damped spectrum unless others are asked for [s]."""
@@ -53,7 +53,7 @@ def measure_motion(
         "name": motion.name,
         "event": str(motion.metadata.get("event", "")),
         "floor": str(motion.metadata.get("floor", "")),
-        "pga_g": intensity.pga(motion) / STANDARD_GRAVITY,
+        "pga_g": intensity.pga(motion) / GRAVITY,
         "pgv_cm_s": intensity.pgv(motion) * cm,
         "pgd_cm": intensity.pgd(motion) * cm,
         "pgv_over_pga_s": intensity.pgv_over_pga(motion),
@@ -64,7 +64,7 @@ def measure_motion(
         "mean_period_s": intensity.mean_period(motion),
         "predominant_period_s": intensity.predominant_period(motion),
         **_spectral(motion, periods, damping),
-        "avgsa_g": intensity.average_spectral_acceleration(motion, damping) / STANDARD_GRAVITY,
+        "avgsa_g": intensity.average_spectral_acceleration(motion, damping) / GRAVITY,
         "housner_cm": intensity.housner_intensity(motion, damping) * cm,
         "pulse_period_s": pulse.period,
         "pulse_velocity_cm_s": pulse.velocity * cm,
@@ -194,7 +194,7 @@ def measure_pair(
     def all_measures(motion: Motion) -> dict[str, float]:
         spectral = _spectral(motion, periods, damping)
         return {
-            "pga_g": intensity.pga(motion) / STANDARD_GRAVITY,
+            "pga_g": intensity.pga(motion) / GRAVITY,
             "pgv_cm_s": intensity.pgv(motion) * CENTIMETRES_PER_METRE,
             **{name: value for name, value in spectral.items() if name.startswith("sa_")},
         }
@@ -214,7 +214,7 @@ def _spectral(motion: Motion, periods: Sequence[float], damping: float) -> dict[
     values: dict[str, float] = {}
     for i, period in enumerate(spectrum.period):
         label = f"{period:.12g}".replace(".", "_") + ("" if period % 1 else "_0") + "s"
-        values[f"sa_{label}_g"] = float(spectrum.pseudo_acceleration[i]) / STANDARD_GRAVITY
+        values[f"sa_{label}_g"] = float(spectrum.pseudo_acceleration[i]) / GRAVITY
         values[f"sv_{label}_cm_s"] = float(spectrum.velocity[i]) * CENTIMETRES_PER_METRE
         values[f"sd_{label}_cm"] = float(spectrum.displacement[i]) * CENTIMETRES_PER_METRE
     return values

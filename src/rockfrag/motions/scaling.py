@@ -7,7 +7,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions.checks import not_negative, positive
 from rockfrag.motions.intensity import arias, pga, pgv, spectral_acceleration
 from rockfrag.records.motion import Motion
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def factors_to_pga(motion: Motion, pga_g: Floats) -> Floats:
     """
     if motion.pga <= 0:
         _factor("factors_to_pga", motion, 1.0, motion.pga)
-    return pga_g * STANDARD_GRAVITY / motion.pga
+    return pga_g * GRAVITY / motion.pga
 
 
 def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
@@ -60,7 +60,7 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
         If the motion is zero throughout or the wanted value is not a positive number.
     """
     target = positive("step scale_to_pga", "pga_g", pga_g, "g")
-    factor = _factor("scale_to_pga", motion, target * STANDARD_GRAVITY, pga(motion))
+    factor = _factor("scale_to_pga", motion, target * GRAVITY, pga(motion))
     return motion.after("scale_to_pga", motion.acceleration * factor, pga_g=target, factor=factor)
 
 
@@ -109,7 +109,7 @@ def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0
     period_s = positive("step scale_to_sa", "period_s", period_s, "seconds")
     damping = not_negative("step scale_to_sa", "damping", damping)
     actual = spectral_acceleration(motion, period_s, damping)
-    factor = _factor("scale_to_sa", motion, target * STANDARD_GRAVITY, actual)
+    factor = _factor("scale_to_sa", motion, target * GRAVITY, actual)
     return motion.after(
         "scale_to_sa",
         motion.acceleration * factor,

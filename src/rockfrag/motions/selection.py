@@ -11,7 +11,7 @@ from rockfrag.motions.checks import not_negative, number, positive
 from rockfrag.motions.conditioning import starting_later
 from rockfrag.motions.intensity import arias_times, bracketed_times
 from rockfrag.records.motion import Motion
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 
 def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Motion:
@@ -60,11 +60,11 @@ def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
         If the threshold is not positive or never reached.
     """
     threshold_g = positive("step bracketed_part", "threshold_g", threshold_g, "g")
-    start, end = bracketed_times(motion, threshold_g * STANDARD_GRAVITY)
+    start, end = bracketed_times(motion, threshold_g * GRAVITY)
     if math.isnan(start):
         raise InputError(
             f"step bracketed_part: motion {motion.name!r} never reaches {threshold_g} g "
-            f"(its peak is {motion.pga / STANDARD_GRAVITY:.3g} g); lower threshold_g."
+            f"(its peak is {motion.pga / GRAVITY:.3g} g); lower threshold_g."
         )
     return _between(motion, "bracketed_part", start, end, threshold_g=threshold_g)
 

@@ -18,7 +18,7 @@ from rockfrag.motions.checks import number, plain, positive, whole
 from rockfrag.motions.integration import integrate
 from rockfrag.motions.spectra import oscillator_response, response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -94,7 +94,7 @@ def evolutionary(
             f"the sampling frequency ({0.25 / dt:g} Hz); give a smaller dt."
         )
     noise = np.random.default_rng(seed).standard_normal(count)
-    intensity = arias_m_s * 2 * STANDARD_GRAVITY / math.pi
+    intensity = arias_m_s * 2 * GRAVITY / math.pi
     modulation = np.sqrt(intensity * gamma.pdf(time, shape, scale=spread))
     strong = modulation * _unit_process(noise, frequency, filter_damping, dt)
     # two periods of the oscillator let the motion come to rest
@@ -196,7 +196,7 @@ def spectrum_compatible(
         "Gasparini & Vanmarcke (1976)",
         seed,
         periods_s=given.tolist(),
-        target_g=(wanted / STANDARD_GRAVITY).tolist(),
+        target_g=(wanted / GRAVITY).tolist(),
         damping=damping,
         d5_95_s=d5_95_s,
         mid_s=mid_s,
@@ -261,7 +261,7 @@ def _target(who: str, periods: ArrayLike, target_g: ArrayLike, dt: float) -> tup
         )
     if not (np.isfinite(wanted).all() and (wanted > 0).all()):
         raise InputError(f"{who}: target_g must be positive numbers, got {wanted.tolist()}.")
-    return given, wanted * STANDARD_GRAVITY
+    return given, wanted * GRAVITY
 
 
 def _at_rest(acceleration: Floats, window: Floats, dt: float) -> Floats:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 STRONGEST_G = 3.0
 """Peak [g] that hardly any record of an earthquake exceeds."""
@@ -40,9 +40,9 @@ def doubts(motion: Motion) -> list[str]:
     if peak == 0:
         return ["all samples are zero"]
     found = []
-    if peak > STRONGEST_G * STANDARD_GRAVITY:
+    if peak > STRONGEST_G * GRAVITY:
         found.append(
-            f"a peak of {peak / STANDARD_GRAVITY:.3g} g, above {STRONGEST_G:g} g (is the unit right?)"
+            f"a peak of {peak / GRAVITY:.3g} g, above {STRONGEST_G:g} g (is the unit right?)"
         )
     if motion.dt > _COARSEST:
         found.append(f"a sampling interval of {motion.dt:g} s, too long for short impacts")

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ def motion_figure(acceleration: Floats, dt: float, title: str) -> Figure:
     velocity = cumulative_trapezoid(acceleration, dx=dt, initial=0)
     displacement = cumulative_trapezoid(velocity, dx=dt, initial=0)
     drawn = (
-        ("Acceleration [g]", acceleration / STANDARD_GRAVITY),
+        ("Acceleration [g]", acceleration / GRAVITY),
         ("Velocity [cm/s]", 100 * velocity),
         ("Displacement [cm]", 100 * displacement),
     )

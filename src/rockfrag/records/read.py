@@ -19,7 +19,7 @@ from rockfrag.records.parsing.quantities import ASKED_UNITS, TO_SI, asked_unit
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.records.sources.folder import is_no_record
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 _GRAVITY_SHARE = 0.05
 """A mean within this share of g is the weight of the sensor's mass, not motion."""
@@ -303,8 +303,7 @@ def _settled_unit(
         return asked
     peak = float(np.abs(samples - samples.mean()).max())
     candidates = ", ".join(
-        f"{peak * TO_SI[asked_unit(name)] / STANDARD_GRAVITY:.3g} g if {name}"
-        for name in ASKED_UNITS
+        f"{peak * TO_SI[asked_unit(name)] / GRAVITY:.3g} g if {name}" for name in ASKED_UNITS
     )
     raise InputError(
         f"{record.name}: the file does not state its unit; give unit= "
@@ -317,7 +316,7 @@ def _zero_level(channel: Channel, acceleration: NDArray[np.float64]) -> float:
     mean = float(acceleration.mean())
     if channel.raw:
         return mean
-    weight = abs(abs(mean) - STANDARD_GRAVITY) < _GRAVITY_SHARE * STANDARD_GRAVITY
+    weight = abs(abs(mean) - GRAVITY) < _GRAVITY_SHARE * GRAVITY
     return mean if weight else 0.0
 
 

@@ -35,7 +35,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import Record, motion_of, read_record
 from rockfrag.records.sources.folder import files_of
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 COLUMNS = (
     "file",
@@ -148,7 +148,7 @@ def _row(record: Record, number: int, unit: str | None) -> dict[str, Any]:
         return row | {"error": str(error), "status": UNREADABLE}
     return row | {
         "unit": motion.metadata["unit"],
-        "pga_g": motion.pga / STANDARD_GRAVITY,
+        "pga_g": motion.pga / GRAVITY,
         "pgv_cm_s": pgv(motion) * CENTIMETRES_PER_METRE,
         "pgd_cm": pgd(motion) * CENTIMETRES_PER_METRE,
         "dominant_period_s": dominant_period(motion),
@@ -247,12 +247,12 @@ def record_figure(motion: Motion) -> Figure:
     velocity, displacement = integrate(motion.acceleration, motion.dt)
     cm = CENTIMETRES_PER_METRE
     histories = (
-        (motion.acceleration / STANDARD_GRAVITY, "Acceleration [g]", BLUE),
+        (motion.acceleration / GRAVITY, "Acceleration [g]", BLUE),
         (velocity * cm, "Velocity [cm/s]", GREEN),
         (displacement * cm, "Displacement [cm]", ORANGE),
     )
     peaks = (
-        f"{motion.pga / STANDARD_GRAVITY:.3f} g",
+        f"{motion.pga / GRAVITY:.3f} g",
         f"{pgv(motion) * cm:.2f} cm/s",
         f"{pgd(motion) * cm:.2f} cm",
     )
@@ -286,7 +286,7 @@ def _history(
 
 def _response(panel: Axes, motion: Motion) -> None:
     spectrum = response_spectrum(motion, _SPECTRUM_PERIODS, _DAMPING)
-    values = spectrum.pseudo_acceleration / STANDARD_GRAVITY
+    values = spectrum.pseudo_acceleration / GRAVITY
     _logarithmic(panel, _SPECTRUM_PERIODS, values, BLUE)
     panel.set_xlabel("Period [s]")
     panel.set_ylabel("PSA, 5 % damping [g]")

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from rockfrag.errors import InputError
 from rockfrag.rocking.checks import positive_number, real_number, shown
 from rockfrag.rocking.kernels import geometry
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 
 class Vector(NamedTuple):
@@ -222,7 +222,7 @@ class Block:
         """Moment of inertia about the pole, I_O = I_C + m R² [kg m²]."""
         return geometry.pole_inertia(self.shape, pole)
 
-    def frequency(self, pole: int = 1, g: float = STANDARD_GRAVITY) -> float:
+    def frequency(self, pole: int = 1, g: float = GRAVITY) -> float:
         """Frequency parameter p = √(m g R / I_O) [1/s]; thesis eq. 2.16 with its square mended."""
         return geometry.frequency(self.shape, pole, g)
 

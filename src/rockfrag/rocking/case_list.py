@@ -10,7 +10,7 @@ from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, checked_threads
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -25,7 +25,7 @@ def overturns_of_cases(
     scale: Array,
     *,
     restitution: Sequence[Restitution] | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
 ) -> NDArray[np.bool_]:

@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 
 def _positive(**values: float) -> None:
@@ -140,7 +140,7 @@ class NoImpact:
 
 
 def no_impact(
-    acceleration: ArrayLike, dt: float, alpha: float, p: float, g: float = STANDARD_GRAVITY
+    acceleration: ArrayLike, dt: float, alpha: float, p: float, g: float = GRAVITY
 ) -> NoImpact:
     """Judge overturning without an impact for any motion, linear between samples, exactly.
 
@@ -281,7 +281,7 @@ def housner_half_sine(omega: float, p: float) -> float:
 # ----------------------------------------------------------------------- rules of thumb
 
 
-def west_acceleration(block: Block, g: float = STANDARD_GRAVITY) -> float:
+def west_acceleration(block: Block, g: float = GRAVITY) -> float:
     """Least acceleration that starts rocking, and the one West's formula overturns at, (b/h) g [m/s²].
 
     Thesis eq. 2.1; Milne & Omori (1893), Kirkpatrick (1927).
@@ -289,7 +289,7 @@ def west_acceleration(block: Block, g: float = STANDARD_GRAVITY) -> float:
     return min(abs(block.arm(s).x) / block.arm(s).y for s in (1, -1)) * g
 
 
-def housner_velocity(alpha: float, p: float, g: float = STANDARD_GRAVITY) -> float:
+def housner_velocity(alpha: float, p: float, g: float = GRAVITY) -> float:
     """Ground velocity of a sudden step that just overturns a slender block, θc g / p [m/s].
 
     Housner (1963): θc = v √(m R / (g I_O)), by equating energies; with v the velocity spectrum's
@@ -307,7 +307,7 @@ class LowerBounds:
     velocity: float
 
 
-def ishiyama_bounds(block: Block, g: float = STANDARD_GRAVITY) -> LowerBounds:
+def ishiyama_bounds(block: Block, g: float = GRAVITY) -> LowerBounds:
     """Lower bounds of overturning, a ≥ (B/H) g and v ≥ 10 B/√H with lengths in cm (Ishiyama 1982).
 
     With B and H in metres the velocity is B/√H m/s, which holds for the Earth's gravity.

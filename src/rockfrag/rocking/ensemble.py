@@ -41,7 +41,7 @@ from rockfrag.rocking.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motion
 from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
 from rockfrag.rocking.kernels.record import EVENT, SAMPLE
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 
@@ -153,7 +153,7 @@ def overturns(
     linear: bool = False,
     friction: float | Sequence[FrictionInput] | None = None,
     vertical: MotionLike | Sequence[MotionLike] | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
 ) -> EnsembleResult:

@@ -29,7 +29,7 @@ from rockfrag.rocking.inputs import (
 )
 from rockfrag.rocking.kernels.record import EVENT, SAMPLE
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def stream_overturns(
     *,
     columns: Literal["verdict", "peaks"] = "verdict",
     restitution: Sequence[Restitution] | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -201,7 +201,7 @@ def stream_histories(
     path: str | os.PathLike[str],
     *,
     restitution: Sequence[Restitution] | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,

@@ -16,7 +16,7 @@ from rockfrag.figure_style import (
 )
 from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.response import Response
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 _PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
@@ -40,9 +40,7 @@ def response_figure(response: Response, title: str) -> Figure:
             len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
         )
         ground, rotation, *between, pattern = panels
-        ground.plot(
-            response.time, response.ground_acceleration / STANDARD_GRAVITY, color=BLACK, lw=0.5
-        )
+        ground.plot(response.time, response.ground_acceleration / GRAVITY, color=BLACK, lw=0.5)
         ground.set_ylabel("Ground [g]")
         ground.set_title(title, loc="left")
         for i, name in enumerate(names):

@@ -19,7 +19,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.simulation import simulate
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class RestitutionFit:
 
 
 def peak_after(
-    block: Block, speed: float, pole: int = 1, *, linear: bool = False, g: float = STANDARD_GRAVITY
+    block: Block, speed: float, pole: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
     """Peak rotation of a block that leaves its base with an angular velocity.
 
@@ -83,7 +83,7 @@ def peak_after(
 
 
 def speed_before(
-    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = STANDARD_GRAVITY
+    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
     """Angular velocity [rad/s] with which a block comes down from rest at a rotation [rad]."""
     alpha, p = block.critical_angle(pole), block.frequency(pole, g)
@@ -94,7 +94,7 @@ def speed_before(
 
 
 def quarter_period(
-    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = STANDARD_GRAVITY
+    block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
     """Time from rest at a rotation ``peak`` [rad] to the impact [s]; thesis eq. 2.20 if linear.
 
@@ -117,7 +117,7 @@ def restitution_from_peaks(
     *,
     linear: bool = False,
     confidence: float = 0.95,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
 ) -> RestitutionFit:
     """Fit e to successive peak rotations, by least squares on the rotations.
 
@@ -174,7 +174,7 @@ def restitution_from_impacts(
     first_pole: int = 1,
     linear: bool = False,
     confidence: float = 0.95,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
 ) -> RestitutionFit:
     """Fit e to the times of successive impacts, by least squares on the times.
 
@@ -240,7 +240,7 @@ def restitution_from_history(
     theta: ArrayLike,
     *,
     confidence: float = 0.95,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
 ) -> RestitutionFit:
     """Fit e to a sampled history of free rocking, by least squares on the rotations.
 

@@ -37,7 +37,7 @@ from rockfrag.rocking.kernels.record import (
 )
 from rockfrag.rocking.kernels.single import Shaking, march, scratch
 from rockfrag.rocking.response import PATTERNS, Response
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 
@@ -75,7 +75,7 @@ def simulate(
     linear: bool = False,
     friction: FrictionInput | None = None,
     vertical: MotionLike | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
 ) -> Response:
     """Simulate a block, or a statue on its pedestal, under the motion of the ground.
 

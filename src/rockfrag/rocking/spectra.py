@@ -20,7 +20,7 @@ from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
 from rockfrag.rocking.kernels.elementary import sin_cos
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ class RockingSpectrum:
         return np.isinf(self.rotation)
 
 
-def uniform_block(alpha: float, period: float, g: float = STANDARD_GRAVITY) -> Block:
+def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
     """Return the uniform block of critical angle α [rad] and apparent period 2π/p [s].
 
     Its size follows from p = √(3g/4R) (thesis eq. 2.17); its density is 1000 kg/m³ for a depth of
@@ -79,7 +79,7 @@ def rocking_spectrum(
     alpha: ArrayLike | Sequence[float],
     *,
     restitution: Restitution = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     threads: int | None = None,
 ) -> RockingSpectrum:
     """Rocking spectrum of a motion, for free-standing uniform blocks.

@@ -12,7 +12,7 @@ from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.case_list import overturns_of_cases
 from rockfrag.rocking.checks import whole_number
 from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def fragile_verdicts(
     sample: int = 1000,
     seed: int = 0,
     restitution: Sequence[Restitution] | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
 ) -> FragileVerdicts:

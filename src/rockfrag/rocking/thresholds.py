@@ -20,7 +20,7 @@ from rockfrag.rocking.case_list import overturns_of_cases
 from rockfrag.rocking.checks import positive_number
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, MotionLike, listed
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 MOST_GRID_CASES = 5_000_000
@@ -65,7 +65,7 @@ def find_thresholds(
     tolerance: float,
     smallest_window: float,
     restitution: Sequence[Restitution] | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
 ) -> Thresholds:

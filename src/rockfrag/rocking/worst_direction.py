@@ -13,7 +13,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.thresholds import find_thresholds
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 DIRECTIONS_DEG = tuple(range(0, 360, 10))
 """Directions that are tried [degrees]: all around, for opposite ones are not alike to a body that leans."""
@@ -91,7 +91,7 @@ def worst_direction(
         {
             "angle_deg": [float(angle) for angle in directions_deg],
             "first_overturning": found.sort_values("motion")["first_overturning"].to_numpy(),
-            "peak_g": [motion.pga / STANDARD_GRAVITY for motion in motions],
+            "peak_g": [motion.pga / GRAVITY for motion in motions],
         }
     )
     scales = table["first_overturning"]

@@ -19,7 +19,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.shaketable.tests_table import BODIES, CENSORED, PEDESTALS, as_tests_table
 from rockfrag.tabular import read_cells
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 _TEXT = (
     "test",
@@ -173,7 +173,7 @@ def _test(row: _Row, unit: str) -> dict[str, object]:
 
 
 def _bounds(row: _Row, unit: str, censored: str) -> tuple[float, float]:
-    in_g = 1.0 if unit == "g" else 1 / STANDARD_GRAVITY
+    in_g = 1.0 if unit == "g" else 1 / GRAVITY
     low, high = _BOUNDS[unit]
     lower = row.number(low, lambda x: x >= 0, "zero or more")
     upper = row.number(high, lambda x: x > 0, "greater than zero")
@@ -194,7 +194,7 @@ def _reported(row: _Row, lower_g: float, censored: str) -> float:
     """Figure of the laboratory [g]: its own column, else the largest amplitude survived."""
     figures = [
         row.number(column, lambda x: x > 0, "greater than zero") / one_g
-        for column, one_g in (("amplitude_g", 1.0), ("amplitude_m_s2", STANDARD_GRAVITY))
+        for column, one_g in (("amplitude_g", 1.0), ("amplitude_m_s2", GRAVITY))
         if row.fields.get(column)
     ]
     if len(figures) > 1:

@@ -19,7 +19,7 @@ from rockfrag.motions.filtering import highpass
 from rockfrag.motions.integration import integrate
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 FILTER_ORDER = 4
 """Order of the zero-phase Butterworth high-pass that makes room for a motion."""
@@ -100,7 +100,7 @@ class Shaker:
             travel=float(np.ptp(displacement)),
             excursion=float(np.abs(displacement).max()),
             velocity=float(np.abs(velocity).max()),
-            force=amplitude_g * STANDARD_GRAVITY * self.moved_mass(payload),
+            force=amplitude_g * GRAVITY * self.moved_mass(payload),
         )
 
     def moved_mass(self, payload: float) -> float:
@@ -291,4 +291,4 @@ def _filtered(motion: Motion, corner: float) -> Motion:
 
 
 def _demand_of(shaker: Shaker, motion: Motion, payload: float) -> Demand:
-    return shaker.demand(motion, motion.pga / STANDARD_GRAVITY, payload)
+    return shaker.demand(motion, motion.pga / GRAVITY, payload)

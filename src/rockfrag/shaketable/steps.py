@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -93,7 +93,7 @@ class ForceSteps:
 
     def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
         """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
-        weight = self.moved_mass_kg * STANDARD_GRAVITY
+        weight = self.moved_mass_kg * GRAVITY
         ladder = LinearSteps(self.start_n / weight, self.step_n / weight)
         return ladder.amplitudes(limit_g, phase)
 

@@ -6,10 +6,10 @@ import pandas as pd
 
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.study.configurations import Configuration
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 
-def uplift_accelerations(body: Body, g: float = STANDARD_GRAVITY) -> tuple[float, float]:
+def uplift_accelerations(body: Body, g: float = GRAVITY) -> tuple[float, float]:
     """Least accelerations [m/s²] at which a body starts to rock in pattern 3 and in pattern 4.
 
     A body at rest opens about the pole whose overturning moment first exceeds the weight's (thesis

@@ -29,7 +29,7 @@ from rockfrag.rocking.shapes import Shape, read_shape
 from rockfrag.stages.campaign import OURS
 from rockfrag.stages.stage import Job, Results
 from rockfrag.study.campaign import CampaignStudy
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 VARIED_SHARE = 4
 """Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
@@ -104,7 +104,7 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
 def _measured(tests: pd.DataFrame, motions: list[Motion]) -> pd.DataFrame:
     """Intensity of the motions themselves, where the table of tests has none."""
     return tests.assign(
-        pga_g=[pga(one) / STANDARD_GRAVITY for one in motions],
+        pga_g=[pga(one) / GRAVITY for one in motions],
         pgv_cm_s=[100 * pgv(highpass(one, DRIFT_CORNER_HZ)) for one in motions],
     )
 

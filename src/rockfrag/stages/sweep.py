@@ -10,7 +10,7 @@ from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 FALLEN = ("", "pedestal", "statue")
 
@@ -138,7 +138,7 @@ def as_recorded(
             "motion": [motion.name for motion in motions],
             "event": [motion.metadata.get("event") or motion.name for motion in motions],
             "floor": [motion.metadata["floor"] for motion in motions],
-            "pga_g": [motion.pga / STANDARD_GRAVITY for motion in motions],
+            "pga_g": [motion.pga / GRAVITY for motion in motions],
             "overturned": result.overturned[0, :, itself],
             "overturned_body": np.take(FALLEN, result.overturned_body[0, :, itself]),
             "peak_rotation": result.peak_rotation[0, :, itself],

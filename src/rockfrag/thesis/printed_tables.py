@@ -13,7 +13,7 @@ from rockfrag.rocking.bodies import Block
 from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.study.configurations import Configuration
 from rockfrag.tabular import read_rows
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 FOLDER = Path(__file__).parent / "printed"
 """The tables as printed: ``table_3_1.csv``, ``table_3_3.csv`` and ``table_4_1.csv``."""
@@ -122,7 +122,7 @@ def ground_measures(motions: Sequence[Motion]) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "name": [motion.name for motion in motions],
-            "pga_g": [pga(motion) / STANDARD_GRAVITY for motion in motions],
+            "pga_g": [pga(motion) / GRAVITY for motion in motions],
             "pgv_cm_s": [pgv(motion) * CENTIMETRES_PER_METRE for motion in motions],
             "pgd_cm": [pgd(motion) * CENTIMETRES_PER_METRE for motion in motions],
         }

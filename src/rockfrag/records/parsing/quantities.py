@@ -3,13 +3,13 @@
 import re
 
 from rockfrag.errors import InputError
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 TO_SI = {
-    "g": STANDARD_GRAVITY,
-    "g/10": STANDARD_GRAVITY / 10,
-    "mg": STANDARD_GRAVITY / 1e3,
-    "ug": STANDARD_GRAVITY / 1e6,
+    "g": GRAVITY,
+    "g/10": GRAVITY / 10,
+    "mg": GRAVITY / 1e3,
+    "ug": GRAVITY / 1e6,
     "m/s2": 1.0,
     "cm/s2": 0.01,
     "mm/s2": 0.001,

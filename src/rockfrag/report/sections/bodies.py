@@ -5,7 +5,7 @@ import pandas as pd
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.wording import counted, number, sentence
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 _COLUMNS = (
     Column("configuration", "Configuration"),
@@ -26,7 +26,7 @@ def _section(results: Results) -> Section:
         stands_on=bodies["stands_on"].replace("", "the floor"),
         width_cm=bodies["width_m"] * CENTIMETRES_PER_METRE,
         height_cm=bodies["height_m"] * CENTIMETRES_PER_METRE,
-        uplift_g=bodies["uplift_m_s2"] / STANDARD_GRAVITY,
+        uplift_g=bodies["uplift_m_s2"] / GRAVITY,
     )
     return Section(
         "bodies",

@@ -4,6 +4,7 @@ from rockfrag.report.figures.motion import MOST_PANELS, acceleration_histories
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import counted, listed
+from rockfrag.units import GRAVITY
 
 _COLUMNS = (
     Column("name", "Motion"),
@@ -44,7 +45,7 @@ def _accelerations(results: Results) -> FigureSpec:
         caption += f" The first {shown} of {len(ground)}."
     alt = (
         f"Ground accelerations of {counted(shown, 'record')}; the strongest, {peak.name}, peaks at "
-        f"{peak.pga / 9.81:.2f} g."
+        f"{peak.pga / GRAVITY:.2f} g."
     )
     return FigureSpec("accelerations", alt, caption, lambda: acceleration_histories(ground))
 

@@ -28,7 +28,7 @@ from rockfrag.rocking.contact.reference_model import (
     Model,
     Solution,
 )
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 Key = tuple[str, int, int]
@@ -109,7 +109,7 @@ def simulate_reference(
     vertical: ArrayLike | None = None,
     theta0: ArrayLike | None = None,
     omega0: ArrayLike | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     duration: float | None = None,
     closing: float = CLOSING,
 ) -> ContactResponse:

@@ -33,7 +33,7 @@ from rockfrag.rocking.inputs import (
 from rockfrag.rocking.kernels.jit import compiling_alone
 from rockfrag.rocking.kernels.single import GRAZING_SPEED
 from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 Modes = tuple[tuple[int, int], ...]
@@ -56,7 +56,7 @@ def simulate_with_friction(
     vertical: MotionLike | None = None,
     theta0: float | Sequence[float] | None = None,
     omega0: float | Sequence[float] | None = None,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     step: float = STEP,
     closing: float = CLOSING,
 ) -> Response:

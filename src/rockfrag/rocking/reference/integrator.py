@@ -24,7 +24,7 @@ from rockfrag.rocking.reference.model import (
     State,
 )
 from rockfrag.rocking.reference.response import ReferenceEvent, ReferenceResponse
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 RTOL, ATOL = 1e-10, 1e-14
 
@@ -63,7 +63,7 @@ def simulate_reference(
     omega0: ArrayLike | None = None,
     restitution: float | Sequence[float | None] | None = None,
     linear: bool = False,
-    g: float = STANDARD_GRAVITY,
+    g: float = GRAVITY,
     duration: float | None = None,
     chatter: float = CHATTER,
 ) -> ReferenceResponse:

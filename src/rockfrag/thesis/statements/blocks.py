@@ -24,7 +24,7 @@ from rockfrag.thesis.statements.setting import (
 )
 from rockfrag.thesis.statements.statement import Finding, Kind, Result, Undecidable, statement
 from rockfrag.thesis.statements.verdicts import NO_ERROR, SEEN, most
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 TABLE_3_1 = {
     "T1": (0.322, 19.61, 6.13),
@@ -202,7 +202,7 @@ def _least_half_sine(block: Block, linear: bool) -> float:
     """Least overturning peak of a half-sine pulse of ωp = 3 p, over g tan α [-]."""
     duration = math.pi / (3 * block.frequency())
     shape = np.sin(np.linspace(0, math.pi, 101))
-    unit = block.alpha * STANDARD_GRAVITY
+    unit = block.alpha * GRAVITY
     return bisect(
         lambda x: simulate(block, x * unit * shape, duration / 100, linear=linear).overturned,
         1.0,
@@ -262,7 +262,7 @@ def least_overturning_amplitudes(
 ) -> Floats:
     """Least overturning amplitude of `AMPLITUDES_G`, shape (bodies, motions); NaN if none does [g]."""
     motions = setting.sample
-    unit = np.array([STANDARD_GRAVITY / one.pga for one in motions])
+    unit = np.array([GRAVITY / one.pga for one in motions])
     found = overturns(
         bodies,
         [one.acceleration for one in motions],
@@ -333,7 +333,7 @@ def c20(setting: Setting) -> Result:
         rest = jump(block, 0.999999 * setting.alone[name])
         moved = max(moved, float(np.abs(rest.theta).max()))
         alpha = block.critical_angle(1)
-        unit = block.mass * STANDARD_GRAVITY * block.radius()
+        unit = block.mass * GRAVITY * block.radius()
         moments = []
         for fraction in fractions:
             response = simulate(block, np.zeros(2), 0.001, theta0=fraction * alpha)

@@ -10,7 +10,7 @@ from rockfrag.thesis.statements.evidence import PEDESTAL, Evidence
 from rockfrag.thesis.statements.orders import Part, order
 from rockfrag.thesis.statements.statement import Finding, Kind, Result, Undecidable, statement
 from rockfrag.thesis.statements.verdicts import NO_ERROR, ONE_INTERVAL, same
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 MOTIONS = 12
 UNCOUNTED = 10.0
@@ -87,7 +87,7 @@ def c56(tests: Evidence) -> Result:
     step = float((exact["upper_g"] / exact["lower_g"]).median()) - 1
     if not step > 0:
         raise Undecidable("the steps of the protocol are not known (lower_g and upper_g agree)")
-    computed = exact["force_n"] / exact["moved_mass_kg"] / STANDARD_GRAVITY
+    computed = exact["force_n"] / exact["moved_mass_kg"] / GRAVITY
     errors = exact.assign(error=np.log(computed / exact["amplitude_g"]))
     error = t_estimate(errors.groupby("event")["error"].mean())
     return same(

@@ -16,7 +16,7 @@ from rockfrag.thesis.statements.motion_spectra import PERIODS, SIZES
 from rockfrag.thesis.statements.setting import Floats, Setting
 from rockfrag.thesis.statements.statement import Finding, Kind, Result, Undecidable, statement
 from rockfrag.thesis.statements.verdicts import LEVEL, NO_ERROR, SEEN, known, most
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 DAMPINGS = (0.02, 0.10)
 LONG = 200.0
@@ -296,7 +296,7 @@ def c19(setting: Setting) -> Result:
         blocks,
         [one.acceleration for one in motions],
         [one.dt for one in motions],
-        AMPLITUDES_G * STANDARD_GRAVITY / peak[:, np.newaxis],
+        AMPLITUDES_G * GRAVITY / peak[:, np.newaxis],
         threads=setting.threads,
     ).overturned
     falls = found.any(axis=2)

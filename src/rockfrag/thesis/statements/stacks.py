@@ -21,7 +21,7 @@ from rockfrag.thesis.statements.setting import (
 )
 from rockfrag.thesis.statements.statement import Finding, Kind, Result, Undecidable, statement
 from rockfrag.thesis.statements.verdicts import NO_ERROR, most
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 TABLE_4_1 = {"T1": 3.27, "T2": 2.45, "T3": 1.96}
 TABLE_4_1_PATTERN_3 = {"P&T1": 3.69, "P&T2": 3.04, "P&T3": 2.56}
@@ -102,7 +102,7 @@ def c9(setting: Setting) -> Result:
     finding = Finding.FOR if suddenly == sudden.total() else Finding.SPECIMENS_ONLY
     if usual < first.total():
         finding = Finding.AGAINST
-    least = {name: a / STANDARD_GRAVITY for name, a in setting.pedestal_too.items()}
+    least = {name: a / GRAVITY for name, a in setting.pedestal_too.items()}
     return Result(
         finding,
         f"{usual} of {first.total()} start in pattern 3 or 4 under motions ({_counted(first)}), {suddenly} "
