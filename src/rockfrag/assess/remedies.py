@@ -10,7 +10,7 @@ from rockfrag.assess.objects import Objects, higher, wider
 from rockfrag.assess.risk import LEVEL, Target, event_weights
 from rockfrag.assess.verdicts import Verdicts
 from rockfrag.rocking.bodies import Body, Stack
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 WIDER = 1.25
 """Factor of a wider base."""
@@ -133,5 +133,5 @@ def fixed_to_floor(objects: Objects, peak: float) -> float:
     body = objects.body
     whole = body if not isinstance(body, Stack) else body.rigidly_joined()
     arm = min(abs(whole.arm(pole).x) for pole in (1, -1))
-    moment = whole.mass * (peak * whole.h - STANDARD_GRAVITY * arm)
+    moment = whole.mass * (peak * whole.h - GRAVITY * arm)
     return float(max(moment, 0.0) / whole.width)

@@ -14,7 +14,7 @@ from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
 from rockfrag.errors import InputError
 from rockfrag.schema import checked
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY, quantity
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
 
 YEARS = 50.0
@@ -166,7 +166,7 @@ def _level(settings: Mapping[str, Any]) -> Level | None:
 
 
 def _in_g(text: str) -> float:
-    return quantity(text, "m_s2", None) / STANDARD_GRAVITY
+    return quantity(text, "m_s2", None) / GRAVITY
 
 
 def _sensible(key: str, level: Level) -> Level:

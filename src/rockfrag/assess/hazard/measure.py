@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from rockfrag.errors import InputError
 from rockfrag.motions.intensity import pga, pgv, spectral_acceleration
 from rockfrag.records.motion import Motion
-from rockfrag.units import CENTIMETRES_PER_METRE, STANDARD_GRAVITY
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 PERIODS = (0.01, 10.0)
 """Periods of Sa that hazard models cover [s]."""
@@ -58,8 +58,8 @@ class Measure:
         if self.kind == "PGV":
             return pgv(motion) * CENTIMETRES_PER_METRE
         if self.kind == "PGA":
-            return pga(motion) / STANDARD_GRAVITY
-        return spectral_acceleration(motion, self.period) / STANDARD_GRAVITY
+            return pga(motion) / GRAVITY
+        return spectral_acceleration(motion, self.period) / GRAVITY
 
 
 PGA = Measure("PGA")

@@ -11,7 +11,7 @@ from rockfrag.assess.hazard.found import Found
 from rockfrag.assess.hazard.measure import PGA, PGV, Measure, read_measure
 from rockfrag.errors import InputError
 from rockfrag.tabular import cells_of
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 _EXPECTED = (
     "a column of levels (pga_g, pgv_cm_s or such as sa_0_3s_g) and one of annual_rate, return_period_years "
@@ -63,7 +63,7 @@ def _measure(title: str, path: str) -> tuple[Measure, float]:
         raise InputError(f"{path}: {title} is no unit of {found[1].upper()}; use g or cm_s.")
     if found[1] == "pgv":
         return PGV, {"cm_s": 1.0, "m_s": 100.0}[unit]
-    factor = {"g": 1.0, "m_s2": 1 / STANDARD_GRAVITY, "cm_s2": 0.01 / STANDARD_GRAVITY}[unit]
+    factor = {"g": 1.0, "m_s2": 1 / GRAVITY, "cm_s2": 0.01 / GRAVITY}[unit]
     if found[1] == "pga":
         return PGA, factor
     return read_measure(f"SA({found[2].replace('_', '.')})", path), factor
