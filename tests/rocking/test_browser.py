@@ -10,13 +10,13 @@ import sys
 
 import numpy as np
 import pytest
+from rockfrag.rocking.browser import driver_text, module_bytes
 
 from rockfrag.rocking import Block, Stack, simulate
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.rocking.inputs import STEP, free_samples, step_count
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 NODE = shutil.which("node")
 needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
@@ -137,8 +137,8 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         body, events = response.body, response.events
         assert one["record"] == record.tobytes().hex()
         assert one["shaking"] == {
-            "substeps": step_count(body, case["dt"], STANDARD_GRAVITY, STEP),
-            "freeSamples": free_samples(body, case["dt"], STANDARD_GRAVITY),
+            "substeps": step_count(body, case["dt"], GRAVITY, STEP),
+            "freeSamples": free_samples(body, case["dt"], GRAVITY),
         }
         assert one["done"] == len(response.time)
         history = dict(zip(HISTORY, (next(found) for _ in HISTORY), strict=True))
