@@ -98,7 +98,10 @@ UNUSABLE = [
     (simulated(g="9.81"), "g: expected a positive number of m/s², got '9.81'"),
     (simulated(restitution=1.01), "restitution of the block: 1.01 would gain energy"),
     (simulated(restitution="a"), "restitution of the block: expected a finite number, got 'a'"),
-    (simulated(restitution=(0.9, 0.9)), "restitution: a lone block takes one number, not several"),
+    (
+        simulated(restitution=(0.9, 0.9, 0.9)),
+        "restitution of the block: expected one ratio, or two",
+    ),
     (simulated(STACK, restitution=0.9), "restitution: a stack takes a pair (ground, interface)"),
     (
         simulated(STACK, restitution=("a", 0.9)),
@@ -117,9 +120,9 @@ UNUSABLE = [
     (simulated(friction=True), "friction of the ground: a coefficient is 0 or more, got True"),
     (
         simulated(friction=0.4, linear=True),
-        "linear: with friction or vertical motion only the full",
+        "linear: with friction only the full",
     ),
-    (simulated(friction=0.4, restitution=0.9), "restitution: with friction or vertical motion"),
+    (simulated(friction=0.4, restitution=0.9), "restitution: with friction the impacts"),
     (simulated(vertical=SHAKE[:50]), "vertical: 50 samples for 100 horizontal ones"),
     (
         simulated(vertical=Motion(SHAKE, 0.02)),
@@ -133,7 +136,7 @@ UNUSABLE = [
         "friction[0] of the ground: expected a coefficient or a pair",
     ),
     (swept(friction="0.4"), "friction: expected a number or a list with 1 entries"),
-    (swept(friction=0.4, restitution=[0.9]), "restitution: with friction or vertical motion"),
+    (swept(friction=0.4, restitution=[0.9]), "restitution: with friction the impacts"),
     (swept(vertical=[SHAKE, SHAKE]), "vertical: expected 1 entries, one per motion, got 2"),
     (swept(vertical=[SHAKE[1:]]), "vertical[0]: 99 samples for 100 horizontal ones"),
     (swept(bodies=["T2"]), "bodies[0]: expected a Block or a Stack, got 'T2'"),

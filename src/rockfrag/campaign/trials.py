@@ -15,7 +15,7 @@ from scipy.stats import qmc
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.body_record import largest_restitution
+from rockfrag.rocking.measured_restitution import largest_restitution
 from rockfrag.rocking.shapes import Shape
 
 UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution")

@@ -19,7 +19,7 @@ from rockfrag.pedestal.mass_bias import ratio_bias
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.body_record import Restitution
+from rockfrag.rocking.measured_restitution import Restitution
 
 Floats = NDArray[np.float64]
 

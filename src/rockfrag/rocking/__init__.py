@@ -7,6 +7,7 @@ from rockfrag._lazy import loader
 if TYPE_CHECKING:
     from rockfrag.rocking.bodies import Block, Body, Stack
     from rockfrag.rocking.ensemble import EnsembleResult, overturns
+    from rockfrag.rocking.measured_restitution import MeasuredRestitution
     from rockfrag.rocking.parquet import stream_histories, stream_overturns
     from rockfrag.rocking.response import Response
     from rockfrag.rocking.restitution import (
@@ -25,6 +26,7 @@ __all__ = [
     "Body",
     "EnsembleResult",
     "FragileVerdicts",
+    "MeasuredRestitution",
     "Response",
     "RestitutionFit",
     "RockingSpectrum",
@@ -45,6 +47,7 @@ __all__ = [
 _HOMES = {
     "bodies": ("Block", "Body", "Stack"),
     "ensemble": ("EnsembleResult", "overturns"),
+    "measured_restitution": ("MeasuredRestitution",),
     "parquet": ("stream_histories", "stream_overturns"),
     "response": ("Response",),
     "restitution": (

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Body
-from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, checked_threads
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

@@ -1,10 +1,8 @@
 """Many bodies × motions × amplitudes at once."""
 
-import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,7 +10,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.body_record import Restitution, body_record, lone_restitution
+from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
 from rockfrag.rocking.contact.friction import (
     FrictionInput,
@@ -40,6 +38,7 @@ from rockfrag.rocking.kernels.lanes import block, stack_case
 from rockfrag.rocking.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
 from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
 from rockfrag.rocking.kernels.record import EVENT, SAMPLE
+from rockfrag.rocking.measured_restitution import Restitution, lone_restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
 from rockfrag.units import GRAVITY
 
@@ -66,6 +65,8 @@ class EnsembleResult:
         Largest |θ'| of the statue or lone block until the verdict was certain [rad/s].
     impacts
         Number of impacts until the verdict was certain.
+    given_way
+        Number of them in which the law of a measured restitution had to give way, lest energy grow.
     closest_approach
         Least distance from an unstable equilibrium, as in :class:`Response`; infinite if it never rocked.
     slip_ground, slip_interface
@@ -84,6 +85,7 @@ class EnsembleResult:
     peak_rotation_pedestal: Array
     peak_velocity: Array
     impacts: NDArray[np.int64]
+    given_way: NDArray[np.int64]
     closest_approach: Array
     slip_ground: Array
     slip_interface: Array
@@ -119,6 +121,7 @@ class _Setting:
     """What the bodies of an ensemble are shaken with, and how."""
 
     motions: list[Array]
+    vertical: list[Array]  # none, or one for each motion
     dts: Array
     factors: Array
     g: float
@@ -202,21 +205,21 @@ def overturns(
     """
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)
-    setting = _Setting(values, dts, factors, g, step, checked_threads(threads))
+    up = listed_vertical(vertical, values, dts)
+    checked_scales(factors, up or values)
+    setting = _Setting(values, up, dts, factors, g, step, checked_threads(threads))
     given = _Bodies(body_list, list(restitution or [None] * len(body_list)))
     check_case_count(len(body_list) * factors.size)
     for name, start in (("theta0", theta0), ("omega0", omega0)):
         check_one_per_body(name, start, len(body_list))
     result = _empty_result(factors, len(body_list))
-    if friction is not None or vertical is not None:
+    if friction is not None:
         check_impacts_follow(restitution, checked_switch("linear", linear))
-        frictions = listed_frictions(body_list, math.inf if friction is None else friction)
-        up = listed_vertical(vertical, values, dts)
-        checked_scales(factors, up or values)
+        frictions = listed_frictions(body_list, friction)
         if result.overturned.size:
             angles = _starts(body_list, theta0, "theta0")
             standing = Standing(body_list, frictions, angles, _starts(body_list, omega0, "omega0"))
-            _fill_with_friction(result, setting, standing, up)
+            _fill_with_friction(result, setting, standing)
         return result
     if not result.overturned.size:
         return result
@@ -250,6 +253,7 @@ def _empty_result(factors: Array, n_bodies: int) -> EnsembleResult:
         peak_rotation_pedestal=np.zeros(shape),
         peak_velocity=np.zeros(shape),
         impacts=np.zeros(shape, dtype=np.int64),
+        given_way=np.zeros(shape, dtype=np.int64),
         closest_approach=np.full(shape, np.inf),
         slip_ground=np.zeros(shape),
         slip_interface=np.zeros(shape),
@@ -267,12 +271,10 @@ def _starts(
     return [checked_start(body, one, name) for body, one in zip(bodies, each, strict=True)]
 
 
-def _fill_with_friction(
-    result: EnsembleResult, setting: _Setting, standing: Standing, up: list[Array]
-) -> None:
+def _fill_with_friction(result: EnsembleResult, setting: _Setting, standing: Standing) -> None:
     """Write what becomes of bodies that may slide and fly into the result."""
     wanted = np.ones(result.overturned.shape, dtype=bool)
-    moving = Moving(setting.motions, up, setting.dts, setting.factors)
+    moving = Moving(setting.motions, setting.vertical, setting.dts, setting.factors)
     found = contact_outcomes(standing, moving, wanted, setting.g, setting.step, setting.threads)
     lone = np.array([isinstance(body, Block) for body in standing.bodies])[:, None, None]
     fell = np.where(lone & (found["fallen"] > 0), 2, found["fallen"])
@@ -309,11 +311,13 @@ def _one_by_one(setting: _Setting, given: _Bodies, starts: list[np.void], linear
         i, j, k = place
         body, dt = given.bodies[i], float(dts[j])
         scale = float(factors[j, k])
-        shaking = shaking_of(body, setting.motions[j], dt, scale, g, setting.step)
+        up = setting.vertical[j] if setting.vertical else np.zeros(0)
+        shaking = shaking_of(body, (setting.motions[j], up), dt, scale, g, setting.step)
         done, summary = run_march(records[i], shaking, starts[i], *nothing)
         outcomes[place] = (
             summary["fallen"], done - 1, summary["ratio1"], summary["ratio2"],
             summary["speed2"] * dt, summary["closest"], summary["impacts"],
+            summary["given_way"],
         )  # fmt: skip
 
     with ThreadPoolExecutor(setting.threads) as pool:
@@ -336,36 +340,55 @@ def _march(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any
 
 
 def _sampled(
-    bodies: list[Body], values: list[Array], dts: Array, g: float, step: float
+    bodies: list[Body], setting: _Setting, per_gravity: float
 ) -> tuple[Motions, NDArray[np.int64], Array]:
-    """Sample the motions as densely as the bodies need; which each body × motion uses, and its interval [s]."""
-    times = np.array([step_count(body, dts, g, step) for body in bodies])
+    """Sample the motions as densely as the bodies need; which each body × motion uses, and its interval [s].
+
+    ``per_gravity`` makes of vertical accelerations what factors make parts of gravity of.
+    """
+    values, dts = setting.motions, setting.dts
+    times = np.array([step_count(body, dts, setting.g, setting.step) for body in bodies])
     # the next power of two
     mantissa, exponent = np.frexp(times)
     times = 2 ** (exponent - (mantissa == 0.5))
     kinds, number = np.unique(times * len(values) + np.arange(len(values)), return_inverse=True)
-    sampled = [_refined(values[kind % len(values)], kind // len(values)) for kind in kinds.tolist()]
-    # whole blocks each, so that no block straddles two motions
-    padded = [np.append(v, np.zeros(-v.size % BLOCK)) for v in sampled]
-    offsets = np.concatenate([[0], np.cumsum([v.size for v in padded])])
-    samples = np.concatenate(padded)
-    blocks = samples.reshape(-1, BLOCK)
-    highest, lowest = blocks.max(axis=1), blocks.min(axis=1)
-    parts = [slice(i // BLOCK, j // BLOCK) for i, j in pairwise(offsets)]
+
+    def end_to_end(each: list[Array]) -> list[Array]:
+        # whole blocks each, so that no block straddles two motions
+        refined = [_refined(each[kind % len(each)], kind // len(each)) for kind in kinds.tolist()]
+        sizes.append([v.size for v in refined])
+        return [np.append(v, np.zeros(-v.size % BLOCK)) for v in refined]
+
+    sizes: list[list[int]] = []
+    horizontal = end_to_end(values)
+    offsets = np.concatenate([[0], np.cumsum([v.size for v in horizontal])])
+    highest, lowest, ahead_high, ahead_low = _extremes(horizontal)
+    upward = end_to_end([per_gravity * up for up in setting.vertical]) if setting.vertical else []
+    _, _, upward_high, upward_low = _extremes(upward)
     motions = Motions(
-        samples=samples,
+        samples=np.concatenate(horizontal),
+        vertical=np.concatenate([np.zeros(0), *upward]),
         highest=highest,
         lowest=lowest,
-        ahead_high=np.concatenate(
-            [np.maximum.accumulate(highest[part][::-1])[::-1] for part in parts]
-        ),
-        ahead_low=np.concatenate(
-            [np.minimum.accumulate(lowest[part][::-1])[::-1] for part in parts]
-        ),
+        ahead_high=ahead_high,
+        ahead_low=ahead_low,
+        upward_high=upward_high,
+        upward_low=upward_low,
         offsets=offsets,
-        lasts=offsets[:-1] + np.array([v.size for v in sampled]) - 1,
+        lasts=offsets[:-1] + np.array(sizes[0]) - 1,
     )
     return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
+
+
+def _extremes(padded: list[Array]) -> tuple[Array, Array, Array, Array]:
+    """Extremes of each BLOCK of samples, and from the beginning of each to the end of its motion."""
+    nothing = np.zeros(0)
+    blocks = [v.reshape(-1, BLOCK) for v in padded]
+    high, low = [v.max(axis=1) for v in blocks], [v.min(axis=1) for v in blocks]
+    ahead = [np.maximum.accumulate(v[::-1])[::-1] for v in high]
+    behind = [np.minimum.accumulate(v[::-1])[::-1] for v in low]
+    found = [np.concatenate([nothing, *each]) for each in (high, low, ahead, behind)]
+    return found[0], found[1], found[2], found[3]
 
 
 def _refined(values: Array, times: int) -> Array:
@@ -380,7 +403,7 @@ def _refined(values: Array, times: int) -> Array:
 def _stacks(setting: _Setting, given: _Bodies) -> _Found:
     """Verdicts of stacks."""
     g, step, bodies = setting.g, setting.step, given.bodies
-    motions, rows, intervals = _sampled(bodies, setting.motions, setting.dts, g, step)
+    motions, rows, intervals = _sampled(bodies, setting, 1.0 / g)
     each = list(zip(bodies, intervals, strict=True))
     count = len(bodies) * setting.factors.size
     ensemble = Ensemble(
@@ -404,7 +427,7 @@ def _stacks(setting: _Setting, given: _Bodies) -> _Found:
 def _blocks(setting: _Setting, given: _Bodies) -> _Found:
     """Verdicts of lone blocks."""
     g, bodies = setting.g, given.bodies
-    motions, rows, intervals = _sampled(bodies, setting.motions, setting.dts, g, setting.step)
+    motions, rows, intervals = _sampled(bodies, setting, 1.0)
     poles = np.empty((*intervals.shape, 2), block.POLE)
     for i, (body, e) in enumerate(zip(bodies, given.restitution, strict=True)):
         assert isinstance(body, Block)
@@ -434,7 +457,8 @@ def _poles(body: Block, restitution: Restitution, g: float) -> NDArray[np.void]:
     for at, pole in ((0, +1), (1, -1)):
         alpha, frequency, arm = body.critical_angle(pole), body.frequency(pole, g), body.arm(pole)
         swing, aside, radius = frequency * frequency, -pole * arm.x, body.radius(pole)
-        e = body.momentum_restitution(pole) if measured is None else measured
+        # of the impact that ends rocking on this pole and comes down on the other
+        e = body.momentum_restitution(pole) if measured is None else measured[1 - at]
         poles[at] = (
             alpha, aside / arm.y, aside / radius, arm.y / radius, swing, e, 1 / alpha,
             1 / (swing * alpha * alpha),
@@ -453,4 +477,5 @@ def _fill(result: EnsembleResult, rows: NDArray[np.intp], found: _Found) -> None
     result.peak_rotation_pedestal[rows] = np.where(fallen == 1, np.inf, outcome["peak1"])
     result.peak_velocity[rows] = outcome["fast"] / interval
     result.impacts[rows] = outcome["impacts"]
+    result.given_way[rows] = outcome["given_way"]
     result.closest_approach[rows] = outcome["closest"]

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.checks import positive_number, real_array, shown, whole_number
+from rockfrag.rocking.measured_restitution import Restitution
 
 STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""

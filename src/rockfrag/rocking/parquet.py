@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.rocking.bodies import Body
-from rockfrag.rocking.body_record import Restitution, body_record
+from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.inputs import (
     STEP,
@@ -28,6 +28,7 @@ from rockfrag.rocking.inputs import (
     step_count,
 )
 from rockfrag.rocking.kernels.record import EVENT, SAMPLE
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
 from rockfrag.units import GRAVITY
 
@@ -44,6 +45,7 @@ PEAKS = {
     "peak_rotation_pedestal": pa.float64(),
     "peak_velocity_rad_s": pa.float64(),
     "impacts": pa.int64(),
+    "given_way": pa.int64(),
     "closest_approach": pa.float64(),
 }
 
@@ -248,7 +250,7 @@ def stream_histories(
     def history(case: Case) -> pa.Table:
         b, m, s = case
         interval, scale = float(dts[m]), float(factors[m, s])
-        shaking = shaking_of(body_list[b], values[m], interval, scale, g, step)
+        shaking = shaking_of(body_list[b], (values[m], np.zeros(0)), interval, scale, g, step)
         rows = np.empty(values[m].size + shaking.free_samples, SAMPLE)
         # the march of simulate() without its tables of events and energy, which take most of its time
         start = initial_state(body_list[b])

@@ -103,6 +103,8 @@ class Response:
     paradoxes, forced
         With friction, times that no mode of contact was consistent, and that accumulating events were ended more
         coarsely than usual (``docs/contact.md``).
+    given_way
+        Number of impacts in which the law of a measured restitution had to give way, lest energy grow.
     closest_approach
         Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
         p times it for the velocity); a small number means that the verdict was close to flipping.  NaN once a
@@ -130,6 +132,7 @@ class Response:
     grazings: int
     paradoxes: int
     forced: int
+    given_way: int
     closest_approach: float
 
     def plot(self, title: str = "") -> "Figure":

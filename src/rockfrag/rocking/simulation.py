@@ -1,6 +1,5 @@
 """One body, one motion, everything about the response."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,7 +8,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
-from rockfrag.rocking.body_record import Restitution, body_record
+from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.contact.friction import FrictionInput, check_impacts_follow
 from rockfrag.rocking.contact.simulation import simulate_with_friction
 from rockfrag.rocking.forces import centres, contact_forces
@@ -20,6 +19,7 @@ from rockfrag.rocking.inputs import (
     checked_motion,
     checked_start,
     checked_switch,
+    checked_vertical,
     free_samples,
     step_count,
     warn_if_weak,
@@ -36,6 +36,7 @@ from rockfrag.rocking.kernels.record import (
     fill_energies,
 )
 from rockfrag.rocking.kernels.single import Shaking, march, scratch
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.response import PATTERNS, Response
 from rockfrag.units import GRAVITY
 
@@ -94,14 +95,15 @@ def simulate(
     theta0, omega0
         Rotations [rad] and angular velocities [rad/s] at the start: a number, or (pedestal, statue).
     restitution
-        Measured ratio of angular velocities of an impact: a number, or (ground, interface); None, the
-        default, conserves momentum (thesis eq. 2.14, 2.76-2.86).
+        Measured ratio of angular velocities of an impact: a number, or (ground, interface), or a
+        :class:`MeasuredRestitution` with its law; None, the default, conserves momentum (thesis eq. 2.14,
+        2.76-2.86).
     linear
         Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
     friction
         Coefficient of friction of a lone block, (ground, interface) of a stack, or one number for both; a pair
         (static, kinetic) may stand in place of each number, and numbers may be infinite.  None: nothing slides
-        and, without ``vertical``, nothing jumps.
+        and nothing jumps.
     vertical
         Vertical acceleration of the ground or floor, upwards [m/s²], sampled as ``motion``.
     g
@@ -115,14 +117,15 @@ def simulate(
     values, interval = checked_motion(motion, dt)
     warn_if_weak(values)
     record = body_record(body, restitution, checked_switch("linear", linear), g)
-    if friction is not None or vertical is not None:
+    up = checked_vertical(vertical, values, interval)
+    if friction is not None:
         check_impacts_follow(restitution, linear)
         return simulate_with_friction(
-            body, values, interval, friction=math.inf if friction is None else friction,
-            vertical=vertical, theta0=theta0, omega0=omega0, g=g,
+            body, values, interval, friction=friction, vertical=vertical, theta0=theta0, omega0=omega0,
+            g=g,
         )  # fmt: skip
     initial = initial_state(body, theta0, omega0)
-    shaking = shaking_of(body, values, interval, 1.0, g, STEP)
+    shaking = shaking_of(body, (values, up), interval, 1.0, g, STEP)
     most = values.size + shaking.free_samples
     if most > MOST_SAMPLES:
         raise InputError(
@@ -140,11 +143,19 @@ def simulate(
 
 
 def shaking_of(
-    body: Body, values: Array, dt: float, scale: float, g: float, step: float
+    body: Body, accelerations: tuple[Array, Array], dt: float, scale: float, g: float, step: float
 ) -> Shaking:
-    """What a march shakes a body with, in steps that follow from the body."""
+    """What a march shakes a body with, in steps that follow from the body.
+
+    Parameters
+    ----------
+    accelerations
+        Horizontal and vertical ones [m/s²]; of the latter none where the ground does not move so.
+    """
+    horizontal, vertical = accelerations
     return Shaking(
-        samples=values,
+        samples=horizontal,
+        vertical=vertical / g,
         scale=float(scale),
         dt=float(dt),
         substeps=int(step_count(body, dt, g, step)),
@@ -210,6 +221,7 @@ def _response(
         grazings=int(summary["grazings"]),
         paradoxes=0,
         forced=0,
+        given_way=int(summary["given_way"]),
         closest_approach=float(summary["closest"]),
     )
 

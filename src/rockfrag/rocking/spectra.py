@@ -15,11 +15,11 @@ from rockfrag.errors import InputError
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
 from rockfrag.rocking.kernels.elementary import sin_cos
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]

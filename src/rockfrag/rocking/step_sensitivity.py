@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Body
-from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.case_list import overturns_of_cases
 from rockfrag.rocking.checks import whole_number
 from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.units import GRAVITY
 
 

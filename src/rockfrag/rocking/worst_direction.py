@@ -11,7 +11,7 @@ from rockfrag.motions.rotation import rotate
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Body
-from rockfrag.rocking.body_record import Restitution
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.units import GRAVITY
 

@@ -93,12 +93,10 @@ def check_impacts_follow(restitution: object, linear: bool) -> None:
         For a measured restitution or linearised equations.
     """
     if linear:
-        raise InputError(
-            "linear: with friction or vertical motion only the full equations are solved."
-        )
+        raise InputError("linear: with friction only the full equations are solved.")
     if _is_measured(restitution):
         raise InputError(
-            "restitution: with friction or vertical motion the impacts follow from Coulomb's law; leave it out."
+            "restitution: with friction the impacts follow from Coulomb's law; leave it out."
         )
 
 

@@ -126,6 +126,7 @@ def simulate_with_friction(
         friction_force=history[:, 16 : 16 + blocks],
         impacts=int(work["impacts"]),
         grazings=_grazings(table),
+        given_way=0,
         paradoxes=int(work["paradoxes"]),
         forced=int(work["forced"]),
         closest_approach=float("nan"),

@@ -65,9 +65,13 @@ MOST_AHEAD = 32
 
 
 class Ahead(NamedTuple):
-    """The ground from an instant, ``tau`` after sample ``k``: factor × samples [m/s²], zero after ``last``."""
+    """The ground from an instant, ``tau`` after sample ``k``: factor × samples [m/s²], zero after ``last``.
+
+    ``vertical`` are samples of its upward acceleration over gravity, for the same factor, or none.
+    """
 
     samples: NDArray[np.float64]
+    vertical: NDArray[np.float64]
     factor: float
     last: int
     k: int
@@ -104,27 +108,39 @@ def fill_restoring(body, restoring, scratch):
             restoring.still[i] = still
             restoring.per_ground[i] = _restoring(body, c1, c2, 1.0, scratch) - still
     _, vx, vy, inertia = statue_balance(body, 1)
+    # p² of a ground that does not move vertically
     frequency2 = body.gravity * hypot(vx, vy) / inertia
     restoring.frequency2 = frequency2
-    restoring.fastest = 0.2 * _least(restoring, 0.0) / math.sqrt(frequency2)
+    restoring.fastest = 0.2 * _least(restoring, 0.0, 1.0) / math.sqrt(frequency2)
 
 
 @kernel
 def _restoring(body, c1, c2, ground, scratch):
     """Angular acceleration that brings pattern 3 or 4 back, at rest on its way out."""
-    at_rest(scratch, ground)
+    at_rest(scratch, ground, body.gravity)
     alpha1, alpha2 = accelerations(body, c1, c2, scratch)
     return -c2 * alpha2 if c1 == 0 else -c1 * alpha1
 
 
 @kernel
-def _least(restoring, a):
-    """Least restoring acceleration [rad/s²] over the ways in which the body can leave rest."""
+def _least(restoring, a, weight):
+    """Least restoring acceleration [rad/s²] over the ways in which the body can leave rest.
+
+    ``weight``: gravity over that of a ground that does not move vertically.
+    """
     still, per = restoring.still, restoring.per_ground
     return min(
-        min(still[0] + per[0] * a, still[1] + per[1] * a),
-        min(still[2] + per[2] * a, still[3] + per[3] * a),
+        min(weight * still[0] + per[0] * a, weight * still[1] + per[1] * a),
+        min(weight * still[2] + per[2] * a, weight * still[3] + per[3] * a),
     )
+
+
+@inlined_kernel
+def weight_at(ahead, k):
+    """Gravity at a sample over that of a ground that does not move vertically."""
+    if k < ahead.vertical.size and k <= ahead.last:
+        return 1.0 + ahead.factor * ahead.vertical[k]
+    return 1.0
 
 
 @kernel
@@ -144,7 +160,7 @@ def dies_out(speed, share, safety, restoring, drop, ahead):
     for n in range(MOST_AHEAD + 1):
         i = ahead.k + n
         a = ahead.samples[i] * ahead.factor if i <= ahead.last else 0.0
-        least = min(least, _least(restoring, a))
+        least = min(least, _least(restoring, a, weight_at(ahead, i)))
         if least <= 0.0 or speed * speed * restoring.frequency2 > 0.04 * least * least:
             return False
         if speed * speed > 2.0 * drop * least:
@@ -170,14 +186,17 @@ def block_dies_out(w, side, here, there, ahead):
     here, there : constants of that pole and of the other (``block.POLE``)
     ahead : the ground over g
     """
+    # gravity only ever grows D; the least of it is enough
+    weight = weight_at(ahead, ahead.k)
+    weight = min(weight, weight + ahead.tau * (weight_at(ahead, ahead.k + 1) - weight))
     factor, samples = ahead.factor, ahead.samples
     kappa = here.swing
     a = factor * samples[ahead.k]
     a += ahead.tau * (factor * samples[ahead.k + 1] - a)
     s, c = here.sine, side * here.cosine
     s_there, c_there = there.sine, side * there.cosine
-    d = s + a * c
-    d_there = s_there - a * c_there
+    d = weight * s + a * c
+    d_there = weight * s_there - a * c_there
     loss = 1.0 - here.restitution * there.restitution
     if loss <= 0.0:
         return False
@@ -187,8 +206,8 @@ def block_dies_out(w, side, here, there, ahead):
     least = a
     for n in range(1, MOST_AHEAD + 1):
         # flight × (1/D + e κ/κ' 1/D') with the least D and D' so far
-        d = s + (least if c > 0.0 else most) * c
-        d_there = s_there - (most if c > 0.0 else least) * c_there
+        d = weight * s + (least if c > 0.0 else most) * c
+        d_there = weight * s_there - (most if c > 0.0 else least) * c_there
         if d <= 0.0 or d_there <= 0.0 or w * w > 0.04 * kappa * d * d:
             return False
         time = flight * (d_there + back * d)
@@ -197,6 +216,7 @@ def block_dies_out(w, side, here, there, ahead):
         if time > (MOST_AHEAD - ahead.tau) * d * d_there:
             return False
         a = factor * samples[ahead.k + n] if ahead.k + n <= ahead.last else 0.0
+        weight = min(weight, weight_at(ahead, ahead.k + n))
         most = max(most, a)
         least = min(least, a)
     return False
@@ -236,15 +256,16 @@ def _turn_of(hop):
 
 @kernel
 def _opening(two, hop, side, g):
-    """Acceleration that opens a contact further: at zero ground acceleration, per unit of it; inertia.
+    """Acceleration that opens a contact on a still ground; per unit of its acceleration; of weight; inertia.
 
     The inertia is that of the opening alone, the momentum that its impacts conserve being given.
     """
     k1, s1, cosine, sine = _turn_of(hop)
     k2, s2 = hop.cosine, hop.sine
     m11, m12, m22, d = mass_matrix(two, cosine, sine)
-    f1 = d * hop.omega2 * hop.omega2 - g * (two.v1x * k1 + two.v1y * s1)
-    f2 = -d * hop.omega1 * hop.omega1 - g * (two.v2x * k2 + two.v2y * s2)
+    g1, g2 = -g * (two.v1x * k1 + two.v1y * s1), -g * (two.v2x * k2 + two.v2y * s2)
+    f1 = d * hop.omega2 * hop.omega2 + g1
+    f2 = -d * hop.omega1 * hop.omega1 + g2
     a1 = two.v1y * k1 - two.v1x * s1
     a2 = two.v2y * k2 - two.v2x * s2
     determinant = m11 * m22 - m12 * m12
@@ -254,7 +275,8 @@ def _opening(two, hop, side, g):
         by1, by2 = m12 + m22, -(m11 + m12)
         inertia = determinant / (m11 + 2.0 * m12 + m22)
     scale = side / determinant
-    return scale * (by1 * f1 + by2 * f2), scale * (by1 * a1 + by2 * a2), inertia
+    still, per_ground = scale * (by1 * f1 + by2 * f2), scale * (by1 * a1 + by2 * a2)
+    return still, per_ground, scale * (by1 * g1 + by2 * g2), inertia
 
 
 @inlined_kernel
@@ -271,8 +293,8 @@ def may_close(hop, before, after, longest, g, ahead):
     speed = abs(hop.omega1) if hop.ground else abs(hop.omega2 - hop.omega1)
     if speed > FASTEST_CHATTER * h:
         return False
-    here, per_here, inertia = _opening(after, hop, hop.side, g)
-    there, per_there, of_old = _opening(before, hop, -hop.side, g)
+    here, per_here, weight_here, inertia = _opening(after, hop, hop.side, g)
+    there, per_there, weight_there, of_old = _opening(before, hop, -hop.side, g)
     e = speed / abs(hop.old)
     left = e * e * inertia / of_old
     if left > 0.98:
@@ -284,8 +306,10 @@ def may_close(hop, before, after, longest, g, ahead):
     a_left = factor * samples[k] if k <= last else 0.0
     a_right = factor * samples[k + 1] if k < last else 0.0
     a = a_left + tau * (a_right - a_left)
-    least = -(here + per_here * a)
-    other = -(there + per_there * a)
+    up_left, up_right = weight_at(ahead, k) - 1.0, weight_at(ahead, k + 1) - 1.0
+    up = up_left + tau * (up_right - up_left)
+    least = -(here + per_here * a + weight_here * up)
+    other = -(there + per_there * a + weight_there * up)
     if least <= 0.0 or other <= 0.0:
         return False
     span = 2.0 * hops * (1.0 / least + back / other)
@@ -295,8 +319,9 @@ def may_close(hop, before, after, longest, g, ahead):
     while True:
         x = min(n - tau, span)
         a = a_right + (x - (n - tau)) * (a_right - a_left)
-        least = min(least, -(here + per_here * a))
-        other = min(other, -(there + per_there * a))
+        up = up_right + (x - (n - tau)) * (up_right - up_left)
+        least = min(least, -(here + per_here * a + weight_here * up))
+        other = min(other, -(there + per_there * a + weight_there * up))
         if least <= 0.0 or other <= 0.0:
             return False
         if x == span:
@@ -304,6 +329,7 @@ def may_close(hop, before, after, longest, g, ahead):
         n += 1
         a_left = a_right
         a_right = factor * samples[k + n] if k + n <= last else 0.0
+        up_left, up_right = up_right, weight_at(ahead, k + n) - 1.0
     return hops * (1.0 / least + back / other) <= min(longest, span)
 
 

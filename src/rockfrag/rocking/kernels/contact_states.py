@@ -56,9 +56,9 @@ def first_contacts(state):
 
 
 @kernel
-def at_rest(state, ground):
-    """Put a state at rest under an acceleration of the ground."""
-    state.c1, state.c2, state.ground = 0, 0, ground
+def at_rest(state, ground, gravity):
+    """Put a state at rest under an acceleration of the ground and a gravity."""
+    state.c1, state.c2, state.ground, state.gravity = 0, 0, ground, gravity
     state.theta1, state.omega1, state.theta2, state.omega2 = 0.0, 0.0, 0.0, 0.0
 
 
@@ -66,7 +66,8 @@ def at_rest(state, ground):
 def rest_interval(body, scratch):
     """Ground accelerations [m/s²] between which the body at rest stays at rest; ``scratch`` is a STATE.
 
-    Every criterion of rest is linear in the acceleration (thesis eq. 2.21-2.25).
+    Every criterion of rest is linear in the acceleration (thesis eq. 2.21-2.25), and homogeneous in it and
+    gravity: where the ground moves vertically too, both limits grow as gravity does.
     """
     low = -math.inf
     high = math.inf
@@ -87,7 +88,7 @@ def rest_interval(body, scratch):
 @kernel
 def _rest_moment(body, contact, c, ground, scratch):
     """Contact moment s τ(s) of a contact at rest at its corner ``c``."""
-    at_rest(scratch, ground)
+    at_rest(scratch, ground, body.gravity)
     c1, c2 = (c, 1) if contact == GROUND else (1, c)
     _, _, _, f1, f2 = equations(body, pole(c1), pole(c2), scratch)
     return c * (f1 + f2) if contact == GROUND else c * f2

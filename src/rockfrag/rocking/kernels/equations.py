@@ -17,6 +17,14 @@ import numpy as np
 from rockfrag.rocking.kernels.elementary import atan2, hypot, sin, sin_cos
 from rockfrag.rocking.kernels.jit import kernel
 
+COUPLE, POSITION, RATIO = 1, 2, 3
+"""Laws of a measured restitution (``docs/restitution.md``)."""
+
+AFTER = np.dtype([("law", np.int64), ("value", np.float64)])
+"""How a contact comes off an impact: by momentum (0) or by a law with its number, which is a factor on the rate
+that momentum gives (COUPLE), the place of the impulse from the middle (0) to the new pole (1) of the base
+(POSITION), or the ratio of the rates after and before (RATIO)."""
+
 BODY = np.dtype(
     [
         # pedestal: mass, inertia, half width, centre of gravity
@@ -25,12 +33,12 @@ BODY = np.dtype(
         ("tx", np.float64), ("ty", np.float64), ("ex", np.float64), ("ey", np.float64),
         # statue: likewise, centre from the middle of its footing
         ("m2", np.float64), ("i2", np.float64), ("b2", np.float64), ("c2x", np.float64), ("c2y", np.float64),
-        # where the impulse of a closing contact acts, σ towards the new pole +1 and -1; 1 is the pole itself
-        ("eta1r", np.float64), ("eta1l", np.float64), ("eta2r", np.float64), ("eta2l", np.float64),
-        ("gravity", np.float64),
+        # how ground and interface come off impacts that end rocking on the right and on the left pole
+        ("after1r", AFTER), ("after1l", AFTER), ("after2r", AFTER), ("after2l", AFTER),
+        ("gravity", np.float64),  # of a ground that does not move vertically
         ("linear", np.int64),  # 0 exact; 1 eq. 2.60-2.65; 2 eq. 2.9 (lone block)
         ("fixed", np.bool_),  # block 1 cannot move
-        ("measured", np.bool_),  # an impulse acts elsewhere than at its pole
+        ("measured", np.bool_),  # some impact follows another law than momentum's
     ],
     align=True,
 )  # fmt: skip
@@ -42,6 +50,7 @@ STATE = np.dtype(
         ("theta1", np.float64), ("omega1", np.float64),  # rotation [rad] and its rate [rad/s] of the pedestal
         ("theta2", np.float64), ("omega2", np.float64),  # and of the statue
         ("ground", np.float64),  # acceleration of the ground [m/s²]
+        ("gravity", np.float64),  # gravity and the ground's upward acceleration [m/s²]
     ],
     align=True,
 )  # fmt: skip
@@ -127,9 +136,9 @@ def first_moment2(body, sigma2):
 
 
 @kernel
-def weight_moment(body, vx, vy, theta, ground):
+def weight_moment(body, vx, vy, theta, state):
     """-g V_x + a V_y with V = R(θ)(vx, vy): gravity's and the ground's share of f1 or f2."""
-    g = body.gravity
+    g, ground = state.gravity, state.ground
     if body.linear > 0:
         return ground * vy - g * (vx + vy * theta)
     s, c = sin_cos(theta)
@@ -151,8 +160,8 @@ def equations(body, sigma1, sigma2, state):
     v1x, v1y = first_moment1(body, sigma1, sigma2)
     v2x, v2y = first_moment2(body, sigma2)
     omega1, omega2 = state.omega1, state.omega2
-    f1 = d * omega2 * omega2 + weight_moment(body, v1x, v1y, theta1, state.ground)
-    f2 = -d * omega1 * omega1 + weight_moment(body, v2x, v2y, theta2, state.ground)
+    f1 = d * omega2 * omega2 + weight_moment(body, v1x, v1y, theta1, state)
+    f2 = -d * omega1 * omega1 + weight_moment(body, v2x, v2y, theta2, state)
     return inertia1(body, sigma1, sigma2), m12, inertia2(body, sigma2), f1, f2
 
 

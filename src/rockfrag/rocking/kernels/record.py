@@ -32,6 +32,7 @@ SUMMARY = np.dtype(
         ("closest", np.float64),  # least distance to an unstable equilibrium, in units of (θc, p θc)
         ("work", np.float64),  # of the ground acceleration on the moving body [J]
         ("events", np.int64),
+        ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
     ],
     align=True,
 )  # fmt: skip
@@ -68,7 +69,12 @@ BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
 @inlined_kernel
 def copy_state(source, target):
     """Make one state equal to another."""
-    target.c1, target.c2, target.ground = source.c1, source.c2, source.ground
+    target.c1, target.c2, target.ground, target.gravity = (
+        source.c1,
+        source.c2,
+        source.ground,
+        source.gravity,
+    )
     target.theta1, target.omega1 = source.theta1, source.omega1
     target.theta2, target.omega2 = source.theta2, source.omega2
 
@@ -77,7 +83,7 @@ def copy_state(source, target):
 def begin(state, summary):
     """Set the summary to that of a history that has not moved yet."""
     summary.fallen, summary.fall_time = 0, math.nan
-    summary.impacts, summary.grazings, summary.events = 0, 0, 0
+    summary.impacts, summary.grazings, summary.events, summary.given_way = 0, 0, 0, 0
     summary.closest, summary.work = math.inf, 0.0
     summary.ratio1, summary.ratio2 = 0.0, 0.0
     summary.peak1, summary.speed1 = abs(state.theta1), abs(state.omega1)
@@ -154,7 +160,7 @@ def track(balances, state, series, end, h, summary):
 
 @kernel
 def work_of(body, c1, c2, series, end, step):
-    """Work of the ground acceleration, -∫ a (m1 x1' + m2 x2') dt, over (0, end] of a step [J]."""
+    """Work of the ground's acceleration over (0, end] of a step [J]: -∫ Σ m (a x' + a_v y') dt."""
     s1, s2 = pole(c1), pole(c2)
     v1x, v1y = first_moment1(body, s1, s2)
     v2x, v2y = first_moment2(body, s2)
@@ -171,11 +177,15 @@ def work_of(body, c1, c2, series, end, step):
             w2 = slope(series.two.angle, tau)
             if body.linear > 0:
                 rate = v1y * w1 + v2y * w2
+                fall = (v1x + v1y * t1) * w1 + (v2x + v2y * t2) * w2
             else:
                 sine1, cosine1 = sin_cos(t1)
                 sine2, cosine2 = sin_cos(t2)
                 rate = w1 * (v1y * cosine1 - v1x * sine1) + w2 * (v2y * cosine2 - v2x * sine2)
+                fall = w1 * (v1x * cosine1 + v1y * sine1) + w2 * (v2x * cosine2 + v2y * sine2)
+            upward = step.gravity + step.lift * tau - body.gravity
             total -= weights[i] * (step.ground + step.rise * tau) * rate
+            total += weights[i] * upward * fall
     return 0.5 * end * total
 
 

@@ -30,7 +30,7 @@ from rockfrag.rocking.kernels.equations import (
     kinetic_energy,
 )
 from rockfrag.rocking.kernels.impact import impact, stuck
-from rockfrag.rocking.kernels.jit import entry_kernel, kernel
+from rockfrag.rocking.kernels.jit import entry_kernel, inlined_kernel, kernel
 from rockfrag.rocking.kernels.record import (
     BALANCE,
     CHATTER,
@@ -62,11 +62,12 @@ MAX_EVENTS_PER_STEP = 400
 
 
 class Shaking(NamedTuple):
-    """What a body is shaken with; its vertical acceleration would stand beside the horizontal one.
+    """What a body is shaken with.
 
     Attributes
     ----------
     samples : acceleration of the ground [m/s²], linear between samples, zero after the last
+    vertical : likewise upwards, over gravity [-]; as many, or none where it is zero
     scale : factor on them
     dt : sampling interval [s]
     substeps : steps per sample
@@ -74,6 +75,7 @@ class Shaking(NamedTuple):
     """
 
     samples: NDArray[np.float64]
+    vertical: NDArray[np.float64]
     scale: float
     dt: float
     substeps: int
@@ -122,6 +124,7 @@ def march(body, shaking, initial, history, events, summary, work):
     samples, scale = shaking.samples, shaking.scale
     n = samples.size
     state.ground = samples[0] * scale
+    state.gravity = _gravity(body, shaking, 0)
     state.c1, state.c2 = first_contacts(state)
     state.c1, state.c2 = settle(body, state)
     fill_balances(body, work.balances)
@@ -133,7 +136,7 @@ def march(body, shaking, initial, history, events, summary, work):
         right = samples[k + 1] * scale if k + 1 < n else 0.0
         _through_sample(body, shaking, k, events, summary, work)
         done = k + 2
-        state.ground = right
+        state.ground, state.gravity = right, _gravity(body, shaking, k + 1)
         if len(history) > k + 1:
             keep_sample(body, state, history[k + 1], summary.work)
         lying1 = abs(state.theta1) >= HALF_TURN
@@ -147,6 +150,14 @@ def march(body, shaking, initial, history, events, summary, work):
     return done
 
 
+@inlined_kernel
+def _gravity(body, shaking, k):
+    """Gravity and the ground's upward acceleration at a sample [m/s²]."""
+    if k < shaking.vertical.size:
+        return body.gravity + body.gravity * (shaking.scale * shaking.vertical[k])
+    return body.gravity
+
+
 @kernel
 def _through_sample(body, shaking, k, events, summary, work):
     """Take a body from sample k to the next, through all events in between."""
@@ -155,15 +166,20 @@ def _through_sample(body, shaking, k, events, summary, work):
     left = samples[k] * scale if k < n else 0.0
     right = samples[k + 1] * scale if k + 1 < n else 0.0
     h = shaking.dt / substeps
+    heavy, heavier = _gravity(body, shaking, k), _gravity(body, shaking, k + 1)
+    lift = (heavier - heavy) / substeps
     state, series, before = work.state, work.series, work.before
     count = 0
     for sub in range(substeps):
         a0 = left + (right - left) * (sub / substeps)
+        g0 = heavy + (heavier - heavy) * (sub / substeps)
         rise = (right - left) / substeps
         tau = 0.0
         while tau < 1.0 and count <= MAX_EVENTS_PER_STEP + 20:
             remaining = 1.0 - tau
-            step = Step(h * remaining, a0 + rise * tau, rise * remaining)
+            step = Step(
+                h * remaining, a0 + rise * tau, rise * remaining, g0 + lift * tau, lift * remaining
+            )
             fill_series(body, state, step, series)
             when, fails, closes1, closes2 = _next_event(body, state, step, series, work.trial)
             at = min(1.0, when)
@@ -176,7 +192,7 @@ def _through_sample(body, shaking, k, events, summary, work):
             if when > 1.0:
                 break
             count += 1
-            state.ground = a0 + rise * tau
+            state.ground, state.gravity = a0 + rise * tau, g0 + lift * tau
             if fails == 0:
                 if closes1:
                     state.theta1 = 0.0
@@ -188,9 +204,12 @@ def _through_sample(body, shaking, k, events, summary, work):
                 state.c1, state.c2 = release(body, state, fails, at == 0.0)
             else:
                 _count_impact(state, closes1, summary)
-                ahead = Ahead(samples, scale, n - 1, k, (sub + tau) / substeps, shaking.dt)
+                part = (sub + tau) / substeps
+                ahead = Ahead(samples, shaking.vertical, scale, n - 1, k, part, shaking.dt)
                 forced = count > MAX_EVENTS_PER_STEP
-                kind = land(body, state, (closes1, closes2), work.restoring, ahead, HISTORY, forced)
+                closes = closes1, closes2
+                kind, gave_way = land(body, state, closes, work.restoring, ahead, HISTORY, forced)
+                summary.given_way += gave_way
             clock = (k + (sub + tau) / substeps) * shaking.dt
             keep_event(body, clock, kind, before, state, events, summary)
 
@@ -216,7 +235,7 @@ def _count_impact(state, closes1, summary):
 
 @kernel
 def land(body, state, closes, restoring, ahead, thoroughness, forced):
-    """Take a state through an impact to what follows from it; the kind of event.
+    """Take a state through an impact to what follows from it; the kind of event, and 1 if a law had to give way.
 
     A contact that comes off slower than the closing speed stays closed, one that has met too often within a sample
     (``forced``) too, and impacts that are sure to end at rest are not followed.
@@ -225,7 +244,7 @@ def land(body, state, closes, restoring, ahead, thoroughness, forced):
     kind = CLOSING
     free1 = closes1 or state.c1 == 0
     free2 = closes2 or state.c2 == 0
-    n1, n2, w1, w2 = impact(body, state, closes1, closes2)
+    n1, n2, w1, w2, gave_way = impact(body, state, closes1, closes2)
     limit = math.inf if forced else thoroughness.closing_speed
     slow1 = free1 and n1 != 0 and abs(w1) < limit
     slow2 = free2 and n2 != 0 and abs(w2 - w1) < limit
@@ -247,7 +266,7 @@ def land(body, state, closes, restoring, ahead, thoroughness, forced):
             kind = CHATTER
     if not forced:
         state.c1, state.c2 = settle(body, state)
-    return kind
+    return kind, gave_way
 
 
 # --------------------------------------------------------------------------- finding the next event
@@ -262,6 +281,7 @@ def _hold_at(body, contact, step, series, tau, trial):
     trial.omega1 = slope(one, tau) / step.length
     trial.omega2 = slope(two, tau) / step.length
     trial.ground = step.ground + step.rise * tau
+    trial.gravity = step.gravity + step.lift * tau
     alpha1, alpha2 = accelerations(body, trial.c1, trial.c2, trial)
     if contact == GROUND:
         least, _ = ground_hold(body, trial.c2, trial, alpha2)

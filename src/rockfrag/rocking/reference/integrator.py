@@ -16,6 +16,7 @@ from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.reference.model import (
     NEGLIGIBLE_SPEED,
     LinearModel,
@@ -61,8 +62,9 @@ def simulate_reference(
     *,
     theta0: ArrayLike | None = None,
     omega0: ArrayLike | None = None,
-    restitution: float | Sequence[float | None] | None = None,
+    restitution: Restitution = None,
     linear: bool = False,
+    vertical: ArrayLike | None = None,
     g: float = GRAVITY,
     duration: float | None = None,
     chatter: float = CHATTER,
@@ -83,10 +85,12 @@ def simulate_reference(
         (pedestal, statue) for a stack; zero if not given.
     restitution
         None conserves angular momentum about the new pole.  A measured value instead, one number
-        for a block, a pair (ground, interface) for a stack, either of which may be None: the
-        impulse of the closing contact then acts where it leaves the lone block with ω⁺ = value · ω⁻.
+        for a block, a pair (ground, interface) for a stack, either of which may be None, or a
+        :class:`MeasuredRestitution` with its law: the lone block leaves with ω⁺ = value · ω⁻.
     linear
         Use the linearised equations 2.9 and 2.60 to 2.65.
+    vertical
+        Acceleration of the ground upwards [m/s²], sampled likewise.
     g
         Gravity [m/s²].
     duration
@@ -106,10 +110,13 @@ def simulate_reference(
     for name, value in (("dt", dt), ("g", g), ("duration", duration)):
         if value is not None and not (math.isfinite(value) and value > 0):
             raise InputError(f"{name}: must be a positive number, got {value}.")
+    up = np.zeros(motion.size) if vertical is None else np.asarray(vertical, dtype=float)
+    if up.shape != motion.shape or not np.all(np.isfinite(up)):
+        raise InputError(f"vertical: needs {motion.size} finite numbers of m/s².")
     model = (LinearModel if linear else Model)(body, g, restitution)
     theta = _start("theta0", body, theta0)
     omega = _start("omega0", body, omega0)
-    return _Run(model, motion, dt, theta, omega, chatter * model.frequency).response(duration)
+    return _Run(model, (motion, up), dt, theta, omega, chatter * model.frequency).response(duration)
 
 
 def _start(name: str, body: Body, value: ArrayLike | None) -> Pair:
@@ -137,19 +144,21 @@ class _Run:
     def __init__(
         self,
         model: Model,
-        motion: NDArray[np.float64],
+        motion: tuple[Values, Values],
         dt: float,
         theta: Pair,
         omega: Pair,
         chatter: float,
     ) -> None:
-        self.model, self.motion, self.dt, self.chatter = model, motion, dt, chatter
+        self.model, self.dt, self.chatter = model, dt, chatter
+        self.motion, self.vertical = motion
         self.theta, self.omega = theta, omega
         gaps, rates = _gaps(theta), _gaps(omega)
         self.state: State = (_sign(gaps[0] or rates[0]), _sign(gaps[1] or rates[1]))
-        self.fallen = 0
+        self.fallen = self.given_way = 0
         self.events: list[ReferenceEvent] = []
-        self.start = self.a0 = self.slope = 0.0
+        self.start = 0.0
+        self.early = self.late = (0.0, model.g)
         self.columns = slice(1, 2) if model.alone else slice(0, 2)
 
     def response(self, duration: float | None) -> ReferenceResponse:
@@ -160,8 +169,13 @@ class _Run:
         rows = [(0.0, self.theta, self.omega, self.state)]
         for k in range(steps):
             self.start = k * self.dt
-            self.a0 = float(self.motion[k]) if k < last else 0.0
-            self.slope = float(self.motion[k + 1] - self.motion[k]) / self.dt if k < last else 0.0
+            # zero from the last sample on
+            self.early, self.late = [
+                (float(self.motion[j]), self.model.g + float(self.vertical[j]))
+                if k < last
+                else (0.0, self.model.g)
+                for j in (k, min(k + 1, last))
+            ]
             if k in (0, last):
                 self._settle(0.0)
                 if k == 0:
@@ -184,6 +198,7 @@ class _Run:
             overturned_body=self.fallen,
             overturning_time=self.events[-1].time if self.fallen else math.nan,
             at_rest=self.state == (0, 0),
+            given_way=self.given_way,
         )
 
     def _interval(self) -> None:
@@ -197,13 +212,19 @@ class _Run:
             if in_place > 100 or len(self.events) > MOST_EVENTS:
                 raise ArithmeticError(f"events without end at {self.start + t} s")
 
+    def _pull(self, t: float) -> Pair:
+        """Acceleration of the ground, and gravity with its upward one [m/s²]."""
+        x = t / self.dt
+        one, other = self.early, self.late
+        return one[0] + x * (other[0] - one[0]), one[1] + x * (other[1] - one[1])
+
     # ------------------------------------------------------- between events
 
     def _stand(self, t: float) -> float:
         """Everything is at rest: contact moments are linear in time, so the opening is exact."""
         model, rest = self.model, (0, 0)
-        early = model.margins(rest, self.theta, self.omega, self.a0 + self.slope * t)
-        late = model.margins(rest, self.theta, self.omega, self.a0 + self.slope * self.dt)
+        early = model.margins(rest, self.theta, self.omega, self._pull(t))
+        late = model.margins(rest, self.theta, self.omega, self._pull(self.dt))
         crossings = [
             t + (self.dt - t) * max(early[key] + SLACK, 0.0) / (early[key] - late[key])
             for key in early
@@ -222,7 +243,7 @@ class _Run:
         def rates(time: float, y: NDArray[np.float64]) -> list[float]:
             w1, w2 = float(y[2]), float(y[3])
             q1, q2 = model.accelerations(
-                state, (float(y[0]), float(y[1])), (w1, w2), self.a0 + self.slope * time
+                state, (float(y[0]), float(y[1])), (w1, w2), self._pull(time)
             )
             return [w1, w2, q1, q2]
 
@@ -268,7 +289,7 @@ class _Run:
         }
         values |= {("upright", i): math.pi / 2 - abs(theta[i]) for i in (0, 1)}
         if 0 in self.state:
-            moments = self.model.margins(self.state, theta, omega, self.a0 + self.slope * time)
+            moments = self.model.margins(self.state, theta, omega, self._pull(time))
             values |= {("press", c * s): margin + SLACK for (c, s), margin in moments.items()}
         return values
 
@@ -358,7 +379,8 @@ class _Run:
         if quiet == set(shut):
             new, after = self._shut(old, quiet, old, before)
         else:
-            new, after = self.model.impact(old, closing, self.theta, before)
+            new, after, gave_way = self.model.impact(old, closing, self.theta, before)
+            self.given_way += gave_way
             # with one contact shut another may turn out to be as weak
             while weak := self._too_weak(time, new, after, old, closing):
                 new, after = self._shut(new, weak, old, before)
@@ -378,7 +400,7 @@ class _Run:
     ) -> set[int]:
         """List contacts that part so slowly after an impact that they would only chatter."""
         parting = _gaps(after)
-        pull = _gaps(self.model.accelerations(new, self.theta, after, self.a0 + self.slope * time))
+        pull = _gaps(self.model.accelerations(new, self.theta, after, self._pull(time)))
         return {
             i
             for i in (0, 1)
@@ -391,7 +413,7 @@ class _Run:
     def _settle(self, time: float) -> None:
         """Open what cannot stay closed."""
         old = self.state
-        self.state = self.model.settled(old, self.theta, self.omega, self.a0 + self.slope * time)
+        self.state = self.model.settled(old, self.theta, self.omega, self._pull(time))
         if self.state != old:
             self._note(time, "opening", old, self.omega)
 

@@ -19,14 +19,26 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from scipy.optimize import brentq
+
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body, Vector
+from rockfrag.rocking.measured_restitution import MeasuredRestitution
 
 State = tuple[int, int]
 Pair = tuple[float, float]
 
 # a speed below this fraction of the largest one counts as none when an impact is judged [-]
 NEGLIGIBLE_SPEED = 1e-13
+
+
+def _sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+def _rates(omega: Pair) -> Pair:
+    """Rate of opening of ground and interface."""
+    return omega[0], omega[1] - omega[0]
 
 
 def _dot(u: Vector, v: Vector) -> float:
@@ -81,12 +93,10 @@ class Model:
         self.g = g
         self.alone = isinstance(body, Block)
         if isinstance(body, Block):
-            blocks: tuple[Block | None, Block] = (None, body)
             self.m1, self.i1, self.b1 = 0.0, 0.0, 1.0
             self._r1 = self._d = _Affine(_NOWHERE, _NOWHERE, _NOWHERE)
             arms = {(s, t): body.arm(t) for s in (1, -1) for t in (1, -1)}
         else:
-            blocks = (body.pedestal, body.contact_statue)
             pedestal = body.pedestal
             self.m1, self.i1, self.b1 = pedestal.mass, pedestal.centroidal_inertia, pedestal.b
             pairs = [(s, t) for s in (1, -1) for t in (1, -1)]
@@ -97,8 +107,7 @@ class Model:
         self.m2, self.i2, self.b2 = upper.mass, upper.centroidal_inertia, upper.b
         self._r2 = _affine(arms)
         self.frequency = max(upper.frequency(s, g) for s in (1, -1))
-        self._blocks = blocks
-        self._restitution = _checked_restitution(body, restitution)
+        self._laws = _checked_laws(body, restitution)
 
     # ---------------------------------------------------------------- motion
 
@@ -110,26 +119,29 @@ class Model:
         return r1, d, r2
 
     def terms(
-        self, poles: State, theta: Pair, omega: Pair, a: float
+        self, poles: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
-        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (thesis eq. 2.43, 2.51, 2.55, 2.58)."""
+        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (thesis eq. 2.43, 2.51, 2.55, 2.58).
+
+        ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].
+        """
         r1, d, r2 = self.fields(poles, theta)
         # acceleration of the centres where both θ'' are zero, with gravity as if the ground rose
-        x1, y1 = a - omega[0] ** 2 * r1.x, self.g - omega[0] ** 2 * r1.y
-        x2 = a - omega[0] ** 2 * d.x - omega[1] ** 2 * r2.x
-        y2 = self.g - omega[0] ** 2 * d.y - omega[1] ** 2 * r2.y
+        x1, y1 = pull[0] - omega[0] ** 2 * r1.x, pull[1] - omega[0] ** 2 * r1.y
+        x2 = pull[0] - omega[0] ** 2 * d.x - omega[1] ** 2 * r2.x
+        y2 = pull[1] - omega[0] ** 2 * d.y - omega[1] ** 2 * r2.y
         f1 = self.m1 * (r1.y * x1 - r1.x * y1) + self.m2 * (d.y * x2 - d.x * y2)
         f2 = self.m2 * (r2.y * x2 - r2.x * y2)
         m11 = self.i1 + self.m1 * _dot(r1, r1) + self.m2 * _dot(d, d)
         m22 = self.i2 + self.m2 * _dot(r2, r2)
         return m11, self.m2 * _dot(d, r2), m22, f1, f2
 
-    def accelerations(self, state: State, theta: Pair, omega: Pair, a: float) -> Pair:
+    def accelerations(self, state: State, theta: Pair, omega: Pair, pull: Pair) -> Pair:
         """Angular accelerations in this contact state [rad/s²]."""
         c1, c2 = state
         if c1 == 0 and c2 == 0:
             return 0.0, 0.0
-        m11, m12, m22, f1, f2 = self.terms((c1 or 1, c2 or 1), theta, omega, a)
+        m11, m12, m22, f1, f2 = self.terms((c1 or 1, c2 or 1), theta, omega, pull)
         if c1 == 0:
             return 0.0, -f2 / m22
         if c2 == 0:
@@ -140,7 +152,7 @@ class Model:
 
     def kinetic_energy(self, state: State, theta: Pair, omega: Pair) -> float:
         """Kinetic energy relative to the ground [J]."""
-        m11, m12, m22, _, _ = self.terms((state[0] or 1, state[1] or 1), theta, omega, 0.0)
+        m11, m12, m22, _, _ = self.terms((state[0] or 1, state[1] or 1), theta, omega, (0.0, 0.0))
         return (m11 * omega[0] ** 2 + 2 * m12 * omega[0] * omega[1] + m22 * omega[1] ** 2) / 2
 
     def potential_energy(self, state: State, theta: Pair) -> float:
@@ -151,7 +163,7 @@ class Model:
     # ----------------------------------------------------------- persistence
 
     def margins(
-        self, state: State, theta: Pair, omega: Pair, a: float
+        self, state: State, theta: Pair, omega: Pair, pull: Pair
     ) -> dict[tuple[int, int], float]:
         """How firmly each full contact presses about each corner, {(contact, pole): margin} [-].
 
@@ -159,15 +171,15 @@ class Model:
         to pull and opens about that pole.
         """
         c1, c2 = state
-        q1, q2 = self.accelerations(state, theta, omega, a)
+        q1, q2 = self.accelerations(state, theta, omega, pull)
         found = {}
         if c2 == 0:
             for s in (1, -1):
-                _, m12, m22, _, f2 = self.terms((c1 or 1, s), theta, omega, a)
+                _, m12, m22, _, f2 = self.terms((c1 or 1, s), theta, omega, pull)
                 found[2, s] = s * (m12 * q1 + m22 * q2 + f2) / (self.m2 * self.g * self.b2)
         if c1 == 0 and not self.alone:
             for s in (1, -1):
-                m11, m12, m22, f1, f2 = self.terms((s, c2 or 1), theta, omega, a)
+                m11, m12, m22, f1, f2 = self.terms((s, c2 or 1), theta, omega, pull)
                 moment = m11 * q1 + m12 * q2 + f1
                 if c2 == 0:
                     moment += m12 * q1 + m22 * q2 + f2
@@ -193,24 +205,26 @@ class Model:
         for c1, c2 in itertools.product(*choices):  # noqa: UP028 - mypy needs the pair spelled out
             yield c1, c2
 
-    def settled(self, state: State, theta: Pair, omega: Pair, a: float) -> State:
+    def settled(self, state: State, theta: Pair, omega: Pair, pull: Pair) -> State:
         """Open every full contact that cannot persist; several may open at once."""
-        if all(margin >= 0 for margin in self.margins(state, theta, omega, a).values()):
+        if all(margin >= 0 for margin in self.margins(state, theta, omega, pull).values()):
             return state
         closed = (state[0] == 0, state[1] == 0)
         for candidate in self.options(state, closed, (0, 0)):
             if candidate == state:
                 continue
-            q1, q2 = self.accelerations(candidate, theta, omega, a)
+            q1, q2 = self.accelerations(candidate, theta, omega, pull)
             apart = (candidate[0] * q1, candidate[1] * (q2 - q1))
             opens = all(apart[i] > 0 for i in (0, 1) if closed[i] and candidate[i] != 0)
             if opens and all(
-                margin >= 0 for margin in self.margins(candidate, theta, omega, a).values()
+                margin >= 0 for margin in self.margins(candidate, theta, omega, pull).values()
             ):
                 return candidate
-        if min(self.margins(state, theta, omega, a).values()) > -1e-9:
+        if min(self.margins(state, theta, omega, pull).values()) > -1e-9:
             return state
-        raise ArithmeticError(f"no contact state is consistent at {state}, {theta}, {omega}, {a}")
+        raise ArithmeticError(
+            f"no contact state is consistent at {state}, {theta}, {omega}, {pull}"
+        )
 
     # ---------------------------------------------------------------- impact
 
@@ -259,20 +273,109 @@ class Model:
             (p2 * left[0][0] - p1 * left[1][0]) / det,
         )
 
-    def impact(self, old: State, closing: State, theta: Pair, before: Pair) -> tuple[State, Pair]:
+    def impact(
+        self, old: State, closing: State, theta: Pair, before: Pair
+    ) -> tuple[State, Pair, bool]:
         """Contact state and angular velocities after an impact (thesis eq. 2.76 to 2.86, mended).
 
-        ``closing`` holds the old pole of each contact that closes, 0 for the others.  A measured
-        restitution moves the impulse of a closing contact away from its new pole; where that would
-        create energy the impulse acts at the pole after all.
+        ``closing`` holds the old pole of each contact that closes, 0 for the others.  Last comes
+        whether a measured restitution gave way to the largest with which energy does not grow.
         """
+        outcomes = self.admissible_impacts(old, closing, theta, before)
+        outcome = next(outcomes, None) or self._together(old, closing, theta, before)
+        # the law of the corner that comes down
+        laws = [self._laws[i][-closing[i]] if closing[i] else None for i in (0, 1)]
+        if laws == [None, None]:
+            return *outcome, False
+        plain, moved = outcome[1], None
+        moves = any(law is not None and law.name == "position" for law in laws)
+        if moves:
+            found = next(self.admissible_impacts(old, closing, theta, before, moved=True), None)
+            moved = None if found is None else found[1]
+        wanted = [self._wanted(i, closing, before, plain, moved) for i in (0, 1)]
+        given = [law is not None for law in laws]
+
+        def shared(share: float) -> tuple[State, Pair]:
+            rates = tuple(p + share * (w - p) for p, w in zip(_rates(plain), wanted, strict=True))
+            return self._coming_off(old, closing, theta, before, given, (rates[0], rates[1]))
+
         energy = self.kinetic_energy(old, theta, before) * (1 + 1e-9)
-        for measured in (True, False):
-            outcomes = self.admissible_impacts(old, closing, theta, before, measured)
-            outcome = next(outcomes, None) or self._together(old, closing, theta, before)
-            if self.kinetic_energy(outcome[0], theta, outcome[1]) <= energy:
-                return outcome
-        raise ArithmeticError(f"energy grows at {old}, {closing}, {theta}, {before}")
+
+        def spare(share: float) -> float:
+            new, after = shared(share)
+            return energy - self.kinetic_energy(new, theta, after)
+
+        if spare(1.0) >= 0:
+            return *shared(1.0), moves and moved is None
+        return *shared(float(brentq(spare, 0.0, 1.0, xtol=1e-15))), True
+
+    def _wanted(
+        self,
+        contact: int,
+        closing: State,
+        before: Pair,
+        plain: Pair,
+        moved: Pair | None,
+    ) -> float:
+        """Rate at which a contact comes off, by its law if it closes and never on its old pole.
+
+        ``before``, ``plain`` and ``moved`` are the velocities before the impact, after it by momentum,
+        and after it with impulses where the law of position has them.
+        """
+        law = self._laws[contact][-closing[contact]] if closing[contact] else None
+        if law is None:
+            return _rates(plain)[contact]
+        if law.name == "ratio":
+            rate = law.number * _rates(before)[contact]
+        elif law.name == "couple":
+            rate = law.number * _rates(plain)[contact]
+        else:
+            rate = _rates(moved or plain)[contact]
+        return rate if rate * closing[contact] < 0 else 0.0
+
+    def _coming_off(
+        self,
+        old: State,
+        closing: State,
+        theta: Pair,
+        before: Pair,
+        given: list[bool],
+        rates: Pair,
+    ) -> tuple[State, Pair]:
+        """State and velocities after an impact whose closing contacts come off at given rates.
+
+        The impulses of the contact whose rate is given do no work on a motion that does not change
+        that rate.  Of these motions there is one for each state of the other contact, and momentum
+        along it decides whether that contact opens: at one corner, at the other, or not at all.
+        """
+        parted = [
+            _sign(rate) if is_given else 0 for rate, is_given in zip(rates, given, strict=True)
+        ]
+        if all(given):
+            return (parted[0], parted[1]), (rates[0], rates[0] + rates[1])
+        other = given.index(False)
+        for c in (1, -1):
+            is_open = old[other] != 0 and closing[other] == 0
+            if (
+                (is_open and c != old[other])
+                or (closing[other] == c)
+                or (other == 0 and self.alone)
+            ):
+                continue
+            new = (c, parted[1]) if other == 0 else (parted[0], c)
+            places = (float(new[0] or 1), float(new[1] or 1))
+            # of the motion in which the closing contact keeps its rate
+            along = (1.0, 1.0) if other == 0 else (0.0, 1.0)
+            still = (0.0, rates[1]) if other == 0 else (rates[0], rates[0])
+            lacking = self.impulses(places, new, old, theta, still, before)
+            row = self.products(places, (new[0] or 1, new[1] or 1), theta)
+            inertia = sum(along[i] * row[i][j] * along[j] for i in (0, 1) for j in (0, 1))
+            speed = -(along[0] * lacking[0] + along[1] * lacking[1]) / inertia
+            if is_open or c * speed > NEGLIGIBLE_SPEED * (abs(before[0]) + abs(before[1])):
+                return new, (still[0] + along[0] * speed, still[1] + along[1] * speed)
+        if other == 0:
+            return (0, parted[1]), (0.0, rates[1])
+        return (parted[0], 0), (rates[0], rates[0])
 
     def _together(
         self, old: State, closing: State, theta: Pair, before: Pair
@@ -283,23 +386,30 @@ class Model:
         return new, self.projected(poles, new, old, theta, before)
 
     def admissible_impacts(
-        self, old: State, closing: State, theta: Pair, before: Pair, measured: bool = False
+        self, old: State, closing: State, theta: Pair, before: Pair, moved: bool = False
     ) -> Iterator[tuple[State, Pair]]:
-        """List every outcome of an impact that separates and presses as it must."""
+        """List every outcome of an impact that separates and presses as it must.
+
+        Impulses act at the poles, or, if ``moved``, where the law of position has them.
+        """
         closed = (old[0] == 0 or closing[0] != 0, old[1] == 0 or closing[1] != 0)
         speed = NEGLIGIBLE_SPEED * (abs(before[0]) + abs(before[1]))
         for new in self.options(old, closed, closing):
             places = (float(new[0] or 1), float(new[1] or 1))
-            if measured:
-                places = (
-                    self._impulse_place(0, closing[0]) if closing[0] and new[0] else places[0],
-                    self._impulse_place(1, closing[1]) if closing[1] and new[1] else places[1],
-                )
+            if moved:
+                places = (self._place(0, new, closing), self._place(1, new, closing))
             after = self.projected(places, new, old, theta, before)
             apart = (new[0] * after[0], new[1] * (after[1] - after[0]))
             separates = all(apart[i] > speed for i in (0, 1) if closed[i] and new[i] != 0)
             if separates and self._presses(new, old, places, theta, after, before):
                 yield new, after
+
+    def _place(self, contact: int, new: State, closing: State) -> float:
+        """Where the impulse of a contact acts by the law of position, as a fraction of the half width."""
+        law = self._laws[contact][-closing[contact]] if closing[contact] and new[contact] else None
+        if law is not None and law.name == "position":
+            return law.number
+        return float(new[contact] or 1)
 
     def _presses(
         self, new: State, old: State, places: Pair, theta: Pair, after: Pair, before: Pair
@@ -318,13 +428,6 @@ class Model:
                     return False
         return True
 
-    def _impulse_place(self, contact: int, old_pole: int) -> float:
-        """Where the impulse of a closing contact acts, as a fraction of the half width."""
-        value, block = self._restitution[contact], self._blocks[contact]
-        if value is None or block is None:
-            return float(-old_pole)
-        return impulse_place(block, old_pole, value)
-
 
 class LinearModel(Model):
     """The linearised equations: 2.9 for a lone block, 2.60 to 2.65 (mended) for a stack.
@@ -342,7 +445,7 @@ class LinearModel(Model):
         return super().fields(places, (0.0, 0.0))
 
     def terms(
-        self, poles: State, theta: Pair, omega: Pair, a: float
+        self, poles: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
         """Return M11, M12, M22, f1, f2 of the linearised equations."""
         r1, d, r2 = self.fields(poles, theta)
@@ -353,8 +456,8 @@ class LinearModel(Model):
             radius = self._lone.radius(poles[1])
             r2 = Vector(-poles[1] * self._lone.critical_angle(poles[1]) * radius, radius)
         moment1 = Vector(self.m1 * r1.x + self.m2 * d.x, self.m1 * r1.y + self.m2 * d.y)
-        f1 = moment1.y * a - self.g * (moment1.x + moment1.y * theta[0])
-        f2 = self.m2 * (r2.y * a - self.g * (r2.x + r2.y * theta[1]))
+        f1 = moment1.y * pull[0] - pull[1] * (moment1.x + moment1.y * theta[0])
+        f2 = self.m2 * (r2.y * pull[0] - pull[1] * (r2.x + r2.y * theta[1]))
         return m11, m12, m22, f1, f2
 
 
@@ -370,35 +473,68 @@ def impulse_place(block: Block, old_pole: int, value: float) -> float:
     return (centre.x - lever) / block.b
 
 
-def largest_restitution(block: Block) -> float:
-    """Largest ratio of angular velocities that does not create energy on either pole [-]."""
-    right, left = block.pole_inertia(1), block.pole_inertia(-1)
-    return math.sqrt(min(right, left) / max(right, left))
+def largest_restitution(block: Block, new_pole: int | None = None) -> float:
+    """Largest ratio of angular velocities that does not create energy, on one pole or either [-]."""
+    ratios = {s: block.pole_inertia(-s) / block.pole_inertia(s) for s in (1, -1)}
+    return math.sqrt(min(ratios.values()) if new_pole is None else ratios[new_pole])
 
 
-def _checked_restitution(body: Body, restitution: object) -> tuple[float | None, float | None]:
+@dataclass(frozen=True)
+class Law:
+    """How one interface comes off impacts that end on one corner.
+
+    ``number`` is a factor on what momentum leaves ("couple"), the place of the impulse on the base
+    ("position"), or the ratio of the velocities after and before ("ratio").
+    """
+
+    name: str
+    number: float
+
+
+Laws = dict[int, Law | None]
+
+
+def _checked_laws(body: Body, restitution: object) -> tuple[Laws, Laws]:
+    """Laws of ground and interface by the corner that comes down."""
+    name = "position"
+    if isinstance(restitution, MeasuredRestitution):
+        name, restitution = restitution.law, restitution.value
+    none: Laws = {1: None, -1: None}
     if restitution is None:
-        return None, None
+        return none, none
     if isinstance(body, Block):
-        return None, _checked_value("restitution", body, restitution)
+        # every law is that of the lone block
+        return none, _laws_of("restitution", body, restitution, "ratio")
     if not (isinstance(restitution, tuple | list) and len(restitution) == 2):
         raise InputError(
             f"restitution: a stack needs a pair (ground, interface), got {restitution!r}."
         )
     ground, interface = restitution
     return (
-        _checked_value("restitution[0] (ground)", body.pedestal, ground),
-        _checked_value("restitution[1] (interface)", body.contact_statue, interface),
+        _laws_of("restitution[0] (ground)", body.pedestal, ground, name),
+        _laws_of("restitution[1] (interface)", body.contact_statue, interface, name),
     )
 
 
-def _checked_value(name: str, block: Block, value: object) -> float | None:
+def _laws_of(where: str, block: Block, value: object, name: str) -> Laws:
     if value is None:
-        return None
-    largest = largest_restitution(block)
-    if isinstance(value, int | float) and 0 <= value <= largest * (1 + 1e-12):
-        return float(value)
-    raise InputError(
-        f"{name}: a ratio of angular velocities must lie between 0 and {largest:.6g}, above which "
-        f"an impact would create energy, got {value!r}."
-    )
+        return {1: None, -1: None}
+    laws: Laws = {}
+    for corner in (1, -1):
+        if isinstance(value, tuple | list):
+            number, largest = value[(1 - corner) // 2], largest_restitution(block, corner)
+        else:
+            number, largest = value, largest_restitution(block)
+        if not (isinstance(number, int | float) and 0 <= number <= largest * (1 + 1e-12)):
+            raise InputError(
+                f"{where}: a ratio of angular velocities must lie between 0 and {largest:.6g}, above "
+                f"which an impact would create energy, got {number!r}."
+            )
+        by_momentum = block.momentum_restitution(-corner)
+        if name == "ratio":
+            laws[corner] = Law("ratio", float(number))
+        elif name == "position" and number >= by_momentum:
+            laws[corner] = Law("position", impulse_place(block, -corner, float(number)))
+        else:
+            laws[corner] = Law("couple", float(number) / by_momentum)
+    return laws

@@ -45,6 +45,8 @@ class ReferenceResponse:
         When it passed π/2 [s]; NaN if none did.
     at_rest
         Whether everything stands in full contact at the end.
+    given_way
+        Impacts in which a measured restitution gave way, lest energy grow.
     """
 
     time: NDArray[np.float64]
@@ -56,3 +58,4 @@ class ReferenceResponse:
     overturned_body: int
     overturning_time: float
     at_rest: bool
+    given_way: int

@@ -5,8 +5,9 @@ straight-line arithmetic, and what is rare (impacts, rest, verdicts, the next ca
 between passes.  All cases need the same arithmetic, so a case lives in its lane and never waits for one,
 unlike those of stacks (``scheduler``).
 
-With ψ = θc - |θ| and A the ground acceleration over g, positive where it pushes the block back down, the
-equation of motion on either pole is ψ'' = p² (sin ψ + A cos ψ) (thesis eq. 2.4).  Time is counted in samples.
+With ψ = θc - |θ|, A the ground acceleration over g, positive where it pushes the block back down, and W gravity
+over g, 1 unless the ground moves vertically, the equation of motion on either pole is ψ'' = p² (W sin ψ + A cos ψ)
+(thesis eq. 2.4).  Time is counted in samples.
 """
 
 import math
@@ -26,6 +27,8 @@ from rockfrag.rocking.kernels.lanes.case import (
     next_samples,
     next_uplift,
     place_of,
+    weight_of,
+    weights_ahead,
 )
 from rockfrag.rocking.kernels.roots import NEVER, crossing, graze, hops
 from rockfrag.rocking.kernels.single import MAX_EVENTS_PER_STEP
@@ -48,7 +51,7 @@ POLE = np.dtype(
     [
         ("alpha", _F), ("tan", _F), ("sine", _F), ("cosine", _F),  # critical angle
         ("swing", _F),  # p² dt²
-        ("restitution", _F),  # ratio of angular velocities of an impact that ends rocking on this pole
+        ("restitution", _F),  # ratio of angular velocities of the impact that ends rocking on this pole
         ("per_alpha", _F), ("per_swing", _F),  # 1/θc and 1/(p² dt² θc²)
     ]
 )  # fmt: skip
@@ -64,6 +67,7 @@ LANE = np.dtype(
         ("crowded", _I, LANES), ("crowd", _I, LANES),  # sample of the last impact, and how many that has had
         ("psi", _F, LANES), ("omega", _F, LANES),  # the state, ψ and ψ'
         ("ground", _F, LANES), ("ground_end", _F, LANES),  # A now and at the end of the sample
+        ("weight", _F, LANES), ("weight_end", _F, LANES),  # W now and at the end of the sample
         ("part_left", _F, LANES),  # part of the sample that is left
         ("tau", _F, LANES),  # time since sample k, between events
         # extremes of the case so far: ψ/θc, ψ', distance from balance squared
@@ -73,7 +77,9 @@ LANE = np.dtype(
         ("was_low", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
         ("angle", _F, LANES), ("kappa", _F, LANES),  # θc and κ = p² dt² of the pole
         ("per_angle", _F, LANES), ("per_speed", _F, LANES),  # 1/θc and 1/(κ θc²)
-        ("bound", _F, LANES), ("crest", _F, LANES),  # the most that A can be from here on, and √(1 + bound²)
+        ("bound", _F, LANES),  # the most that A can be from here on
+        ("heavy", _F, LANES),  # the most that W can be
+        ("crest", _F, LANES),  # √(light² + bound²) + heavy - light, with the least that W can be
         ("factor", _F, LANES), ("signed", _F, LANES),  # scale of the motion over g, and that times the side
         ("flag", _F, LANES),
         ("rates", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of ψ'
@@ -107,10 +113,11 @@ def advance(lane):
 
     Everything is stored in every lane: conditional stores cost many times as much.
 
-    A fall is certain, whatever the ground does, in this case.  Let tan φ = ``bound``, the most that A can be
-    in the rest of the motion.  ψ'' ≤ κ (sin ψ + tan φ cos ψ) = κ sin(ψ + φ) / cos φ, whose right side grows
-    with ψ: a block that the constant A = tan φ cannot bring back is brought back by no smaller A.  With ψ' < 0
-    that pendulum passes its upper equilibrium ψ = -φ if ψ'²/2 ≥ κ (1 - cos(ψ + φ)) / cos φ.
+    A fall is certain, whatever the ground does, in this case.  Let B = ``bound`` be the most that A can be in the
+    rest of the motion, and V and W the least and the most of gravity.  ψ'' ≤ κ (V sin ψ + (W - V) max(0, sin ψ)
+    + B cos ψ), whose right side grows with ψ: a block that these cannot bring back is brought back by no others.
+    With ψ' < 0 that pendulum passes its upper equilibrium if ψ'²/2 is at least the integral of the right side from
+    there, which is at most κ (√(V² + B²) + (W - V) - W cos ψ + B sin ψ).
     """
     for i in range(LANES):
         psi = lane.psi[i]
@@ -122,11 +129,13 @@ def advance(lane):
         a_end = lane.ground_end[i]
         w = omega * left
         s, c = quick_sine_cosine(psi)
-        rates = rates_of_one(s, c, w, kappa * left * left, a, a_end - a)
+        u = lane.weight[i]
+        u_end = lane.weight_end[i]
+        rates = rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), (u, u_end - u))
         end = psi + travel(rates, 1.0)
         v = rate_at(rates, 1.0)
         keep_rates(lane.rates, i, rates)
-        crest = lane.crest[i] - c + lane.bound[i] * s
+        crest = lane.crest[i] - lane.heavy[i] * c + lane.bound[i] * s
         certain = (w < 0.0) & (0.5 * omega * omega >= kappa * crest)
         grazes = (w > 0.0) & (v < 0.0)
         touches = end >= angle
@@ -150,6 +159,7 @@ def advance(lane):
         lane.psi[i] = end
         lane.omega[i] = v
         lane.ground[i] = a_end
+        lane.weight[i] = u_end
         lane.part_left[i] = 1.0
 
 
@@ -180,7 +190,7 @@ def march_blocks(ensemble, motions, worker, outcomes):
     while busy > 0:
         passes += 1
         advance(lane)
-        stops = next_samples(lane, lane.signed, LANES, motions.samples)
+        stops = next_samples(lane, lane.signed, LANES, motions)
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1
@@ -254,7 +264,8 @@ def _take_event(lane, i, tally, ensemble, motions):
         side = -side
         here = _pole(lane, i, side, ensemble)
         psi = here.alpha
-        ahead = Ahead(motions.samples, lane.factor[i], lane.last[i], k, tau, 1.0)
+        factor = lane.factor[i]
+        ahead = Ahead(motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0)
         still = w > -1e-12 or lane.crowd[i] > MAX_EVENTS_PER_STEP
         if still or block_dies_out(-w, side, here, there, ahead):
             side = 0
@@ -366,7 +377,7 @@ def _rise(lane, i, ensemble, motions):
     if lane.fell[i] != 0 or lane.side[i] != 0 or k >= last or factor == 0.0:
         return
     interval = -_pole(lane, i, 1, ensemble).tan, _pole(lane, i, -1, ensemble).tan
-    k, tau, ground = next_uplift(motions, k, lane.tau[i], last, factor, interval)
+    k, tau, ground, _ = next_uplift(motions, k, lane.tau[i], last, factor, interval)
     if k >= 0:
         # it rocks towards the side that the ground comes from
         side = -1 if ground > 0.0 else 1
@@ -411,7 +422,8 @@ def _put_down(lane, i, tally, outcome):
     outcome.peak1, outcome.peak2 = 0.0, max(tally.peak2, 1.0 - lane.low[i])
     outcome.fast = max(tally.fast, lane.fast[i])
     outcome.closest = min(tally.closest, math.sqrt(lane.near[i]))
-    outcome.impacts = tally.impacts
+    # a lone block comes off as was measured, whatever the law
+    outcome.impacts, outcome.given_way = tally.impacts, 0
 
 
 @inlined_kernel
@@ -436,6 +448,7 @@ def _place(lane, i, ensemble, motions):
         lane.k[i], lane.last[i], lane.psi[i], lane.omega[i] = 0, 0, 0.0, 0.0
         lane.ground[i], lane.ground_end[i], lane.factor[i], lane.signed[i] = 0.0, 0.0, 0.0, 0.0
         lane.kappa[i], lane.bound[i], lane.crest[i] = 0.0, 0.0, 10.0
+        lane.weight[i], lane.weight_end[i], lane.heavy[i] = 1.0, 1.0, 1.0
         lane.part_left[i], lane.angle[i] = 1.0, 1.0
         return
     k, side, tau = lane.k[i], lane.side[i], lane.tau[i]
@@ -446,6 +459,9 @@ def _place(lane, i, ensemble, motions):
     after = signed * motions.samples[k + 1]
     lane.ground[i] = before + tau * (after - before)
     lane.ground_end[i] = after
+    light = weight_of(motions, k, factor)
+    heavy = weight_of(motions, k + 1, factor)
+    lane.weight[i], lane.weight_end[i] = light + tau * (heavy - light), heavy
     lane.part_left[i] = 1.0 - tau
     pole = _pole(lane, i, side, ensemble)
     lane.angle[i], lane.kappa[i] = pole.alpha, pole.swing
@@ -453,5 +469,9 @@ def _place(lane, i, ensemble, motions):
     # largest A that can still push the block on this pole back down
     most, least = motions.ahead_high[k // BLOCK], motions.ahead_low[k // BLOCK]
     bound = max(0.0, factor * most * side, factor * least * side)
-    lane.bound[i] = bound
-    lane.crest[i] = math.sqrt(1.0 + bound * bound)
+    light, heavy = weights_ahead(motions, k, factor)
+    lane.bound[i], lane.heavy[i] = bound, heavy
+    lane.crest[i] = math.sqrt(light * light + bound * bound) + (heavy - light)
+    if light <= 0.0:
+        # where gravity may vanish, no fall is certain before the block lies down
+        lane.crest[i] = math.inf

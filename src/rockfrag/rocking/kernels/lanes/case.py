@@ -25,6 +25,7 @@ OUTCOME = np.dtype(
         # extremes: of θ/θcritical of pedestal and statue, |θ'| of the statue per sample, distance from balance
         ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("closest", np.float64),
         ("impacts", np.int64),
+        ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
     ],
     align=True,
 )  # fmt: skip
@@ -37,17 +38,22 @@ class Motions(NamedTuple):
     Attributes
     ----------
     samples : accelerations of the ground [m/s²]; each motion ends with a sample of zero
+    vertical : likewise upwards, such that factors make of it parts of gravity; none if the ground does not move so
     highest, lowest : extremes of each BLOCK of ``samples``
     ahead_high, ahead_low : likewise from the beginning of each BLOCK to the end of its motion
+    upward_high, upward_low : likewise of ``vertical``
     offsets : (sampled motions + 1,) where each begins
     lasts : (sampled motions,) its last sample
     """
 
     samples: NDArray[np.float64]
+    vertical: NDArray[np.float64]
     highest: NDArray[np.float64]
     lowest: NDArray[np.float64]
     ahead_high: NDArray[np.float64]
     ahead_low: NDArray[np.float64]
+    upward_high: NDArray[np.float64]
+    upward_low: NDArray[np.float64]
     offsets: NDArray[np.int64]
     lasts: NDArray[np.int64]
 
@@ -84,40 +90,62 @@ def place_of(number, ensemble):
     return number // (scales * motions), (number // scales) % motions, number % scales
 
 
+@inlined_kernel
+def weight_of(motions, k, factor):
+    """Gravity at a sample over that of a ground that does not move vertically."""
+    return 1.0 + factor * motions.vertical[k] if motions.vertical.size > 0 else 1.0
+
+
+@inlined_kernel
+def weights_ahead(motions, k, factor):
+    """Least and largest gravity, over that of a ground that does not move vertically, from a sample on."""
+    if motions.vertical.size == 0:
+        return 1.0, 1.0
+    one = factor * motions.upward_high[k // BLOCK]
+    other = factor * motions.upward_low[k // BLOCK]
+    return 1.0 + min(one, other), 1.0 + max(one, other)
+
+
 @kernel
 def next_uplift(motions, k, tau, last, factor, interval):
-    """Sample and time within it at which a body at rest rises, and the acceleration then; -1 if it stays.
+    """Sample and time within it at which a body at rest rises, and acceleration and weight then; -1 if it stays.
 
     Parameters
     ----------
     k, tau : the time: ``tau`` after sample k
     last : last sample of the motion
     factor : on its samples
-    interval : (low, high), which holds 0, that the acceleration has to leave (thesis eq. 2.1)
+    interval : (low, high), which holds 0, that the acceleration over the weight has to leave (thesis eq. 2.1)
     """
     samples = motions.samples
     low, high = interval
-    a0 = factor * samples[k]
-    a1 = factor * samples[k + 1]
-    now = a0 + tau * (a1 - a0)
-    if low <= now <= high and low <= a1 <= high:
-        least = low / factor
-        most = high / factor
+    a0, a1 = factor * samples[k], factor * samples[k + 1]
+    w0, w1 = weight_of(motions, k, factor), weight_of(motions, k + 1, factor)
+    now, weight = a0 + tau * (a1 - a0), w0 + tau * (w1 - w0)
+    rests = low * weight <= now <= high * weight
+    if rests and low * w1 <= a1 <= high * w1:
+        # no limit of any later sample is nearer to zero than this
+        lightest, _ = weights_ahead(motions, k, factor)
+        least, most = low * lightest / factor, high * lightest / factor
         if factor < 0.0:
             least, most = most, least
-        m = _first_outside(motions, k + 1, last, least, most)
-        if m < 0:
-            return -1, 0.0, 0.0
-        k = m - 1
-        tau = 0.0
-        a0 = factor * samples[k]
-        a1 = factor * samples[m]
-        now = a0
-    if low <= now <= high:
-        limit = high if a1 > a0 else low
-        tau = min(max(tau, (limit - a0) / (a1 - a0)), 1.0 - 1e-9)
-        now = limit
-    return k, tau, now
+        m = k + 1
+        while True:
+            m = _first_outside(motions, m, last, least, most)
+            if m < 0:
+                return -1, 0.0, 0.0, 1.0
+            a1, w1 = factor * samples[m], weight_of(motions, m, factor)
+            if not low * w1 <= a1 <= high * w1:
+                break
+        k, tau = m - 1, 0.0
+        a0, w0 = factor * samples[k], weight_of(motions, k, factor)
+    if rests:
+        limit = high if a1 > high * w1 else low
+        reached = (limit * w0 - a0) / ((a1 - a0) - limit * (w1 - w0))
+        tau = min(max(tau, reached), 1.0 - 1e-9)
+        weight = w0 + tau * (w1 - w0)
+        now = limit * weight
+    return k, tau, now, weight
 
 
 @kernel
@@ -140,7 +168,7 @@ def _first_outside(motions, k, last, low, high):
 
 
 @inlined_kernel
-def next_samples(lane, factor, lanes, samples):
+def next_samples(lane, factor, lanes, motions):
     """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop.
 
     A lane stops for an event, and at the end of its motion and after it.
@@ -150,14 +178,22 @@ def next_samples(lane, factor, lanes, samples):
     lane : the lanes, of any kind
     factor : the row of factors on the samples
     lanes : number of lanes
+    motions : Motions
     """
+    samples, vertical = motions.samples, motions.vertical
     stops = 0
     for i in range(lanes):
         at = lane.k[i] + (1 if lane.flag[i] == QUIET else 0)
         lane.k[i] = at
         stops |= (1 << i) if (lane.flag[i] > QUIET) | (at >= lane.last[i]) else 0
-    for i in range(lanes):
-        # unsigned, as an index that may be negative is looked at before it is used
-        following = np.uint64(min(lane.k[i] + 1, lane.last[i]))
-        lane.ground_end[i] = factor[i] * samples[following]
+    if vertical.size == 0:
+        for i in range(lanes):
+            # unsigned, as an index that may be negative is looked at before it is used
+            following = np.uint64(min(lane.k[i] + 1, lane.last[i]))
+            lane.ground_end[i] = factor[i] * samples[following]
+    else:
+        for i in range(lanes):
+            following = np.uint64(min(lane.k[i] + 1, lane.last[i]))
+            lane.ground_end[i] = factor[i] * samples[following]
+            lane.weight_end[i] = 1.0 + lane.factor[i] * vertical[following]
     return stops

@@ -60,11 +60,11 @@ def march_stacks(ensemble, motions, worker, outcomes):
         if ones:
             steps1 += LANES
             stack_one.advance(worker.one, g)
-            stops = next_samples(worker.one, worker.one.factor, LANES, motions.samples)
+            stops = next_samples(worker.one, worker.one.factor, LANES, motions)
         else:
             steps2 += LANES
             stack_two.advance(worker.two, g)
-            stops = next_samples(worker.two, worker.two.factor, LANES, motions.samples)
+            stops = next_samples(worker.two, worker.two.factor, LANES, motions)
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1
@@ -100,9 +100,9 @@ def march_stacks(ensemble, motions, worker, outcomes):
                 slot = worker.waiting[kind, waits[kind]]
             if ones:
                 if _hold(worker.one, i, slot, worker.cases):
-                    place_one(i, worker.cases[slot], worker, motions.samples)
+                    place_one(i, worker.cases[slot], worker, motions)
             elif _hold(worker.two, i, slot, worker.cases):
-                place_two(i, worker.cases[slot], worker, motions.samples)
+                place_two(i, worker.cases[slot], worker, motions)
     return steps1, steps2
 
 

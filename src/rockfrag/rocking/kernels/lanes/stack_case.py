@@ -40,7 +40,7 @@ from rockfrag.rocking.kernels.equations import (
 from rockfrag.rocking.kernels.impact import ground_impact, interface_impact
 from rockfrag.rocking.kernels.jit import inlined_kernel, kernel, take_next
 from rockfrag.rocking.kernels.lanes import stack_one, stack_two
-from rockfrag.rocking.kernels.lanes.case import LANES, RELEASE, next_uplift, place_of
+from rockfrag.rocking.kernels.lanes.case import LANES, RELEASE, next_uplift, place_of, weight_of
 from rockfrag.rocking.kernels.lanes.stack_constants import (
     HOLD,
     IMPACT,
@@ -71,11 +71,13 @@ CASE = np.dtype(
         # the state, with rates per sample
         ("c1", np.int64), ("c2", np.int64),
         ("theta1", np.float64), ("omega1", np.float64), ("theta2", np.float64), ("omega2", np.float64),
-        # of its last event the ground acceleration, the sample, and how many that sample has had
-        ("ground", np.float64), ("crowded", np.int64), ("crowd", np.int64),
+        # gravity of a ground that does not move vertically
+        ("gravity", np.float64),
+        # of its last event the ground acceleration, gravity over the above, the sample, and how many that has had
+        ("ground", np.float64), ("weight", np.float64), ("crowded", np.int64), ("crowd", np.int64),
         # extremes so far, as in the lanes; impacts; what fell, 1 the pedestal, 2 the statue
         ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("near", np.float64),
-        ("impacts", np.int64), ("fallen", np.int64),
+        ("impacts", np.int64), ("given_way", np.int64), ("fallen", np.int64),
     ],
     align=True,
 )  # fmt: skip
@@ -176,12 +178,12 @@ def _goes_on(case, ensemble, motions, state):
     if case.c1 == 0 and case.c2 == 0:
         if case.k >= case.last or case.factor == 0.0:
             return False
-        k, tau, ground = next_uplift(
+        k, tau, ground, weight = next_uplift(
             motions, case.k, case.tau, case.last, case.factor, (case.low, case.high)
         )
         if k < 0:
             return False
-        case.k, case.tau, case.ground = k, tau, ground
+        case.k, case.tau, case.ground, case.weight = k, tau, ground, weight
         case.theta1, case.omega1, case.theta2, case.omega2 = 0.0, 0.0, 0.0, 0.0
         to_state(case, state)
         case.c1, case.c2 = uplift(body, state)
@@ -217,7 +219,7 @@ def _put_down(case, outcome):
     outcome.certain = case.k - case.first
     outcome.peak1, outcome.peak2 = case.peak1, case.peak2
     outcome.fast, outcome.closest = case.fast, math.sqrt(case.near)
-    outcome.impacts = case.impacts
+    outcome.impacts, outcome.given_way = case.impacts, case.given_way
 
 
 @kernel
@@ -235,13 +237,14 @@ def _take_up(case, number, ensemble, motions, worker):
         case.low, case.high = rest_interval(record, scratch)
         case.barrier = barrier(record)
     case.number, case.body, case.interval = number, body, h
+    case.gravity, case.weight = ensemble.bodies[body].gravity, 1.0
     case.part = ensemble.parts[body, motion]
     case.factor = ensemble.factors[motion, scale]
     sampled = ensemble.rows[body, motion]
     case.first, case.last = motions.offsets[sampled], motions.lasts[sampled]
     case.free_last = case.last + ensemble.free[body, motion]
     case.k, case.tau = case.first, 0.0
-    case.c1, case.c2, case.fallen, case.crowded, case.impacts = 0, 0, 0, -1, 0
+    case.c1, case.c2, case.fallen, case.crowded, case.impacts, case.given_way = 0, 0, 0, -1, 0, 0
     case.peak1, case.peak2, case.fast, case.near = 0.0, 0.0, 0.0, math.inf
 
 
@@ -250,6 +253,7 @@ def to_state(case, state):
     """Write a case's state with rates per second."""
     h = case.interval
     state.c1, state.c2, state.ground = case.c1, case.c2, case.ground
+    state.gravity = case.weight * case.gravity
     state.theta1, state.omega1 = case.theta1, case.omega1 / h
     state.theta2, state.omega2 = case.theta2, case.omega2 / h
 
@@ -257,7 +261,8 @@ def to_state(case, state):
 @inlined_kernel
 def _ahead(case, motions):
     """The ground from the case's instant on."""
-    return Ahead(motions.samples, case.factor, case.last, case.k, case.tau, case.interval)
+    factor, interval = case.factor, case.interval
+    return Ahead(motions.samples, motions.vertical, factor, case.last, case.k, case.tau, interval)
 
 
 # --------------------------------------------------------------------------- events
@@ -295,7 +300,7 @@ def event_of_one(i, case, worker, ensemble, motions, g):
     if when > 1.0:
         return False, False
     case.tau -= left * (1.0 - at)
-    case.ground = lane.was_ground[i] + (lane.ground_end[i] - lane.was_ground[i]) * at
+    case.ground, case.weight = stack_one.pull_at(lane, i, at)
     body = ensemble.bodies[case.body]
     _count_event(case)
     if fails:
@@ -331,7 +336,9 @@ def event_of_two(i, case, worker, ensemble, motions, g):
     if when > 1.0:
         return False, False
     rise = lane.ground_end[i] - lane.was_ground[i]
+    lift = lane.weight_end[i] - lane.was_weight[i]
     case.ground = lane.was_ground[i] + rise * (at * span / left)
+    case.weight = lane.was_weight[i] + lift * (at * span / left)
     _count_event(case)
     if closes1:
         case.theta1 = 0.0
@@ -354,7 +361,9 @@ def general_impact(case, worker, body, closes, motions):
     state = worker.state
     to_state(case, state)
     ahead = _ahead(case, motions)
-    land(body, state, closes, worker.restoring[case.slot], ahead, VERDICT, _forced(case))
+    restoring = worker.restoring[case.slot]
+    _, gave_way = land(body, state, closes, restoring, ahead, VERDICT, _forced(case))
+    case.given_way += gave_way
     h = case.interval
     case.c1, case.c2, case.omega1, case.omega2 = (
         state.c1,
@@ -388,13 +397,15 @@ def _land_alone(case, worker, body, g, motions):
     if rests:
         n1, n2, v1, v2 = 0, 0, 0.0, 0.0
     if n1 == 0 and n2 == 0:
-        settled = case.low < case.ground < case.high
+        settled = case.low * case.weight < case.ground < case.high * case.weight
     elif n1 == 0 or n2 == 0:
         constants = worker.ones[slot, number_of(n1, n2)]
-        settled = stack_one.least_hold(constants, 0.0, v2, case.ground, g) > 0.0
+        pull = case.ground, case.weight
+        settled = stack_one.least_hold(constants, 0.0, v2, pull, g) > 0.0
     else:
         settled = True
     case.c1, case.c2, case.omega1, case.omega2 = n1, n2, v1, v2
+    case.given_way += landing.gives_way
     if not settled:
         to_state(case, worker.state)
         case.c1, case.c2 = settle(body, worker.state)
@@ -467,7 +478,7 @@ def after_event(case):
 
 
 @inlined_kernel
-def place_one(i, case, worker, samples):
+def place_one(i, case, worker, motions):
     """Place a case into lane i of those of one rotation."""
     lane, one = worker.one, worker.ones[case.slot, number_of(case.c1, case.c2)]
     lane.gx[i], lane.gy[i] = one.gx, one.gy
@@ -477,14 +488,15 @@ def place_one(i, case, worker, samples):
     lane.side[i] = case.c1 + case.c2
     lane.theta[i], lane.omega[i] = case.theta2, case.omega2
     lane.factor[i], lane.part_left[i] = case.factor, 1.0 - case.tau
-    lane.ground[i], lane.ground_end[i] = _ground(case, samples)
+    lane.ground[i], lane.ground_end[i] = _ground(case, motions.samples)
+    lane.weight[i], lane.weight_end[i] = _weight(case, motions)
     lane.has_step[i] = 0.0
     lane.ratio[i] = case.peak1 if case.c2 == 0 else case.peak2
     lane.fast[i], lane.near[i] = case.fast, case.near
 
 
 @inlined_kernel
-def place_two(i, case, worker, samples):
+def place_two(i, case, worker, motions):
     """Place a case into lane i of those of two rotations."""
     lane, two = worker.two, worker.twos[case.slot, number_of(case.c1, case.c2)]
     lane.v1x[i], lane.v1y[i], lane.v2x[i], lane.v2y[i] = two.v1x, two.v1y, two.v2x, two.v2y
@@ -495,9 +507,18 @@ def place_two(i, case, worker, samples):
     lane.theta1[i], lane.omega1[i] = case.theta1, case.omega1
     lane.theta2[i], lane.omega2[i] = case.theta2, case.omega2
     lane.factor[i], lane.part_left[i], lane.part[i] = case.factor, 1.0 - case.tau, case.part
-    lane.ground[i], lane.ground_end[i] = _ground(case, samples)
+    lane.ground[i], lane.ground_end[i] = _ground(case, motions.samples)
+    lane.weight[i], lane.weight_end[i] = _weight(case, motions)
     lane.ratio1[i], lane.ratio2[i] = case.peak1, case.peak2
     lane.fast[i], lane.near[i] = case.fast, case.near
+
+
+@inlined_kernel
+def _weight(case, motions):
+    """Weight at the time of a case and at the end of its sample."""
+    before = weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
+    after = weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
+    return before + case.tau * (after - before), after
 
 
 @inlined_kernel

@@ -56,9 +56,10 @@ IMPACT = np.dtype(
         # products of the velocity fields before and after one contact of two closes
         ("ground", np.float64),
         ("both11", np.float64), ("both12", np.float64), ("both21", np.float64), ("both22", np.float64),
-        # landing of what rocks alone: contacts and velocities after it at unit speed, and √ of the energy left
+        # landing of what rocks alone: contacts and velocities after it at unit speed, √ of the energy left, and
+        # whether the law of a measured restitution has to give way in it
         ("next1", np.int64), ("next2", np.int64),
-        ("after1", np.float64), ("after2", np.float64), ("share", np.float64),
+        ("after1", np.float64), ("after2", np.float64), ("share", np.float64), ("gives_way", np.int64),
     ]
 )  # fmt: skip
 """Impacts out of a contact state."""
@@ -169,9 +170,9 @@ def _landing(body, c1, c2, products, scratch):
     """Landing of what rocks alone: the outcome is the same for every speed but for its size."""
     scratch.c1, scratch.c2, scratch.theta1, scratch.theta2 = c1, c2, 0.0, 0.0
     scratch.omega1, scratch.omega2 = -1.0 * c1, -1.0 * (c1 + c2)
-    n1, n2, w1, w2 = impact(body, scratch, c1 != 0, c2 != 0)
+    n1, n2, w1, w2, gives_way = impact(body, scratch, c1 != 0, c2 != 0)
     before = kinetic_energy(body, scratch)
     scratch.c1, scratch.c2, scratch.omega1, scratch.omega2 = n1, n2, w1, w2
     after = kinetic_energy(body, scratch)
     products.next1, products.next2, products.after1, products.after2 = n1, n2, w1, w2
-    products.share = math.sqrt(after / before)
+    products.share, products.gives_way = math.sqrt(after / before), gives_way

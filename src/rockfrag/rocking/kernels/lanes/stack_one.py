@@ -43,17 +43,22 @@ LANE = np.dtype(
         ("side", _F, LANES),
         ("factor", _F, LANES),  # scale of its motion
         ("ground_end", _F, LANES),  # acceleration of the ground at the end of the sample
-        # the state; the acceleration of the ground; the part of the sample that is left
-        ("theta", _F, LANES), ("omega", _F, LANES), ("ground", _F, LANES), ("part_left", _F, LANES),
+        # gravity over that of a ground that does not move vertically, at the end of the sample
+        ("weight_end", _F, LANES),
+        # the state; the acceleration of the ground, and the weight; the part of the sample that is left
+        ("theta", _F, LANES), ("omega", _F, LANES), ("ground", _F, LANES), ("weight", _F, LANES),
+        ("part_left", _F, LANES),
         # extremes so far: of θ/θcritical, |θ'|, and distance from balance squared
         ("ratio", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
         ("flag", _F, LANES),
         # these where the step began ...
         ("was_theta", _F, LANES), ("was_omega", _F, LANES), ("was_ground", _F, LANES), ("was_left", _F, LANES),
+        ("was_weight", _F, LANES),
         ("was_ratio", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
         # ... and where the step before that began, if it was of the same lane's case
         ("before_theta", _F, LANES), ("before_omega", _F, LANES), ("before_ground", _F, LANES),
-        ("before_left", _F, LANES), ("has_before", _F, LANES), ("has_step", _F, LANES),
+        ("before_weight", _F, LANES), ("before_left", _F, LANES),
+        ("has_before", _F, LANES), ("has_step", _F, LANES),
         ("rates", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of θ'
     ],
     align=True,
@@ -62,21 +67,27 @@ LANE = np.dtype(
 
 
 @inlined_kernel
-def _moment(hold, i, turn, alpha, square, ground):
-    """Contact moment of a closed contact at one corner; ``turn``: sine and cosine of θ."""
+def _moment(hold, i, turn, alpha, square, pull):
+    """Contact moment of a closed contact at one corner.
+
+    ``turn``: sine and cosine of θ; ``pull``: acceleration of the ground, and weight.
+    """
+    ground, weight = pull
     s, c = turn
     moment = (hold[0, i] + hold[1, i] * s + hold[2, i] * c) * alpha
     moment += (hold[3, i] + hold[4, i] * s + hold[5, i] * c) * square
     moment += (hold[6, i] + hold[7, i] * s + hold[8, i] * c) * ground
-    return moment + (hold[9, i] + hold[10, i] * s + hold[11, i] * c)
+    return moment + weight * (hold[9, i] + hold[10, i] * s + hold[11, i] * c)
 
 
 @inlined_kernel
-def _rates(gx, gy, turn, w, left, ground):
-    """Taylor coefficients of θ' over the rest of a sample; ``ground``: at its beginning and end, over -g."""
-    s, c = turn
-    a, a_end = ground
-    return rates_of_one(gx * c + gy * s, gy * c - gx * s, w, left * left, a, a_end)
+def _rates(g_over_inertia, turn, w, left, ground, weight):
+    """Taylor coefficients of θ' over the rest of a sample.
+
+    ``ground``: over -g, and ``weight``: at its beginning, and what they grow by.
+    """
+    (gx, gy), (s, c) = g_over_inertia, turn
+    return rates_of_one((gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight)
 
 
 @kernel
@@ -95,7 +106,10 @@ def advance(lane, g):
         per = 1.0 / left
         w = omega * left
         turn = quick_sine_cosine(theta)
-        rates = _rates(lane.gx[i], lane.gy[i], turn, w, left, (a * down, (a_end - a) * down))
+        u = lane.weight[i]
+        u_end = lane.weight_end[i]
+        ground = a * down, (a_end - a) * down
+        rates = _rates((lane.gx[i], lane.gy[i]), turn, w, left, ground, (u, u_end - u))
         keep_rates(lane.rates, i, rates)
         end = theta + travel(rates, 1.0)
         z = rate_at(rates, 1.0)
@@ -110,23 +124,26 @@ def advance(lane, g):
         # the closed contact would have to be pulled
         square = omega * omega
         alpha = rates[1] * per * per
-        right = _moment(lane.right, i, turn, alpha, square, a)
-        other = _moment(lane.left, i, turn, alpha, square, a)
+        right = _moment(lane.right, i, turn, alpha, square, (a, u))
+        other = _moment(lane.left, i, turn, alpha, square, (a, u))
         lane.flag[i] = RELEASE if (right < 0.0) | (other < 0.0) else flag
         lane.before_theta[i] = lane.was_theta[i]
         lane.before_omega[i] = lane.was_omega[i]
         lane.before_ground[i] = lane.was_ground[i]
+        lane.before_weight[i] = lane.was_weight[i]
         lane.before_left[i] = lane.was_left[i]
         lane.has_before[i] = lane.has_step[i]
         lane.has_step[i] = 1.0
         lane.was_theta[i] = theta
         lane.was_omega[i] = omega
         lane.was_ground[i] = a
+        lane.was_weight[i] = u
         lane.was_left[i] = left
         lane.theta[i] = end
         z = z * per
         lane.omega[i] = z
         lane.ground[i] = a_end
+        lane.weight[i] = u_end
         lane.part_left[i] = 1.0
         was_ratio, was_fast, was_near = lane.ratio[i], lane.fast[i], lane.near[i]
         lane.was_ratio[i], lane.was_fast[i], lane.was_near[i] = was_ratio, was_fast, was_near
@@ -156,9 +173,12 @@ def go_back(lane, i, g):
     end, a = lane.was_ground[i], lane.before_ground[i]
     lane.was_theta[i], lane.was_omega[i], lane.was_left[i] = theta, omega, left
     lane.ground_end[i], lane.was_ground[i] = end, a
+    heavy, u = lane.was_weight[i], lane.before_weight[i]
+    lane.weight_end[i], lane.was_weight[i] = heavy, u
     down = -1.0 / g
     ground = a * down, (end - a) * down
-    rates = _rates(lane.gx[i], lane.gy[i], quick_sine_cosine(theta), omega * left, left, ground)
+    turn = quick_sine_cosine(theta)
+    rates = _rates((lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u))
     keep_rates(lane.rates, i, rates)
 
 
@@ -168,8 +188,7 @@ def next_event(one, lane, i, series, g):
     if lane.flag[i] == CLOSES:
         when = crossing_time(series.gap)
         omega = slope(series.one.angle, when) / lane.was_left[i]
-        ground = lane.was_ground[i] + (lane.ground_end[i] - lane.was_ground[i]) * when
-        if least_hold(one, 0.0, omega, ground, g) >= 0.0:
+        if least_hold(one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
             return when, False
     else:
         when = closing_time(series.gap, 1.0)
@@ -179,28 +198,41 @@ def next_event(one, lane, i, series, g):
     return when, False
 
 
+@inlined_kernel
+def pull_at(lane, i, tau):
+    """Acceleration of the ground, and weight, in the lane's step."""
+    ground, weight = lane.was_ground[i], lane.was_weight[i]
+    return (
+        ground + (lane.ground_end[i] - ground) * tau,
+        weight + (lane.weight_end[i] - weight) * tau,
+    )
+
+
 @kernel
-def least_hold(one, theta, omega, ground, g):
-    """Least contact moment of the closed contact; negative if it would have to pull."""
+def least_hold(one, theta, omega, pull, g):
+    """Least contact moment of the closed contact; negative if it would have to pull.
+
+    ``pull``: acceleration of the ground, and weight.
+    """
+    ground, weight = pull
     turn = quick_sine_cosine(theta)
     s, c = turn
-    alpha = one.gx * c + one.gy * s - ground / g * (one.gy * c - one.gx * s)
+    alpha = weight * (one.gx * c + one.gy * s) - ground / g * (one.gy * c - one.gx * s)
     return min(
-        _moment(one.right, 0, turn, alpha, omega * omega, ground),
-        _moment(one.left, 0, turn, alpha, omega * omega, ground),
+        _moment(one.right, 0, turn, alpha, omega * omega, pull),
+        _moment(one.left, 0, turn, alpha, omega * omega, pull),
     )
 
 
 @kernel
 def _release_time(one, lane, i, series, end, g):
     """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
-    angle, left, now = series.one.angle, lane.was_left[i], lane.was_ground[i]
-    rise = lane.ground_end[i] - now
-    at_low = least_hold(one, angle[0], angle[1] / left, now, g)
+    angle, left = series.one.angle, lane.was_left[i]
+    at_low = least_hold(one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g)
     if at_low < 0.0:
         return 0.0
     omega = slope(angle, end) / left
-    at_high = least_hold(one, value(angle, end), omega, now + rise * end, g)
+    at_high = least_hold(one, value(angle, end), omega, pull_at(lane, i, end), g)
     if at_high >= 0.0:
         return NEVER
     bracket = (0.0, at_low, end, at_high, -1)
@@ -209,7 +241,7 @@ def _release_time(one, lane, i, series, end, g):
             break
         tau = guess_between(bracket)
         omega = slope(angle, tau) / left
-        hold = least_hold(one, value(angle, tau), omega, now + rise * tau, g)
+        hold = least_hold(one, value(angle, tau), omega, pull_at(lane, i, tau), g)
         bracket = narrowed(bracket, tau, hold)
     return bracket[2]
 

@@ -34,17 +34,19 @@ LANE = np.dtype(
         ("side1", _F, LANES), ("side2", _F, LANES),
         ("factor", _F, LANES),  # scale of its motion
         ("part", _F, LANES),  # the largest part of a sample that a step may take
-        ("ground_end", _F, LANES),  # acceleration of the ground at the end of the sample
-        # the state; the acceleration of the ground; the part of the sample that is left
+        # at the end of the sample: acceleration of the ground, and gravity over that of a ground that does not
+        # move vertically
+        ("ground_end", _F, LANES), ("weight_end", _F, LANES),
+        # the state; the acceleration of the ground, and the weight; the part of the sample that is left
         ("theta1", _F, LANES), ("omega1", _F, LANES), ("theta2", _F, LANES), ("omega2", _F, LANES),
-        ("ground", _F, LANES), ("part_left", _F, LANES),
+        ("ground", _F, LANES), ("weight", _F, LANES), ("part_left", _F, LANES),
         # extremes so far: of θ/θcritical, |θ2'|, and distance from balance squared
         ("ratio1", _F, LANES), ("ratio2", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
         ("flag", _F, LANES),
         # these where the step began
         ("was_theta1", _F, LANES), ("was_omega1", _F, LANES),
         ("was_theta2", _F, LANES), ("was_omega2", _F, LANES),
-        ("was_ground", _F, LANES), ("was_left", _F, LANES),
+        ("was_ground", _F, LANES), ("was_weight", _F, LANES), ("was_left", _F, LANES),
         ("was_ratio1", _F, LANES), ("was_ratio2", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
         ("rates1", _F, (ORDER - 1, LANES)), ("rates2", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6
     ],
@@ -81,7 +83,10 @@ def advance(lane, g):
         w2 = omega2 * span
         a = lane.ground[i]
         a_end = lane.ground_end[i]
+        u = lane.weight[i]
+        u_end = lane.weight_end[i]
         rise = (a_end - a) * (span / left)
+        lift = (u_end - u) * (span / left)
         s1, c1 = quick_sine_cosine(t1)
         s2, c2 = quick_sine_cosine(t2)
         sd = s2 * c1 - c2 * s1
@@ -96,7 +101,7 @@ def advance(lane, g):
             (lane.m11[i], lane.m22[i], e * cd + f * sd, f * cd - e * sd),
             (v1y * c1 - v1x * s1, v1x * c1 + v1y * s1),
             (v2y * c2 - v2x * s2, v2x * c2 + v2y * s2),
-            g, (w1, w2), (a, rise),
+            (w1, w2), (a, rise), (g * u, g * lift),
         )  # fmt: skip
         n1 = t1 + travel(rates1, 1.0)
         n2 = t2 + travel(rates2, 1.0)
@@ -123,6 +128,7 @@ def advance(lane, g):
         lane.was_theta2[i] = t2
         lane.was_omega2[i] = omega2
         lane.was_ground[i] = a
+        lane.was_weight[i] = u
         lane.was_left[i] = left
         per = 1.0 / span
         z1 = z1 * per
@@ -132,6 +138,7 @@ def advance(lane, g):
         lane.theta2[i] = n2
         lane.omega2[i] = z2
         lane.ground[i] = a + rise if span < left else a_end
+        lane.weight[i] = u + lift if span < left else u_end
         lane.part_left[i] = left - span if span < left else 1.0
         was_ratio1, was_ratio2 = lane.ratio1[i], lane.ratio2[i]
         was_fast, was_near = lane.fast[i], lane.near[i]

@@ -1,0 +1,242 @@
+"""A measured restitution holds in stacks: admissible, continuous, dissipative, and the lone block's own."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.errors import InputError
+from rockfrag.rocking import MeasuredRestitution
+from rockfrag.rocking.body_record import body_record
+from rockfrag.rocking.kernels.equations import STATE
+from rockfrag.rocking.kernels.impact import impact
+from rockfrag.rocking.kernels.jit import entry_kernel
+from rockfrag.rocking.measured_restitution import LAWS, largest_restitution
+from rockfrag.rocking.reference.model import Model
+
+STILL = np.zeros(300)
+OUTCOME = np.dtype([("c", np.int64, 2), ("omega", np.float64, 2), ("gave_way", np.int64)])
+IMPACTS = [  # old contacts, and which of them close
+    ((0, 1), (False, True)),
+    ((1, 0), (True, False)),
+    ((1, 1), (False, True)),
+    ((1, 1), (True, False)),
+    ((1, -1), (False, True)),
+    ((1, -1), (True, False)),
+]
+
+
+@entry_kernel
+def impact_of(body, state, closes1, closes2, out):
+    n1, n2, w1, w2, gave_way = impact(body, state, closes1, closes2)
+    out.c[0], out.c[1] = n1, n2
+    out.omega[0], out.omega[1] = w1, w2
+    out.gave_way = gave_way
+
+
+def random_stack(rng):
+    """A statue on a pedestal, every other one crooked."""
+    base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(1.6, 6)
+    below, squatness = base * rng.uniform(1, 1.8), rng.uniform(0.9, 2.5)
+    odd = rng.integers(2)
+    statue = Block(
+        base,
+        base * slenderness,
+        1000 * base**2 * slenderness,
+        cg_offset=float(0.05 * base * rng.normal() * odd),
+    )
+    pedestal = Block(
+        below, below * squatness, 1000 * below**2 * squatness * rng.uniform(0.3, 3),
+        cg_offset=float(0.03 * below * rng.normal() * odd),
+    )  # fmt: skip
+    return Stack(pedestal, statue)
+
+
+def random_impact(rng, kind):
+    """Contacts, closing ones, rotations and velocities before an impact of a stack."""
+    (c1, c2), closes = IMPACTS[kind]
+    side = int(rng.choice([1, -1]))
+    c1, c2 = side * c1, side * c2
+    omega1 = c1 * abs(rng.normal()) * (-1 if closes[0] else rng.choice([1, -1]))
+    relative = c2 * abs(rng.normal()) * (-1 if closes[1] else rng.choice([1, -1]))
+    theta1 = 0.0 if closes[0] or c1 == 0 else c1 * rng.uniform(0, 0.1)
+    theta2 = theta1 if closes[1] or c2 == 0 else theta1 + c2 * rng.uniform(0, 0.1)
+    theta = float(theta1), float(theta2)
+    return (c1, c2), closes, theta, (float(omega1), float(omega1 + relative))
+
+
+def compiled(body, restitution, old, closes, theta, omega):
+    """What the kernels say comes of an impact."""
+    state, out = np.zeros(1, STATE)[0], np.zeros(1, OUTCOME)[0]
+    state["c1"], state["c2"] = old
+    state["theta1"], state["theta2"] = theta
+    state["omega1"], state["omega2"] = omega
+    impact_of(body_record(body, restitution), state, *closes, out)
+    return tuple(out["c"].tolist()), tuple(out["omega"].tolist()), int(out["gave_way"])
+
+
+def plain(body, restitution, old, closes, theta, omega):
+    """What the reference says."""
+    closing = (old[0] if closes[0] else 0, old[1] if closes[1] else 0)
+    return Model(body, 9.81, restitution).impact(old, closing, theta, omega)
+
+
+def measured(stack, factor, law):
+    """Every interface at a factor on what conserves momentum, as far as a lone block allows it."""
+    blocks = stack.pedestal, stack.contact_statue
+    values = tuple(
+        tuple(
+            min(
+                factor * max(0.05, block.momentum_restitution(-pole)),
+                largest_restitution(block, pole),
+            )
+            for pole in (1, -1)
+        )
+        for block in blocks
+    )
+    return MeasuredRestitution(values, law)
+
+
+def rates(omega):
+    return np.array([omega[0], omega[1] - omega[0]])
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_kernels_and_reference_agree_on_every_impact(law):
+    rng = np.random.default_rng(1)
+    for number in range(300):
+        stack = random_stack(rng)
+        restitution = measured(stack, rng.uniform(0.5, 1.4), law)
+        case = random_impact(rng, number % len(IMPACTS))
+        fast, slow = compiled(stack, restitution, *case), plain(stack, restitution, *case)
+        assert fast[0] == slow[0] and fast[2] == slow[2]
+        assert fast[1] == pytest.approx(slow[1], abs=1e-9)
+
+
+def test_without_a_measured_value_momentum_is_conserved_and_nothing_gives_way():
+    rng = np.random.default_rng(2)
+    for number in range(100):
+        stack, case = random_stack(rng), random_impact(rng, number % len(IMPACTS))
+        of_momentum = compiled(stack, None, *case)
+        for law in ("position", "couple"):
+            found = compiled(stack, measured(stack, 1.0, law), *case)
+            if (
+                min(
+                    b.momentum_restitution(s)
+                    for b in (stack.pedestal, stack.contact_statue)
+                    for s in (1, -1)
+                )
+                > 0.05
+            ):
+                assert found[1] == pytest.approx(of_momentum[1], abs=1e-9)
+        assert of_momentum[2] == 0
+
+
+def outcome_stays_good(law, stacks):
+    """No dead stop, no jump between neighbouring values, no gain of energy, in an impact of each stack."""
+    rng = np.random.default_rng(3)
+    factors = np.linspace(0.7, 1.0, 13)
+    for number in range(stacks):
+        stack, case = random_stack(rng), random_impact(rng, number % len(IMPACTS))
+        old, closes, theta, omega = case
+        model = Model(stack, 9.81)
+        before = model.kinetic_energy(old, theta, omega)
+        _, of_momentum, _ = compiled(stack, None, *case)
+        closing = 1 if closes[1] else 0
+        last = None
+        for factor in factors:
+            new, after, _ = compiled(stack, measured(stack, factor, law), *case)
+            assert model.kinetic_energy(new, theta, after) <= before * (1 + 2e-9)
+            rate = rates(after)
+            # open contacts separate, and what met does not come back
+            assert new[0] * rate[0] >= 0 or (old[0] != 0 and not closes[0])
+            assert new[1] * rate[1] >= 0 or (old[1] != 0 and not closes[1])
+            assert rate[closing] * old[closing] <= 0
+            if abs(rates(of_momentum)[closing]) > 0:
+                assert abs(rate[closing]) > 0
+            if last is not None:
+                assert np.abs(rate - last).max() <= 0.2 * np.abs(rates(omega)).max()
+            last = rate
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_no_dead_stop_no_jump_and_no_gain_of_energy(law):
+    outcome_stays_good(law, 200)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", LAWS)
+def test_no_dead_stop_no_jump_and_no_gain_of_energy_in_ten_thousand_stacks(law):
+    outcome_stays_good(law, 10_000)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("factor", [0.5, 0.9, 1.05])
+def test_on_a_support_that_does_not_move_every_law_is_the_lone_block(law, factor):
+    statue = Block(0.124, 0.496, 2.79, cg_offset=0.004)
+    heavy = Stack(Block(5.0, 1.0, 1e9), statue)
+    values = tuple(factor * statue.momentum_restitution(-pole) for pole in (1, -1))
+    for side in (1, -1):
+        response = simulate(
+            heavy,
+            STILL,
+            0.002,
+            theta0=(0.0, side * 0.05),
+            restitution=MeasuredRestitution((None, values), law),
+        )
+        first = response.events.query("kind == 'impact'").iloc[0]
+        ratio = first["omega_after"][1] / first["omega_before"][1]
+        assert ratio == pytest.approx(values[(1 + side) // 2], abs=1e-6)
+
+
+def test_a_lone_block_has_a_value_for_each_direction():
+    crooked = Block(0.3, 1.0, 100.0, cg_offset=0.1)
+    values = tuple(crooked.momentum_restitution(-pole) for pole in (1, -1))
+    assert abs(values[0] - values[1]) > 0.04 and max(values) > largest_restitution(crooked)
+    free = simulate(crooked, STILL, 0.002, theta0=0.05)
+    named = simulate(crooked, STILL, 0.002, theta0=0.05, restitution=values)
+    assert named.theta == pytest.approx(free.theta, abs=1e-12)
+    with pytest.raises(InputError, match="would gain energy"):
+        simulate(crooked, STILL, 0.002, restitution=max(values))
+
+
+@pytest.mark.parametrize("e", [0.848, 0.87, 0.895, 0.92])
+def test_a_statue_does_not_stop_dead_below_what_conserves_momentum(e):
+    stack = Stack(Block(0.184, 0.208, 2.3), Block(0.124, 0.62, 3.456))
+    for law in LAWS:
+        response = simulate(
+            stack, STILL, 0.002, theta0=(0, 0.099), restitution=MeasuredRestitution((None, e), law)
+        )
+        impacts = response.events.query("kind == 'impact'")
+        assert len(impacts) > 3
+        assert np.abs(response.theta[-20:]).max() < 0.05 < np.abs(response.theta[:, 1]).max()
+        assert abs(impacts.iloc[0]["omega_after"][1]) > 0.5 * abs(
+            impacts.iloc[0]["omega_before"][1]
+        )
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_what_gives_way_is_counted(law):
+    stack = Stack(Block(0.184, 0.208, 2.3), Block(0.124, 0.62, 3.456))
+    coarse = np.random.default_rng(0).normal(size=121)
+    motion = 3 * np.interp(np.arange(3000) * 0.002, np.arange(121) * 0.05, coarse)
+    restitution = MeasuredRestitution((0.9, None), law)
+    response = simulate(stack, motion, 0.002, restitution=restitution)
+    impacts = response.events.query("kind == 'impact'")
+    assert response.given_way > 10
+    # where a law gives way, no energy is lost
+    without_loss = impacts["energy_after"] > impacts["energy_before"] * (1 - 1e-9)
+    assert without_loss.sum() >= 0.9 * response.given_way
+    assert (impacts["energy_after"] <= impacts["energy_before"] * (1 + 2e-9)).all()
+    assert overturns(stack, motion, 0.002, restitution=[restitution]).given_way[0, 0, 0] > 10
+
+
+def test_a_law_that_does_not_exist_and_one_with_nothing_to_multiply_are_refused():
+    with pytest.raises(InputError, match="none of position, couple, ratio"):
+        MeasuredRestitution(0.9, "newton")
+    flat = Stack(Block(1.0, 0.2, 100.0), Block(0.5, 0.2, 10.0))
+    assert flat.pedestal.momentum_restitution() < 0
+    with pytest.raises(InputError, match="nothing to multiply"):
+        simulate(flat, STILL, 0.002, restitution=MeasuredRestitution((0.3, None), "couple"))
+    assert math.isfinite(simulate(flat, STILL, 0.002, restitution=(0.3, None)).theta.max())

@@ -1,0 +1,134 @@
+"""A ground that moves vertically too: gravity is g + a_v(t), in one history and in ensembles."""
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.rocking import MeasuredRestitution
+from rockfrag.rocking.measured_restitution import LAWS
+from rockfrag.rocking.reference import simulate_reference
+
+DT = 0.01
+TOWER = Block(0.124, 0.496, 2.79)
+STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
+CROOKED = Stack(
+    Block(0.3, 0.3, 60.0, cg_offset=0.01, lean=0.004), Block(0.25, 0.9, 50.0, cg_offset=-0.01)
+)
+
+
+def shaking(rng, peak, samples=500):
+    """Random motion of 5 s that ends in zero [m/s²]."""
+    coarse = rng.normal(size=samples // 10 + 1)
+    coarse[-1] = 0.0
+    motion = np.interp(np.arange(samples) * 0.1, np.arange(coarse.size), coarse)
+    motion[-1] = 0.0
+    return peak * motion / np.abs(motion).max()
+
+
+@pytest.mark.parametrize("body", [TOWER, STACK, CROOKED])
+@pytest.mark.parametrize("upward", [2.5, -4.0])
+@pytest.mark.parametrize("linear", [False, True])
+def test_a_constant_vertical_acceleration_is_another_gravity(body, upward, linear):
+    motion = shaking(np.random.default_rng(1), 4.5)
+    with_it = simulate(body, motion, DT, vertical=np.full(motion.size, upward), linear=linear)
+    other = simulate(body, motion, DT, g=9.81 + upward, linear=linear)
+    n = min(len(with_it.time), len(other.time), motion.size)
+    # each stays within the same steps, and rounds differently
+    assert len(with_it.events) > 2
+    assert with_it.theta[:n] == pytest.approx(other.theta[:n], abs=1e-9)
+    assert with_it.overturned == other.overturned
+
+
+@pytest.mark.parametrize("body", [TOWER, STACK, CROOKED])
+def test_an_ensemble_under_constant_vertical_acceleration_is_one_under_another_gravity(body):
+    motion = shaking(np.random.default_rng(2), 1.0)
+    scales = np.linspace(0.5, 9.0, 60)
+    upward = 1.5
+    fell = [
+        overturns(
+            body, scale * motion, DT, vertical=[np.full(motion.size, upward)]
+        ).overturned.item()
+        for scale in scales
+    ]
+    other = overturns(body, motion, DT, scales, g=9.81 + upward).overturned[0, 0]
+    assert 5 < other.sum() < 55
+    assert (fell == other).mean() >= 0.98
+
+
+def cases(count):
+    """Bodies, motions and vertical ones, every third strong enough to nearly take weight away."""
+    rng = np.random.default_rng(3)
+    for number in range(count):
+        base, slenderness = rng.uniform(0.1, 0.5), rng.uniform(2, 6)
+        statue = Block(
+            base,
+            base * slenderness,
+            1000 * base**2 * slenderness,
+            cg_offset=float(0.02 * base * rng.normal()),
+        )
+        below = base * rng.uniform(1, 1.6)
+        body = (
+            statue
+            if number % 2
+            else Stack(Block(below, below * rng.uniform(0.5, 2), 1500 * below**2), statue)
+        )
+        motion = shaking(rng, 9.81 / slenderness * rng.uniform(1.1, 3))
+        up = shaking(rng, 8.0 if number % 3 == 0 else 3.0)
+        yield body, motion, up
+
+
+def test_ensembles_and_histories_agree_under_vertical_motion():
+    differ = 0
+    for body, motion, up in cases(60):
+        one = simulate(body, motion, DT, vertical=up)
+        found = overturns(body, motion, DT, vertical=[up])
+        if one.overturned != found.overturned.item():
+            differ += 1
+        elif not one.overturned and isinstance(body, Block):
+            peak = np.abs(one.theta).max() / body.alpha
+            assert found.peak_rotation.item() == pytest.approx(peak, rel=0.1, abs=1e-3)
+        assert np.abs(one.energy["residual"]).max() <= 1e-5 * max(1e-3, one.energy["kinetic"].max())
+    assert differ <= 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_histories_follow_the_plain_integrator_under_vertical_motion(seed):
+    follow_the_plain_one(seed, None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", [None, *LAWS])
+@pytest.mark.parametrize("seed", range(6, 46))
+def test_histories_follow_the_plain_integrator_with_every_law_and_vertical_motion(seed, law):
+    follow_the_plain_one(seed, law)
+
+
+def follow_the_plain_one(seed, law):
+    """Up to the sixth event, before a contact grazes."""
+    body, motion, up = list(cases(seed + 1))[-1]
+    rng = np.random.default_rng(seed)
+    restitution = None
+    if law is not None:
+        blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.contact_statue)
+        values = [
+            min(block.momentum_restitution(s) for s in (1, -1)) * rng.uniform(0.8, 1.04)
+            for block in blocks
+        ]
+        if min(values) <= 0:
+            values = [max(0.1, value) for value in values]
+            law = "ratio" if law == "couple" else law
+        restitution = MeasuredRestitution(values[0] if len(values) == 1 else tuple(values), law)
+    fast = simulate(body, motion, DT, vertical=up, restitution=restitution)
+    slow = simulate_reference(
+        body, motion, DT, vertical=up, restitution=restitution, duration=motion.size * DT
+    )
+    events = [e for e in slow.events if e.kind != "overturning"]
+    until = events[6].time if len(events) > 6 else np.inf
+    for event in events:
+        change = np.diff(event.omega_before, prepend=0.0)
+        if event.kind != "opening" and np.abs(change[change != 0]).min(initial=1.0) < 1e-2:
+            until = min(until, event.time)
+    n = min(len(fast.time), len(slow.time), int(np.searchsorted(fast.time, until)))
+    upright = np.abs(slow.theta[:n]).max(axis=1) < 0.5
+    assert n > 3
+    assert fast.theta[:n][upright] == pytest.approx(slow.theta[:n][upright], abs=1e-6)
