@@ -77,13 +77,14 @@ def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
 
 
 def _answer(found: Assessment) -> Answer:
-    topples, likely, stands, helps, _ = (line.partition("  ")[2] for line in five_lines(found))
+    topples, likely, _, helps, _ = (line.partition("  ")[2] for line in five_lines(found))
+    best = f"Safest is {safest(found)}. " if len(found.by_arrangement) > 1 else ""
     return Answer(
-        asked=f"Will {found.request.name} topple in an earthquake?",
+        asked="Does it topple, how probable is that, and what helps?",
         sentences=[
             Finding("At the site", _capital(topples)),
             Finding(f"In {found.request.years:g} years", _capital(likely)),
-            Finding("What helps", f"Safest is {safest(found)}: {stands} {_capital(helps)}"),
+            Finding("What helps", f"{best}{_capital(helps)}"),
         ],
         figure=FigureSpec(
             "shares",

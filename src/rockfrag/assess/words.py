@@ -81,7 +81,7 @@ def five_lines(found: Assessment) -> list[str]:
 
 def verdict(found: Assessment) -> str:
     """Say in a few words whether the object rocks and topples; the heading of the page."""
-    name = found.request.name
+    name = found.request.name[:1].upper() + found.request.name[1:]
     if found.share is None or found.level is None:
         half = found.amplitudes[0.5].value
         if not math.isfinite(half):
@@ -89,12 +89,12 @@ def verdict(found: Assessment) -> str:
         return f"Half of the motions topple {name} at {found.measure.name} {half:.2g} {found.measure.unit}"
     at = found.level.words
     if found.share.value >= MANY:
-        return f"{name} is likely to topple at {at}".capitalize()
+        return f"{name} is likely to topple at {at}"
     if found.share.value > FEW:
-        return f"{name} may topple at {at}".capitalize()
+        return f"{name} may topple at {at}"
     if found.rocking_share > FEW:
-        return f"{name} rocks at {at} and hardly topples".capitalize()
-    return f"{name} does not even rock at {at}".capitalize()
+        return f"{name} rocks at {at} and hardly topples"
+    return f"{name} does not even rock at {at}"
 
 
 def _at_the_site(found: Assessment) -> str:
@@ -131,7 +131,7 @@ def _arrangements(found: Assessment) -> str:
     ranked = _ranked(found)
     worst = _worst_direction(found)
     if len(ranked) == 1:
-        return worst.capitalize() if worst else found.request.objects.plane + "."
+        return worst
     words = ", ".join(f"{name} {value_words(found, value)}" for name, value in ranked)
     return f"{words}. {worst}".strip()
 

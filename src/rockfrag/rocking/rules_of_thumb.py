@@ -1,0 +1,152 @@
+"""What engineers' rules say about the amplitude at which a motion topples a block: by how much are they off?
+
+Each rule gives the factor on a motion at which it expects the block to topple. They are for a symmetric
+block that stands alone; an object on a pedestal is looked at three times, as practice does: itself, and
+both as one body (:func:`three_models`).
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.motions.intensity import housner_intensity, pgv
+from rockfrag.motions.spectra import response_spectrum
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.units import STANDARD_GRAVITY
+
+HOUSNER_BAND = 2.4
+"""Width of the band of periods, 0.1 to 2.5 s, of Housner's intensity [s]."""
+
+ANGLES = np.linspace(0.02, 1.0, 40)
+"""Rotations over the critical angle at which ASCE 43-05 compares capacity with demand."""
+
+Rule = Callable[[Block, Motion], float]
+
+
+def static(block: Block, motion: Motion) -> float:
+    """Factor at which the peak acceleration reaches b/h: what starts rocking is taken to topple.
+
+    Parameters
+    ----------
+    block
+        The block.
+    motion
+        The motion.
+    """
+    return STANDARD_GRAVITY * math.tan(block.alpha) / motion.pga
+
+
+def housner(block: Block, motion: Motion) -> float:
+    """Factor at which half of all motions topple the block by their velocity spectrum (Housner, 1963).
+
+    The critical angle is Sv √(m R² / (g R I_O)), that is Sv = g α / p. Sv is the mean of the undamped
+    pseudo-velocity spectrum from 0.1 to 2.5 s, Housner's intensity over 2.4 s.
+
+    Parameters
+    ----------
+    block
+        The block.
+    motion
+        The motion.
+    """
+    wanted = STANDARD_GRAVITY * block.alpha / block.frequency()
+    return wanted / (housner_intensity(motion, 0.0) / HOUSNER_BAND)
+
+
+def peak_velocity(block: Block, motion: Motion) -> float:
+    """Factor at which the peak velocity reaches g α / p, Housner's velocity read as that of the floor.
+
+    Parameters
+    ----------
+    block
+        The block.
+    motion
+        The motion.
+    """
+    return STANDARD_GRAVITY * block.alpha / block.frequency() / pgv(motion)
+
+
+def asce_43(block: Block, motion: Motion) -> float:
+    """Factor at which the spectrum exceeds the capacity at every rotation up to the critical one (ASCE 43-05, A).
+
+    A rocking block is taken for an oscillator: at the rotation θ it has the effective frequency
+    √(2 (f - 1) g / (C h)) / (2π θ) with f = cos θ + a sin θ, a = b/h, C = (4/3) (1 + a²), the damping
+    γ / √(4π² + γ²) with γ = -2 ln(1 - 2a²/C), and bears the spectral acceleration 2 g (f - 1) / θ, here without
+    vertical shaking. The block topples where no rotation bears the demand.
+
+    Parameters
+    ----------
+    block
+        The block.
+    motion
+        The motion.
+    """
+    a = math.tan(block.alpha)
+    height = block.h
+    inertia = 4 / 3 * (1 + a**2)
+    decrement = -2 * math.log(max(1 - 2 * a**2 / inertia, 1e-6))
+    damping = decrement / math.sqrt(4 * math.pi**2 + decrement**2)
+    theta = ANGLES * block.alpha
+    lifted = np.cos(theta) + a * np.sin(theta) - 1
+    frequency = np.sqrt(2 * lifted * STANDARD_GRAVITY / (inertia * height)) / (2 * math.pi * theta)
+    capacity = 2 * STANDARD_GRAVITY * lifted / theta
+    demand = response_spectrum(motion, 1 / frequency, damping).pseudo_acceleration
+    return float((capacity / demand).max())
+
+
+RULES: Mapping[str, Rule] = MappingProxyType(
+    {
+        "static b/h": static,
+        "Housner 1963": housner,
+        "peak velocity": peak_velocity,
+        "ASCE 43-05 A": asce_43,
+    }
+)
+"""Rules by name."""
+
+
+def three_models(body: Body) -> list[Block]:
+    """Blocks that practice checks for an object: itself, and with its pedestal as one body.
+
+    Parameters
+    ----------
+    body
+        The object, or the object on its pedestal.
+    """
+    return [body.statue, body.rigidly_joined()] if isinstance(body, Stack) else [body]
+
+
+def predicted(body: Body, motion: Motion, rule: Rule) -> float:
+    """Factor on a motion at which a rule expects an object to topple: the least of the models of practice.
+
+    Parameters
+    ----------
+    body
+        The object.
+    motion
+        The motion that shakes it.
+    rule
+        One of :data:`RULES`.
+    """
+    return min(rule(block, motion) for block in three_models(body))
+
+
+def bias(
+    predicted_factors: NDArray[np.float64], simulated: NDArray[np.float64]
+) -> tuple[float, float]:
+    """Median of predicted over simulated factors, and the standard deviation of its logarithm [-].
+
+    Parameters
+    ----------
+    predicted_factors, simulated
+        Factors at which motions topple an object; motions without a simulated one are left out.
+    """
+    ratio = np.log(predicted_factors / simulated)
+    ratio = ratio[np.isfinite(ratio)]
+    if not ratio.size:
+        return math.nan, math.nan
+    return float(np.exp(np.median(ratio))), float(ratio.std(ddof=1)) if ratio.size > 1 else math.nan
