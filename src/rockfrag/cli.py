@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TextIO
 
 from rockfrag import __version__
-from rockfrag.assess.commands import add_assess_command
+from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError
 from rockfrag.record_commands import add_record_commands
 from rockfrag.units import quantity
@@ -22,7 +22,7 @@ MOST_EVENTS = 30
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return 0, 1 if a file could not be read, 2 if an input is not usable."""
-    options = _parser().parse_args(arguments)
+    options = make_parser().parse_args(arguments)
     with warnings.catch_warnings():
         warnings.showwarning = _print_warning
         try:
@@ -50,14 +50,15 @@ def _print_warning(
     print(f"warning: {message}", file=sys.stderr)
 
 
-def _parser() -> argparse.ArgumentParser:
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
     parser = argparse.ArgumentParser(
         prog="rockfrag", description="Rocking and overturning of free-standing objects."
     )
     parser.add_argument("--version", action="version", version=f"rockfrag {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    add_assess_command(commands)
+    add_assess_commands(commands)
     add_record_commands(commands)
 
     one = commands.add_parser("simulate", help="shake one body by one record")

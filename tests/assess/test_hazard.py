@@ -93,7 +93,7 @@ def test_one_level_passes_through_its_return_period():
         (samples.efehr_xml().replace("investigationTimeSpan", "time"), "investigation time"),
         ("<!DOCTYPE x [<!ENTITY a 'b'>]><x>&a;</x>", "document type"),
         ("<errors><error>no model</error></errors>", "hazard curves"),
-        ("PK\x03\x04", "header"),
+        ("PK\x03\x04", "spreadsheet"),
     ],
 )
 def test_what_is_wrong_is_said_in_a_sentence(text, words, tmp_path):

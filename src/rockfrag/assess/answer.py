@@ -24,6 +24,7 @@ from rockfrag.assess.risk import (
     risk_target,
     share_target,
 )
+from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.verdicts import (
     FEW_LEVELS,
     LEVELS,
@@ -99,6 +100,8 @@ class Assessment:
         What helps, most helpful first.
     effects
         What each assumption does to the answer.
+    rules
+        Engineers' rules held against the verdicts.
     """
 
     request: Request
@@ -116,6 +119,7 @@ class Assessment:
     directions: Directions | None
     remedies: tuple[Remedy, ...]
     effects: tuple[Effect, ...]
+    rules: tuple[RuleCheck, ...]
 
     @property
     def measure(self) -> Measure:
@@ -221,6 +225,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
             Effect(name, spreads.spreads[name], *(target.back(target.on_scale(v)) for v in both))
             for name, both in spreads.moved.items()
         ),
+        rules=() if brief else tuple(check_rules(objects, motions, now)),
     )
 
 

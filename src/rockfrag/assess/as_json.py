@@ -37,6 +37,7 @@ def as_json(found: Assessment) -> str:
         "arrangements": found.by_arrangement,
         "directions": found.directions and vars(found.directions),
         "remedies": [vars(remedy) for remedy in found.remedies],
+        "rules_of_thumb": [vars(rule) for rule in found.rules],
         "effects": [vars(effect) for effect in found.effects],
         "fragility": {
             "levels": verdicts.ladder.levels.tolist(),

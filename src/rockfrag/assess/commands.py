@@ -1,4 +1,4 @@
-"""The command ``rockfrag assess``."""
+"""The commands ``rockfrag assess`` and ``rockfrag rules-of-thumb``."""
 
 import argparse
 import sys
@@ -11,8 +11,8 @@ _INVENTORY = ".csv"
 _KEYS = ("width", "height", "depth", "mass", "cg_height", "pga", "pgv")
 
 
-def add_assess_command(commands: Any) -> None:
-    """Add ``assess`` to the parsers of a command line."""
+def add_assess_commands(commands: Any) -> None:
+    """Add ``assess`` and ``rules-of-thumb`` to the parsers of a command line."""
     parser = commands.add_parser(
         "assess",
         help="say whether one object topples, how probably, and what helps",
@@ -73,6 +73,15 @@ def add_assess_command(commands: Any) -> None:
     out.add_argument("--json", action="store_true", help="print the answer as JSON")
     out.add_argument("--pages", action="store_true", help="of an inventory: write a page for each")
     parser.set_defaults(run=_assess)
+    rules = commands.add_parser(
+        "rules-of-thumb", help="hold engineers' rules against simulations of objects"
+    )
+    rules.add_argument("file", help="objects, such as config/rules-of-thumb.yaml")
+    rules.add_argument(
+        "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
+    )
+    rules.add_argument("--output", metavar="FILE", help="write the table as .csv or .parquet")
+    rules.set_defaults(run=_rules)
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
@@ -151,4 +160,15 @@ def _inventory(options: argparse.Namespace) -> int:
     print("\n".join(inventory_lines(found)))
     place = write_inventory(found, options.output, pages=options.pages)
     print(f"{place}", file=sys.stderr)
+    return 0
+
+
+def _rules(options: argparse.Namespace) -> int:
+    from rockfrag.assess.rules import rules_study
+    from rockfrag.files import write_table
+
+    table = rules_study(options.file, options.records)
+    print(table.to_string(index=False, float_format=lambda value: f"{value:.2f}"))
+    if options.output:
+        write_table(table, options.output)
     return 0

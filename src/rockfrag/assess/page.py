@@ -22,6 +22,7 @@ from rockfrag.assess.words import (
     five_lines,
     remedy_words,
     safest,
+    share_words,
     value_words,
     verdict,
 )
@@ -113,6 +114,7 @@ def _sections(found: Assessment) -> list[Section]:
         _remedies(found),
         _arrangements(found),
         _sure(found),
+        _rules(found),
         _levels(found),
         _motions(found),
     ]
@@ -219,6 +221,34 @@ def _sure(found: Assessment) -> Section:
         "holds motions, body, floor and model.",
         ["Variances of all sources are added; the table shows each assumption moved alone."],
         parts,
+    )
+
+
+def _rules(found: Assessment) -> Section:
+    table = pd.DataFrame(
+        {
+            "rule": [rule.rule for rule in found.rules],
+            "bias": [rule.bias for rule in found.rules],
+            "scatter": [rule.scatter for rule in found.rules],
+            "unsafe": [share_words(rule.unsafe) for rule in found.rules],
+        }
+    )
+    columns = (
+        Column("rule", "Rule"),
+        Column("bias", "Its amplitude over the simulated one (median)", 2),
+        Column("scatter", "Scatter (ln)", 2),
+        Column("unsafe", "Motions that topple it earlier", numeric=True),
+    )
+    return Section(
+        "rules",
+        "What rules of thumb say",
+        "Checks of practice beside the simulation of this object.",
+        [
+            "A ratio below 1 is cautious, above 1 unsafe. An object on a pedestal is checked alone and as "
+            "one body "
+            "with it, and the lower amplitude counts, as practice does with three models."
+        ],
+        [table_html(table, columns, "Rules held against every motion that topples the object.")],
     )
 
 

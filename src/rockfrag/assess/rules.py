@@ -1,0 +1,112 @@
+"""What engineers' rules are worth: held against simulations, object by object and motion by motion."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.motions import MotionSet, motion_set
+from rockfrag.assess.objects import Objects
+from rockfrag.assess.place import Place
+from rockfrag.assess.request import Records, make_request
+from rockfrag.assess.verdicts import Verdicts, make_ladder, verdicts_of
+from rockfrag.rocking.rules_of_thumb import RULES, bias, predicted
+from rockfrag.schema import checked
+from rockfrag.yaml_file import read_yaml
+
+
+@dataclass(frozen=True)
+class RuleCheck:
+    """A rule held against simulations of one object.
+
+    Attributes
+    ----------
+    rule
+        Its name.
+    bias
+        Median of the amplitude at which it expects a motion to topple the object over the simulated one [-].
+    scatter
+        Standard deviation of the logarithm of that [-].
+    unsafe
+        Share of the motions that topple the object at less than the rule says [-].
+    motions
+        Number of motions that topple it at all.
+    """
+
+    rule: str
+    bias: float
+    scatter: float
+    unsafe: float
+    motions: int
+
+
+def check_rules(objects: Objects, motions: MotionSet, verdicts: Verdicts) -> list[RuleCheck]:
+    """Hold every rule against the verdicts of an object.
+
+    Parameters
+    ----------
+    objects
+        The object.
+    motions
+        The motions, as they shake it.
+    verdicts
+        Its verdicts.
+    """
+    simulated = first_scales(verdicts)
+    found = []
+    for name, rule in RULES.items():
+        factors = np.array([predicted(objects.body, motion, rule) for motion in motions.base])
+        middle, scatter = bias(factors, simulated)
+        known = np.isfinite(simulated)
+        unsafe = float((factors > simulated)[known].mean()) if known.any() else float("nan")
+        found.append(RuleCheck(name, middle, scatter, unsafe, int(known.sum())))
+    return found
+
+
+def first_scales(verdicts: Verdicts) -> np.ndarray:
+    """Least factor on each motion that topples the object; NaN where none does, shape (motions,)."""
+    fell = verdicts.overturned & verdicts.ladder.allowed
+    first = fell.argmax(axis=1)
+    scales = verdicts.ladder.scales[np.arange(len(fell)), first]
+    return np.where(fell.any(axis=1), scales, np.nan)
+
+
+def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:
+    """Hold the rules against the objects of a file, under the default motions.
+
+    Parameters
+    ----------
+    path
+        A file such as ``config/rules-of-thumb.yaml``.
+    records
+        Folder of fetched records.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each object and rule, see :class:`RuleCheck`.
+
+    Raises
+    ------
+    InputError
+        If the file or an object cannot be used, or the motions cannot be had.
+    """
+    given = checked(read_yaml(path), "rules_of_thumb", str(path))
+    requests = [
+        make_request(one, f"{path}, object {i}", Path(path).parent)
+        for i, one in enumerate(given["objects"], start=1)
+    ]
+    motions = motion_set(Records(), Place(), Path(records))
+    ladder = make_ladder(motions, PGA)
+    rows = []
+    for request in requests:
+        objects = request.objects
+        verdicts = verdicts_of(objects, {"": objects.body}, motions, ladder)[""]
+        rows += [
+            {"object": request.name, **vars(check)}
+            for check in check_rules(objects, motions, verdicts)
+        ]
+    return pd.DataFrame(rows)
