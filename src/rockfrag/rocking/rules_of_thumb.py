@@ -16,7 +16,7 @@ from rockfrag.motions.intensity import housner_intensity, pgv
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.units import STANDARD_GRAVITY
+from rockfrag.units import GRAVITY
 
 HOUSNER_BAND = 2.4
 """Width of the band of periods, 0.1 to 2.5 s, of Housner's intensity [s]."""
@@ -37,7 +37,7 @@ def static(block: Block, motion: Motion) -> float:
     motion
         The motion.
     """
-    return STANDARD_GRAVITY * math.tan(block.alpha) / motion.pga
+    return float(GRAVITY * math.tan(block.alpha) / motion.pga)
 
 
 def housner(block: Block, motion: Motion) -> float:
@@ -53,8 +53,8 @@ def housner(block: Block, motion: Motion) -> float:
     motion
         The motion.
     """
-    wanted = STANDARD_GRAVITY * block.alpha / block.frequency()
-    return wanted / (housner_intensity(motion, 0.0) / HOUSNER_BAND)
+    wanted = GRAVITY * block.alpha / block.frequency()
+    return float(wanted / (housner_intensity(motion, 0.0) / HOUSNER_BAND))
 
 
 def peak_velocity(block: Block, motion: Motion) -> float:
@@ -67,7 +67,7 @@ def peak_velocity(block: Block, motion: Motion) -> float:
     motion
         The motion.
     """
-    return STANDARD_GRAVITY * block.alpha / block.frequency() / pgv(motion)
+    return float(GRAVITY * block.alpha / block.frequency() / pgv(motion))
 
 
 def asce_43(block: Block, motion: Motion) -> float:
@@ -92,8 +92,8 @@ def asce_43(block: Block, motion: Motion) -> float:
     damping = decrement / math.sqrt(4 * math.pi**2 + decrement**2)
     theta = ANGLES * block.alpha
     lifted = np.cos(theta) + a * np.sin(theta) - 1
-    frequency = np.sqrt(2 * lifted * STANDARD_GRAVITY / (inertia * height)) / (2 * math.pi * theta)
-    capacity = 2 * STANDARD_GRAVITY * lifted / theta
+    frequency = np.sqrt(2 * lifted * GRAVITY / (inertia * height)) / (2 * math.pi * theta)
+    capacity = 2 * GRAVITY * lifted / theta
     demand = response_spectrum(motion, 1 / frequency, damping).pseudo_acceleration
     return float((capacity / demand).max())
 
