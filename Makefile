@@ -1,5 +1,6 @@
 # make run      the thesis's study, from records to report (STUDY=config/other.yaml for another; VERBOSE=1)
 # make smoke    a small study in under a minute
+# make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
@@ -14,7 +15,7 @@ RUN := .venv/bin/python -m
 # what failed has said so in a sentence; make, which would add three lines, dies of a closed pipe instead
 QUIETLY := || { kill -PIPE $$PPID; exit 1; }
 
-.PHONY: run smoke test validate coverage lint bench fuzz format
+.PHONY: run smoke report-pdf test validate coverage lint bench fuzz format
 .DEFAULT_GOAL := run
 
 run: .venv/installed
@@ -22,6 +23,9 @@ run: .venv/installed
 
 smoke: STUDY := config/smoke.yaml
 smoke: run
+
+report-pdf: .venv/installed
+	@$(RUN) rockfrag.report.pdf "$(STUDY)"
 
 test: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow"

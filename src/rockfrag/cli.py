@@ -14,6 +14,7 @@ from rockfrag.record_commands import add_record_commands
 from rockfrag.units import quantity
 
 if TYPE_CHECKING:
+    from rockfrag.records.motion import Motion
     from rockfrag.rocking import Block, Body
 
 MOST_EVENTS = 30
@@ -62,23 +63,21 @@ def make_parser() -> argparse.ArgumentParser:
     add_record_commands(commands)
 
     one = commands.add_parser("simulate", help="shake one body by one record")
-    one.add_argument("record", help="file with the record")
-    one.add_argument(
-        "--body", nargs=3, required=True, metavar=("WIDTH", "HEIGHT", "MASS"),
-        help="the statue, or the lone block: 35cm 120cm 180kg, or numbers of m, m and kg",
-    )  # fmt: skip
-    one.add_argument(
-        "--pedestal", nargs=3, metavar=("WIDTH", "HEIGHT", "MASS"),
-        help="the block it stands on, in the same way",
-    )  # fmt: skip
+    _add_case(one)
     one.add_argument("--pga", type=float, metavar="G", help="scale the record to this peak [g]")
     one.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
-    one.add_argument("--unit", help="unit of a record that does not state its own")
-    one.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
-    one.add_argument("--channel", help="channel, where the record has several")
     one.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
     one.add_argument("--all-events", action="store_true", help="print the whole pattern history")
     one.set_defaults(run=_simulate)
+
+    play = commands.add_parser(
+        "play", help="write a page in which one body rocks under one record, live, in any browser"
+    )
+    _add_case(play)
+    play.add_argument(
+        "--output", metavar="PAGE", default="rocking.html", help="where to write it, as .html"
+    )
+    play.set_defaults(run=_play)
 
     check = commands.add_parser("check-config", help="check the configuration of a study")
     check.add_argument("file", metavar="FILE", help="configuration, such as config/thesis.yaml")
@@ -87,17 +86,30 @@ def make_parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _add_case(parser: argparse.ArgumentParser) -> None:
+    """Add what tells one body and one record."""
+    parser.add_argument("record", help="file with the record")
+    parser.add_argument(
+        "--body", nargs=3, required=True, metavar=("WIDTH", "HEIGHT", "MASS"),
+        help="the statue, or the lone block: 35cm 120cm 180kg, or numbers of m, m and kg",
+    )  # fmt: skip
+    parser.add_argument(
+        "--pedestal", nargs=3, metavar=("WIDTH", "HEIGHT", "MASS"),
+        help="the block it stands on, in the same way",
+    )  # fmt: skip
+    parser.add_argument("--unit", help="unit of a record that does not state its own")
+    parser.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
+    parser.add_argument("--channel", help="channel, where the record has several")
+
+
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
     from rockfrag.motions.scaling import scale_to_pga
-    from rockfrag.records.read import read_motion
-    from rockfrag.rocking import Stack, simulate
+    from rockfrag.rocking import simulate
     from rockfrag.units import GRAVITY
 
     _check_image(options.plot)
-    statue = _block("--body", options.body)
-    body = Stack(_block("--pedestal", options.pedestal), statue) if options.pedestal else statue
-    motion = read_motion(options.record, options.unit, options.channel, options.dt)
+    body, motion = _case(options)
     acceleration = motion.acceleration
     if options.pga is not None:
         if options.pga <= 0:
@@ -127,6 +139,29 @@ def _simulate(options: argparse.Namespace) -> int:
 
         save_figure(response.plot(f"{motion.name}, peak {peak:.3f} g"), options.plot)
         print(f"drawn in {options.plot}")
+    return 0
+
+
+def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
+    """Return the body and the motion that the options tell."""
+    from rockfrag.records.read import read_motion
+    from rockfrag.rocking import Stack
+
+    statue = _block("--body", options.body)
+    body = Stack(_block("--pedestal", options.pedestal), statue) if options.pedestal else statue
+    return body, read_motion(options.record, options.unit, options.channel, options.dt)
+
+
+def _play(options: argparse.Namespace) -> int:
+    from rockfrag.report.play_page import write_play_page
+
+    if not options.output.endswith(".html"):
+        raise InputError(f"--output: expected a name that ends in .html, got {options.output}.")
+    body, motion = _case(options)
+    if doubt := _acceleration_doubt(motion.pga, body):
+        print(f"warning: {options.record}: {doubt}", file=sys.stderr)
+    write_play_page(body, motion, options.output)
+    print(f"open {options.output} in a browser; it needs no network")
     return 0
 
 

@@ -10,11 +10,11 @@ import sys
 
 import numpy as np
 import pytest
-from rockfrag.rocking.browser import driver_text, module_bytes
 
 from rockfrag.rocking import Block, Stack, simulate
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import body_record
+from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.rocking.inputs import STEP, free_samples, step_count
 from rockfrag.units import GRAVITY
 

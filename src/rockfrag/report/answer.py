@@ -40,7 +40,7 @@ def study_answer(results: Results) -> Answer:
 
 def questions(results: Results) -> list[tuple[str, str]]:
     """Questions that a study's page answers."""
-    return [one for one in QUESTIONS[:4] if one[1] != "pedestal" or results.study.has_pairs]
+    return [one for one in QUESTIONS if one[1] != "pedestal" or results.study.has_pairs]
 
 
 def _asked(results: Results) -> str:

@@ -19,6 +19,7 @@ from rockfrag.report.wording import number
 _PIXELS_PER_POINT = 96 / 72 * 1.22
 _COLUMN = 252 * _PIXELS_PER_POINT
 _LONGEST_LINE = 28
+_LONG_COLUMN = 2  # so many columns more is a column of sentences
 _NOTHING = Markup("")
 
 _SCHEME = {
@@ -93,7 +94,8 @@ def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> 
         )
         for row in table.to_dict("records")
     )
-    return framed(caption, head, rows, len(columns))
+    room = len(columns) + _LONG_COLUMN * list(kinds.values()).count("long")
+    return framed(caption, head, rows, room)
 
 
 def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
@@ -102,7 +104,7 @@ def cell_html(content: str | Markup, title: str, kind: str) -> Markup:
 
 
 def framed(caption: str, head: Markup, rows: Markup, columns: int) -> Markup:
-    """A table with its caption; the more columns, the sooner its rows become lists."""
+    """A table with its caption; the more room its columns need, the sooner its rows become lists."""
     kind = "few" if columns <= 4 else "some" if columns <= 7 else "many"
     return Markup(
         '<figure class="table"><figcaption>{}</figcaption><table class="{}">'
@@ -243,6 +245,9 @@ def render(
         provenance=provenance,
         basis=basis,
         live=live,
-        style=Markup(environment.get_template("style.css").render()),
+        style=Markup(
+            environment.get_template("style.css").render()
+            + (environment.get_template("live.css").render() if live else "")
+        ),
         script=Markup(environment.get_template("page.js").render()),
     )

@@ -136,6 +136,11 @@ class Results:
         return read_motion_set(self.folder / "motions" / "ground.parquet")
 
     @cached_property
+    def floors(self) -> Sequence[Motion]:
+        """Motions of every floor, which shake the bodies."""
+        return read_motion_set(self.folder / "motions" / "floors.parquet")
+
+    @cached_property
     def verdicts(self) -> pd.DataFrame:
         """Verdicts of every configuration at every amplitude: the sweeps without their responses."""
         columns = ["configuration", "object", "motion", "amplitude_g", "overturned"]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from rockfrag.figure_style import save_figure
 from rockfrag.files import write_text
+from rockfrag.report.live import live_kernel
 from rockfrag.report.page import Picture, read_picture, render
 from rockfrag.report.part import Answer, FigureSpec, Part, Results, Section
 from rockfrag.report.provenance import provenance
@@ -93,6 +94,11 @@ def study_page(
         sections=sections,
         pictures=pictures,
         provenance=provenance(results),
+        live=live_kernel(
+            {one.name: one.body for one in study.configurations},
+            results.floors,
+            results.verdicts,
+        ),
     )
 
 

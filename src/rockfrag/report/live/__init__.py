@@ -1,0 +1,188 @@
+"""The simulation in the page: the kernel itself, what it needs, and still frames for who runs no scripts.
+
+One source: the module is made of the kernel that `rockfrag.simulate` runs, see :mod:`rockfrag.rocking.browser`.
+"""
+
+import base64
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from jinja2 import Environment, PackageLoader, select_autoescape
+from markupsafe import Markup
+
+from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.records.motion import Motion
+from rockfrag.report.live.frames import frames_svg
+from rockfrag.rocking import overturns
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.units import GRAVITY
+
+MOST_SAMPLES = 70_000
+"""Samples of all motions that a page carries: three quarters of a megabyte."""
+
+AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
+"""Amplitudes [g] of a body that no study has swept."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """What the page shows first: names of a body and of a motion."""
+
+    body: str
+    motion: str
+
+
+def live_kernel(
+    bodies: Mapping[str, Body],
+    motions: Sequence[Motion],
+    verdicts: pd.DataFrame | None = None,
+    start: Start | None = None,
+) -> Markup:
+    """Return the element of a page in which bodies rock under motions, live; one to a page.
+
+    Parameters
+    ----------
+    bodies
+        What may be chosen, by the name that a reader sees.
+    motions
+        Motions that may be chosen; no more than carry ``MOST_SAMPLES`` samples are taken, the first ones.
+    verdicts
+        Table of a study: ``configuration`` (a name of ``bodies``), ``motion``, ``amplitude_g``, ``overturned``,
+        the same amplitudes for all. Without it the amplitudes ``AMPLITUDES_G`` are tried here.
+    start
+        What is shown first; by default a stack, if there is one, and a motion that overturns it.
+
+    Returns
+    -------
+    Markup
+        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing.
+    """
+    motions = carried(motions)
+    if verdicts is None:
+        verdicts = swept(bodies, motions)
+    amplitudes = np.sort(verdicts["amplitude_g"].unique())
+    rows = [[_row(verdicts, name, one.name, amplitudes) for one in motions] for name in bodies]
+    body, motion = _start(bodies, motions, rows, start)
+    first = rows[body][motion].find("1")
+    shown = first if first >= 0 else len(amplitudes) - 1
+    data = {
+        "gravity": GRAVITY,
+        "module": _text(module_bytes()),
+        "bodies": [_body(name, one) for name, one in bodies.items()],
+        "motions": [_motion(one) for one in motions],
+        "amplitudes": amplitudes.tolist(),
+        "verdicts": rows,
+        "start": {"body": body, "motion": motion, "amplitude": float(amplitudes[shown])},
+    }
+    three = (
+        amplitudes[[shown // 2, max(shown - 1, 0), shown]]
+        if first > 0
+        else amplitudes[[0, shown // 2, shown]]
+    )
+    frames, words = frames_svg(
+        list(bodies.values())[body], motions[motion], list(dict.fromkeys(three.tolist()))
+    )
+    environment = Environment(
+        loader=PackageLoader("rockfrag.report"), autoescape=select_autoescape(default=True)
+    )
+    return Markup(
+        environment.get_template("live.html.j2").render(
+            frames=frames,
+            words=f"{list(bodies)[body]} under {motions[motion].name}: {words}",
+            # a name may hold anything, but never the end of the script
+            data=Markup(
+                json.dumps(data, ensure_ascii=True, separators=(",", ":")).replace("<", "\\u003c")
+            ),
+            driver=Markup(driver_text()),
+            script=Markup(environment.get_template("live.js").render()),
+        )
+    )
+
+
+def carried(motions: Sequence[Motion]) -> list[Motion]:
+    """Motions that a page has room for: the first ones, and at least one."""
+    total = np.cumsum([motion.acceleration.size for motion in motions])
+    return list(motions[: max(1, int((total <= MOST_SAMPLES).sum()))])
+
+
+def swept(bodies: Mapping[str, Body], motions: Sequence[Motion]) -> pd.DataFrame:
+    """Verdicts of all bodies under all motions at ``AMPLITUDES_G``."""
+    values = np.array(AMPLITUDES_G)
+    fell = overturns(
+        list(bodies.values()),
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        np.array([factors_to_pga(motion, values) for motion in motions]),
+    ).overturned
+    index = pd.MultiIndex.from_product(
+        [list(bodies), [motion.name for motion in motions], values],
+        names=["configuration", "motion", "amplitude_g"],
+    )
+    return pd.DataFrame({"overturned": fell.ravel()}, index=index).reset_index()
+
+
+def _row(verdicts: pd.DataFrame, body: str, motion: str, amplitudes: Any) -> str:
+    """Verdicts of one body under one motion, a digit an amplitude."""
+    own = verdicts[(verdicts["configuration"] == body) & (verdicts["motion"] == motion)]
+    fell = own.set_index("amplitude_g")["overturned"].reindex(amplitudes)
+    return "".join("1" if one else "0" for one in fell.to_numpy(dtype=bool))
+
+
+def _start(
+    bodies: Mapping[str, Body],
+    motions: Sequence[Motion],
+    rows: list[list[str]],
+    start: Start | None,
+) -> tuple[int, int]:
+    """Place of the body and of the motion that are shown first."""
+    if start is not None:
+        return list(bodies).index(start.body), [one.name for one in motions].index(start.motion)
+    kinds = list(bodies.values())
+    order = sorted(range(len(kinds)), key=lambda number: not isinstance(kinds[number], Stack))
+    for body in order:
+        for motion, row in enumerate(rows[body]):
+            if "1" in row[1:] and row[0] == "0":
+                return body, motion
+    return order[0], 0
+
+
+def _text(content: bytes) -> str:
+    return base64.b64encode(content).decode("ascii")
+
+
+def _motion(motion: Motion) -> dict[str, Any]:
+    samples = np.ascontiguousarray(motion.acceleration, dtype="<f8")
+    return {
+        "name": motion.name,
+        "dt": motion.dt,
+        "pga": motion.pga,
+        "pga_g": motion.pga / GRAVITY,
+        "samples": _text(samples.tobytes()),
+    }
+
+
+def _body(name: str, body: Body) -> dict[str, Any]:
+    if isinstance(body, Stack):
+        parts = {
+            "statue": _block(body.statue),
+            "pedestal": _block(body.pedestal),
+            "offset": body.offset,
+        }
+    else:
+        parts = {"statue": _block(body), "pedestal": None, "offset": 0.0}
+    return {"name": name, **parts}
+
+
+def _block(block: Block) -> dict[str, float]:
+    """Dimensions in SI as the driver takes them; what is not given follows from them there too."""
+    given: dict[str, float] = {"width": block.width, "height": block.height, "mass": block.mass}
+    if block.inertia is not None:
+        given["inertia"] = block.inertia
+    if block.cg_height is not None:
+        given["cgHeight"] = block.cg_height
+    return {**given, "cgOffset": block.cg_offset, "lean": block.lean}

@@ -1,0 +1,75 @@
+"""The report on paper: ``python -m rockfrag.report.pdf config/thesis.yaml`` prints a study's page as PDF.
+
+A page is laid out by a browser, so a browser prints it: Chromium, Chrome or Edge without a window.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from rockfrag.errors import InputError
+from rockfrag.files import whole_file
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "msedge")
+"""Programs that print without a window, the first one found is taken."""
+
+
+def print_page(page: Path) -> Path:
+    """Print a page, and return the path of the PDF beside it.
+
+    Parameters
+    ----------
+    page
+        The page, such as ``results/thesis/report.html``.
+
+    Raises
+    ------
+    InputError
+        If there is no page or no browser, or it does not print.
+    """
+    if not page.is_file():
+        raise InputError(f"{page}: there is no report yet; run the study first.")
+    browser = next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    if browser is None:
+        raise InputError(
+            f"No browser that prints was found ({', '.join(BROWSERS)}); open {page} in any browser and print it "
+            "from there: every chapter will be on paper."
+        )
+    target = page.with_suffix(".pdf")
+    with tempfile.TemporaryDirectory() as profile, whole_file(target) as part:
+        command = [
+            *(browser, "--headless=new", "--disable-gpu", "--no-pdf-header-footer"),
+            *(f"--user-data-dir={profile}", f"--print-to-pdf={part}"),
+            # Chromium has no sandbox for the administrator, as in a container
+            *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
+            page.resolve().as_uri(),
+        ]
+        done = subprocess.run(command, capture_output=True, check=False, timeout=300)
+        if done.returncode != 0 or not part.read_bytes().startswith(b"%PDF"):
+            raise InputError(
+                f"{browser} did not print {page}; open it in any browser and print it from there."
+            )
+    return target
+
+
+def main() -> int:
+    """Print the report of the study that is named."""
+    from rockfrag.stages.running import results_folder
+    from rockfrag.study.loading import load_any
+
+    try:
+        if len(sys.argv) != 2:
+            raise InputError("Name one study, such as config/thesis.yaml.")
+        target = print_page(results_folder(load_any(sys.argv[1])) / "report.html")
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    print(f"printed: {target}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

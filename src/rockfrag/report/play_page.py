@@ -1,0 +1,109 @@
+"""A page in which one body rocks under one record: the live simulation alone."""
+
+import os
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from rockfrag.errors import InputError
+from rockfrag.files import write_text
+from rockfrag.records.motion import Motion
+from rockfrag.report.live import AMPLITUDES_G, live_kernel, swept
+from rockfrag.report.page import render
+from rockfrag.report.part import Answer, Finding
+from rockfrag.report.wording import counted, number
+from rockfrag.rocking import simulate
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.units import GRAVITY
+
+MOST_SAMPLES = 20_000
+"""Samples of a record for which the page stays below 400 kB."""
+
+
+def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) -> None:
+    """Write the page.
+
+    Parameters
+    ----------
+    body
+        What rocks.
+    motion
+        By what; as long as ``MOST_SAMPLES`` at most.
+    path
+        Where to write it.
+
+    Raises
+    ------
+    InputError
+        If the record is too long, or zero throughout.
+    """
+    samples = motion.acceleration.size
+    if samples > MOST_SAMPLES:
+        raise InputError(
+            f"{motion.name}: {samples} samples are more than the {MOST_SAMPLES} that a page carries; cut the "
+            "record or give it a longer sampling interval."
+        )
+    if motion.pga <= 0:
+        raise InputError(f"{motion.name}: the record is zero throughout, so nothing would rock.")
+    name = _name(body)
+    verdicts = swept({name: body}, [motion])
+    page = render(
+        title=f"{name} under {motion.name}",
+        lead=f"{counted(samples, 'sample')} of {motion.dt:g} s, as recorded with a peak of "
+        f"{number(motion.pga / GRAVITY, 3)} g.",
+        answer=Answer(
+            asked="At what strength of this motion does it overturn?",
+            sentences=[_strength(verdicts["overturned"].tolist()), _recorded(body, motion)],
+        ),
+        sections=[],
+        pictures={},
+        provenance={
+            "Record": motion.name,
+            "Body": repr(body),
+            "Source": f"rockfrag {version('rockfrag')}",
+        },
+        live=live_kernel({name: body}, [motion], verdicts),
+    )
+    write_text(page, path)
+
+
+def _name(body: Body) -> str:
+    if isinstance(body, Stack):
+        return f"{_size(body.statue)} on {_size(body.pedestal)}"
+    return _size(body)
+
+
+def _size(block: Block) -> str:
+    return f"{100 * block.width:.3g} × {100 * block.height:.3g} cm"
+
+
+def _strength(fell: Sequence[bool]) -> Finding:
+    """Say which of the amplitudes tried overturn."""
+    verdicts = list(fell)
+    tried = (
+        f"{counted(len(verdicts), 'amplitude')} from {AMPLITUDES_G[0]:g} to {AMPLITUDES_G[-1]:g} g"
+    )
+    if not any(verdicts):
+        return Finding("It does not overturn", f"It survives {tried}.")
+    first = verdicts.index(True)
+    later = len(verdicts) - first - sum(verdicts[first:])
+    windows = (
+        f" Of those above it {later} are survived again: how strong is not all that counts."
+        if later
+        else " All that are stronger overturn it too."
+    )
+    return Finding(
+        f"It overturns first at a peak of {number(AMPLITUDES_G[first], 3)} g",
+        f"Of {tried}.{windows}",
+    )
+
+
+def _recorded(body: Body, motion: Motion) -> Finding:
+    """Say what the motion does as it was recorded."""
+    response = simulate(body, motion)
+    words = "overturns it" if response.overturned else "does not overturn it"
+    return Finding(
+        f"As strong as recorded the motion {words}",
+        f"It strikes {counted(response.impacts, 'time')} before."
+        if response.overturned
+        else f"It rocks with {counted(response.impacts, 'impact')}.",
+    )

@@ -1,0 +1,93 @@
+"""The two functions of the module that a page calls, and the record through which it does.
+
+They are compiled to WebAssembly alone (``build``), from the kernels that everything else is computed with.
+"""
+
+import numpy as np
+
+from rockfrag.rocking.kernels import geometry
+from rockfrag.rocking.kernels.chatter import RESTORING
+from rockfrag.rocking.kernels.equations import BODY, STATE
+from rockfrag.rocking.kernels.jit import kernel
+from rockfrag.rocking.kernels.record import BALANCE, SUMMARY
+from rockfrag.rocking.kernels.single import Scratch, Shaking, march
+from rockfrag.rocking.kernels.taylor import SERIES
+
+_F, _I = np.float64, np.int64
+
+BLOCK = np.dtype(
+    [
+        ("width", _F), ("height", _F), ("mass", _F),
+        ("inertia", _F), ("cg_height", _F),  # NaN if not given
+        ("cg_offset", _F), ("lean", _F),
+    ]
+)  # fmt: skip
+"""A block as it is given (``bodies.Block``)."""
+
+CALL = np.dtype(
+    [
+        # what describe reads
+        ("statue", BLOCK), ("pedestal", BLOCK), ("offset", _F), ("stacked", _I),
+        # what it leaves: whether the body stands (``geometry``), and the frequency parameters that steps and the
+        # length of free rocking follow from [1/s]
+        ("fault", _I), ("fastest", _F), ("slowest", _F),
+        # what march reads, the body among it, and leaves
+        ("body", BODY), ("initial", STATE),
+        ("scale", _F), ("dt", _F), ("substeps", _I), ("free_samples", _I),
+        ("summary", SUMMARY), ("done", _I),
+        # what it works in
+        ("state", STATE), ("before", STATE), ("trial", STATE),
+        ("series", SERIES), ("restoring", RESTORING), ("balances", BALANCE, 8),
+    ],
+    align=True,
+)  # fmt: skip
+"""What a page and the module hand to each other."""
+
+
+# as a part of what is compiled here, and not as the entry that Python calls
+_march = kernel(march.py_func)
+
+
+@kernel
+def describe(call):
+    """Describe a body to the kernels: fill the geometry of its record; its gravity is there already."""
+    body, given = call.body, call.statue
+    statue = geometry.shape_of(
+        given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
+    )  # fmt: skip
+    g = body.gravity
+    call.fault = geometry.STANDS if geometry.can_stand(statue) else geometry.FALLS_ALONE
+    if call.stacked == 0:
+        geometry.fill_block(body, statue)
+        call.fastest = max(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
+        call.slowest = min(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
+        return
+    given = call.pedestal
+    pedestal = geometry.shape_of(
+        given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
+    )  # fmt: skip
+    pile = geometry.pile_of(pedestal, statue, given.height, given.lean, call.offset)
+    if not geometry.can_stand(pedestal):
+        call.fault = geometry.FALLS_ALONE
+    if call.fault == geometry.STANDS:
+        call.fault = geometry.fault_of(pile)
+    geometry.fill_pile(body, pile)
+    whole = geometry.joined(pile)
+    call.fastest = 0.0
+    call.slowest = np.inf
+    for pole in (1, -1):
+        p1 = geometry.frequency(pedestal, pole, g)
+        p2 = geometry.frequency(pile.statue, pole, g)
+        p12 = geometry.frequency(whole, pole, g)
+        call.fastest = max(call.fastest, max(p1, p2))
+        call.slowest = min(call.slowest, min(p2, p12))
+
+
+@kernel
+def march_call(call, samples, history, events):
+    """March the body of a call; see ``single.march``."""
+    shaking = Shaking(samples, call.scale, call.dt, call.substeps, call.free_samples)
+    scratch = Scratch(
+        call.state, call.before, call.trial, call.series, call.restoring, call.balances
+    )
+    call.done = _march(call.body, shaking, call.initial, history, events, call.summary, scratch)

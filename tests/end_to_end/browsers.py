@@ -1,0 +1,297 @@
+"""Chromium and Firefox without a window, a network or a library: by their own remote protocols."""
+
+import base64
+import json
+import os
+import shutil
+import socket
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Protocol, Self
+
+
+class Browser(Protocol):
+    """What the tests ask of a browser."""
+
+    name: str
+    console: list[str]
+
+    def open(
+        self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
+    ) -> None:
+        """Open a file in a window of so many pixels."""
+
+    def run(self, script: str) -> Any:
+        """Return what an expression, or a promise of it, comes to in the page."""
+
+    def picture(self) -> bytes:
+        """Return what is seen, as PNG."""
+
+
+class Chromium:
+    """Chromium by its DevTools protocol, over two pipes."""
+
+    name = "chromium"
+
+    def __init__(self) -> None:
+        self.console: list[str] = []
+        self._folder = tempfile.TemporaryDirectory(prefix="chromium", ignore_cleanup_errors=True)
+        here, there = os.pipe(), os.pipe()
+        self._write, self._read = here[1], os.fdopen(there[0], "rb")
+        command = [
+            *(
+                _chromium() or "",
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--no-first-run",
+            ),
+            *("--remote-debugging-pipe", "--hide-scrollbars", "--proxy-server=127.0.0.1:9"),
+            f"--user-data-dir={self._folder.name}",
+        ]
+
+        def take_pipes() -> None:
+            first, second = os.dup(here[0]), os.dup(there[1])
+            os.dup2(first, 3)
+            os.dup2(second, 4)
+
+        self._process = subprocess.Popen(
+            command,
+            preexec_fn=take_pipes,
+            close_fds=False,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(here[0])
+        os.close(there[1])
+        self._number, self._session = 0, ""
+        self._buffer = b""
+        target = self._ask("Target.createTarget", url="about:blank")["targetId"]
+        self._session = self._ask("Target.attachToTarget", targetId=target, flatten=True)[
+            "sessionId"
+        ]
+        for domain in ("Page", "Runtime", "Log"):
+            self._ask(f"{domain}.enable")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.terminate()
+        self._process.wait(20)
+        self._read.close()
+        os.close(self._write)
+        self._folder.cleanup()
+
+    def open(
+        self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
+    ) -> None:
+        """Open a file in a window of so many pixels."""
+        self.console.clear()
+        self._ask(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+        scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+        self._ask("Emulation.setEmulatedMedia", media="", features=[scheme])
+        self._ask("Page.navigate", url=page.resolve().as_uri())
+        self.run(
+            "new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))"
+        )
+
+    def run(self, script: str) -> Any:
+        """Return what an expression, or a promise of it, comes to in the page."""
+        found = self._ask(
+            "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
+        )
+        if "exceptionDetails" in found:
+            raise AssertionError(str(found["exceptionDetails"]))
+        return found["result"].get("value")
+
+    def picture(self) -> bytes:
+        """Return what is seen, as PNG."""
+        return base64.b64decode(self._ask("Page.captureScreenshot")["data"])
+
+    def printed(self) -> bytes:
+        """Return the page as it is printed, as PDF."""
+        return base64.b64decode(self._ask("Page.printToPDF", preferCSSPageSize=True)["data"])
+
+    def _ask(self, method: str, **params: Any) -> Any:
+        self._number += 1
+        message = {"id": self._number, "method": method, "params": params}
+        if self._session:
+            message["sessionId"] = self._session
+        os.write(self._write, json.dumps(message).encode() + b"\0")
+        while True:
+            answer = self._next()
+            if answer.get("id") == self._number:
+                if "error" in answer:
+                    raise AssertionError(f"{method}: {answer['error']}")
+                return answer["result"]
+            self._note(answer)
+
+    def _next(self) -> Any:
+        while b"\0" not in self._buffer:
+            part = os.read(self._read.fileno(), 1 << 20)
+            if not part:
+                raise AssertionError("Chromium ended")
+            self._buffer += part
+        text, _, self._buffer = self._buffer.partition(b"\0")
+        return json.loads(text)
+
+    def _note(self, message: Any) -> None:
+        params = message.get("params", {})
+        if message.get("method") == "Runtime.exceptionThrown":
+            thrown = params["exceptionDetails"]
+            self.console.append(str(thrown.get("exception", {}).get("description", thrown["text"])))
+        elif message.get("method") == "Runtime.consoleAPICalled":
+            self.console.append(str([one.get("value") for one in params["args"]]))
+        elif message.get("method") == "Log.entryAdded":
+            self.console.append(params["entry"]["text"])
+
+
+class Firefox:
+    """Firefox by Marionette, over a socket."""
+
+    name = "firefox"
+
+    def __init__(self) -> None:
+        self.console: list[str] = []
+        self._folder = tempfile.TemporaryDirectory(prefix="firefox", ignore_cleanup_errors=True)
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        preferences = {
+            "marionette.port": port,
+            "network.proxy.type": 1,
+            "network.proxy.http": "127.0.0.1",
+            "network.proxy.http_port": 9,
+            "network.proxy.ssl": "127.0.0.1",
+            "network.proxy.ssl_port": 9,
+            "datareporting.policy.dataSubmissionEnabled": False,
+        }
+        lines = [
+            f"user_pref({json.dumps(key)}, {json.dumps(value)});"
+            for key, value in preferences.items()
+        ]
+        (Path(self._folder.name) / "user.js").write_text("\n".join(lines))
+        command = [
+            _firefox() or "",
+            "--headless",
+            "--marionette",
+            "--remote-allow-system-access",
+            "--profile",
+            self._folder.name,
+            "--no-remote",
+        ]
+        self._process = subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+        self._socket = _connected(port)
+        self._buffer, self._number = b"", 0
+        self._next()
+        self._ask(
+            "WebDriver:NewSession", capabilities={"alwaysMatch": {"acceptInsecureCerts": True}}
+        )
+        self._ask("WebDriver:SetTimeouts", script=120000)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.terminate()
+        self._process.wait(20)
+        self._socket.close()
+        self._folder.cleanup()
+
+    def open(
+        self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
+    ) -> None:
+        """Open a file in a window of so many pixels."""
+        self._in_chrome(
+            "Services.prefs.setIntPref('layout.css.prefers-color-scheme.content-override', arguments[0]);"
+            "Services.console.reset();",
+            0 if dark else 1,
+        )
+        self._ask("WebDriver:SetWindowRect", width=width, height=height + 85)
+        self._ask("WebDriver:Navigate", url=page.resolve().as_uri())
+
+    def run(self, script: str) -> Any:
+        """Return what an expression, or a promise of it, comes to in the page."""
+        found = self._ask(
+            "WebDriver:ExecuteScript", script=f"return ({script})", args=[], newSandbox=False
+        )["value"]
+        errors = self._in_chrome(
+            "return Services.console.getMessageArray().map(m => m.message || '').filter(m => m.includes('file://'));"
+        )
+        self.console = list(errors)
+        return found
+
+    def picture(self) -> bytes:
+        """Return what is seen, as PNG."""
+        return base64.b64decode(self._ask("WebDriver:TakeScreenshot", full=False)["value"])
+
+    def _in_chrome(self, script: str, *arguments: Any) -> Any:
+        self._ask("Marionette:SetContext", value="chrome")
+        try:
+            return self._ask("WebDriver:ExecuteScript", script=script, args=list(arguments))[
+                "value"
+            ]
+        finally:
+            self._ask("Marionette:SetContext", value="content")
+
+    def _ask(self, method: str, **params: Any) -> Any:
+        self._number += 1
+        text = json.dumps([0, self._number, method, params]).encode()
+        self._socket.sendall(str(len(text)).encode() + b":" + text)
+        _, _, error, result = self._next()
+        if error:
+            raise AssertionError(f"{method}: {error['message']}")
+        return result
+
+    def _next(self) -> Any:
+        while b":" not in self._buffer:
+            self._receive()
+        length, _, rest = self._buffer.partition(b":")
+        while len(rest) < int(length):
+            self._receive()
+            rest = self._buffer.partition(b":")[2]
+        self._buffer = rest[int(length) :]
+        return json.loads(rest[: int(length)])
+
+    def _receive(self) -> None:
+        part = self._socket.recv(1 << 20)
+        if not part:
+            raise AssertionError("Firefox ended")
+        self._buffer += part
+
+
+def _connected(port: int) -> socket.socket:
+    """Connect to a browser that is still starting."""
+    for _ in range(300):
+        try:
+            return socket.create_connection(("127.0.0.1", port), timeout=180)
+        except OSError:
+            time.sleep(0.1)
+    raise AssertionError("Firefox does not answer")
+
+
+def _chromium() -> str | None:
+    names = ("chromium", "chromium-browser", "google-chrome")
+    return next((path for name in names if (path := shutil.which(name))), None)
+
+
+def _firefox() -> str | None:
+    return next((path for name in ("firefox-esr", "firefox") if (path := shutil.which(name))), None)
+
+
+BROWSERS = {
+    "chromium": (Chromium, _chromium()),
+    "firefox": (Firefox, _firefox()),
+}
+"""Each with the path of its program, or None where there is none."""

@@ -1,0 +1,42 @@
+"""Pages to look at, and browsers to look with."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockfrag.records.motion import Motion
+from rockfrag.report.play_page import write_play_page
+from rockfrag.rocking import Block, Stack
+
+from .browsers import BROWSERS, Browser
+from .studies import run
+from .test_foreign_studies import STUDIES
+
+
+@pytest.fixture(scope="session", params=list(BROWSERS))
+def browser(request: pytest.FixtureRequest) -> Iterator[Browser]:
+    kind, program = BROWSERS[request.param]
+    if program is None:
+        pytest.skip(f"{request.param} is not installed")
+    with kind() as one:
+        yield one
+
+
+@pytest.fixture(scope="session")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of a study with pairs, on a floor of a building."""
+    study = STUDIES["with and without a plinth on one upper floor"]
+    return run(study, tmp_path_factory.mktemp("study")) / "report.html"
+
+
+@pytest.fixture(scope="session")
+def play_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of one stack under one record."""
+    time = np.arange(600) * 0.01
+    wave = np.sin(2 * np.pi * 1.1 * time) * np.exp(-(((time - 2) / 1.2) ** 2))
+    path = tmp_path_factory.mktemp("play") / "play.html"
+    body = Stack(Block(0.5, 0.6, 350.0), Block(0.3, 1.2, 110.0))
+    write_play_page(body, Motion(4.0 * wave, 0.01, "wave", {}), path)
+    return path

@@ -1,0 +1,110 @@
+"""Pages as browsers show them: nothing wrong, nothing cut, nothing from outside, fit for every reader."""
+
+import re
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from .browsers import Browser
+
+pytestmark = pytest.mark.slow
+
+OPEN = "document.querySelectorAll('details').forEach(one => { one.open = true; })"
+
+TOO_WIDE = """
+[...document.querySelectorAll('body, body *')].filter(one => {
+  if (one.closest('svg') || getComputedStyle(one).display === 'inline') return false;
+  if (one.clientWidth === 0 || one.closest('[hidden], thead, .tools, option')) return false;
+  return one.scrollWidth > one.clientWidth + 1 || one.getBoundingClientRect().right > innerWidth + 1;
+}).map(one => one.tagName + '.' + one.className + ' ' + one.scrollWidth + ' > ' + one.clientWidth
+  + ': ' + one.textContent.trim().slice(0, 60))
+"""
+"""Elements that reach beyond their room, or beyond the window."""
+
+READY = """
+new Promise(done => {
+  const look = () => document.getElementById('live').dataset.ready ? done(true) : setTimeout(look, 20);
+  look();
+})
+"""
+
+
+@pytest.fixture(params=["report", "play_page"])
+def page(request: pytest.FixtureRequest) -> Path:
+    return request.getfixturevalue(request.param)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("width", [400, 800, 1400, 2200])
+def test_nothing_is_cut_and_no_error_is_written(
+    browser: Browser, page: Path, width: int, dark: bool
+):
+    browser.open(page, width, 900, dark=dark)
+    assert browser.run(READY)
+    browser.run(OPEN)
+    seen = browser.run("innerWidth")
+    # Firefox's windows are no narrower than this
+    assert abs(seen - max(width, 450)) <= 60 or seen == width
+    assert browser.run(TOO_WIDE) == []
+    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    assert browser.console == []
+
+
+def test_readers_of_every_kind_can_use_it(browser: Browser, page: Path):
+    axe = find_spec("axe_core_python")
+    if axe is None or axe.origin is None:
+        pytest.skip("axe-core-python is not installed")
+    script = (Path(axe.origin).parent / "axe.min.js").read_text(encoding="utf-8")
+    for dark in (False, True):
+        browser.open(page, 1400, 900, dark=dark)
+        browser.run(READY)
+        browser.run(OPEN)
+        browser.run(f"(() => {{ {script} }})() || 1")
+        found = browser.run(
+            "axe.run().then(found => found.violations.map(one => [one.id, one.nodes[0].html]))"
+        )
+        assert found == []
+
+
+def test_a_link_opens_the_chapter_that_it_names(browser: Browser, report: Path):
+    browser.open(report)
+    asked = browser.run(
+        "[...document.querySelectorAll('.questions a')].map(one => one.hash.slice(1))"
+    )
+    assert {"as_recorded", "pedestal", "fragility", "grounds", "live"} == set(asked)
+    for anchor in asked:
+        browser.run(f"document.querySelector('.questions a[href=\"#{anchor}\"]').click()")
+        place = f"document.getElementById('{anchor}')"
+        assert browser.run(
+            f"{place}.open !== false && {place}.getBoundingClientRect().top < innerHeight"
+        )
+
+
+def test_tables_can_be_sorted_and_filtered(browser: Browser, report: Path):
+    browser.open(report)
+    browser.run(OPEN)
+    table = "document.querySelector('#as_recorded table')"
+    cells = f"[...{table}.tBodies[0].rows].filter(one => !one.hidden).map(one => one.cells[3].textContent)"
+    peaks = browser.run(cells)
+    browser.run(f"{table}.tHead.querySelectorAll('button')[3].click()")
+    assert browser.run(cells) == sorted(peaks, key=float)
+    browser.run(f"{table}.tHead.querySelectorAll('button')[3].click()")
+    assert browser.run(cells) == sorted(peaks, key=float, reverse=True)
+    box = f"{table}.parentElement.querySelector('input[type=search]')"
+    browser.run(
+        f"(() => {{ {box}.value = 'record 7'; {box}.dispatchEvent(new Event('input')); }})()"
+    )
+    assert len(browser.run(cells)) == 1
+
+
+def test_paper_has_every_chapter(browser: Browser, report: Path):
+    if browser.name != "chromium":
+        pytest.skip("only Chromium prints without a dialogue")
+    browser.open(report)
+    assert browser.run(READY)
+    closed = browser.run("document.querySelectorAll('details:not([open])').length")
+    assert closed > 8
+    document = browser.printed()  # type: ignore[attr-defined]
+    assert document.startswith(b"%PDF")
+    assert len(re.findall(rb"/Type\s*/Page\b", document)) > 4
