@@ -37,6 +37,20 @@ def test_info_tells_peak_and_does_not_stop_at_a_bad_file(
     assert "Traceback" not in shown.err
 
 
+def test_play_writes_a_page_that_loads_nothing(
+    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    page = tmp_path / "page.html"
+    case = [str(record), "--unit", "g", "--body", "30cm", "120cm", "110kg"]
+    assert main(["play", *case, "--pedestal", "50cm", "60cm", "350kg", "--output", str(page)]) == 0
+    assert str(page) in capsys.readouterr().out
+    text = page.read_text(encoding="utf-8")
+    assert "30 × 120 cm on 50 × 60 cm" in text
+    assert 'src="http' not in text
+    assert main(["play", *case, "--output", "page.pdf"]) == 2
+    assert "ends in .html" in capsys.readouterr().err
+
+
 def test_info_draws_a_record(record: Path, tmp_path: Path):
     picture = tmp_path / "record.png"
     assert main(["info", str(record), "--unit", "g", "--picture", str(picture)]) == 0

@@ -172,6 +172,6 @@ def test_keys_move_time(browser: Browser, play_page: Path):
     browser.run(f"document.querySelector('#live .scene').dispatchEvent({key})")
     assert browser.run(clock) == pytest.approx(before - DT, abs=0.0051)
     browser.run("document.querySelector('#live .play').click()")
-    browser.run("new Promise(done => setTimeout(done, 400))")
+    browser.run("new Promise(done => setTimeout(done, 80))")
     assert browser.run(clock) > before - DT
     assert browser.run("document.querySelector('#live .play').textContent") == "Pause"

@@ -1,0 +1,116 @@
+"""The element of a page that carries the simulation: what it holds, and what it shows without scripts."""
+
+import base64
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
+from rockfrag.report.live import MOST_SAMPLES, Start, carried, live_kernel, swept
+from rockfrag.report.live.frames import frames_svg, outlines
+from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
+from rockfrag.report.play_page import write_play_page
+from rockfrag.rocking import Block, Stack, overturns
+
+STATUE = Block(0.3, 1.2, 110.0)
+BODIES = {"figure": STATUE, "figure </script> on plinth": Stack(Block(0.5, 0.6, 350.0), STATUE)}
+
+
+def motion(name: str = "wave", samples: int = 600) -> Motion:
+    time = np.arange(samples) * 0.01
+    wave = np.sin(2 * np.pi * 1.1 * time) * np.exp(-(((time - 2) / 1.2) ** 2))
+    return Motion(4.0 * wave, 0.01, name, {})
+
+
+def data_of(html: str) -> dict:
+    return json.loads(re.search(r'id="live-data">(.*?)</script>', html, re.DOTALL)[1])
+
+
+def test_the_page_carries_motions_to_the_last_bit_and_bodies_as_given():
+    data = data_of(live_kernel(BODIES, [motion()]))
+    samples = np.frombuffer(base64.b64decode(data["motions"][0]["samples"]))
+    assert samples.tobytes() == motion().acceleration.tobytes()
+    assert [one["name"] for one in data["bodies"]] == list(BODIES)
+    assert data["bodies"][1]["pedestal"]["width"] == 0.5
+    assert data["bodies"][0]["pedestal"] is None
+
+
+def test_no_name_ends_the_script():
+    html = live_kernel(BODIES, [motion("</script><b>")])
+    assert html.count("</script>") == 2
+    assert "<b>" not in html
+
+
+def test_the_verdicts_are_those_of_the_table_it_is_given():
+    one = motion()
+    table = swept(BODIES, [one])
+    table["overturned"] = table["amplitude_g"] > 0.7
+    data = data_of(live_kernel(BODIES, [one], table, Start("figure", "wave")))
+    assert data["start"]["body"] == 0
+    assert data["start"]["amplitude"] == pytest.approx(0.7, rel=0.03)
+    expected = "".join("1" if g > 0.7 else "0" for g in data["amplitudes"])
+    assert data["verdicts"][0][0] == expected
+
+
+def test_without_a_table_the_amplitudes_are_tried():
+    one = motion()
+    table = swept(BODIES, [one])
+    own = table[table["configuration"] == "figure"]
+    scales = own["amplitude_g"].to_numpy() * 9.81 / one.pga
+    fell = overturns([STATUE], [one.acceleration], [one.dt], scales).overturned.ravel()
+    assert own["overturned"].to_numpy(dtype=bool).tolist() == fell.tolist()
+    assert 0 < fell.sum() < fell.size
+
+
+def test_a_page_carries_no_more_motions_than_it_has_room_for():
+    many = [motion(f"wave {number}", 3000) for number in range(40)]
+    assert sum(one.acceleration.size for one in carried(many)) <= MOST_SAMPLES
+    assert len(carried([motion("long", 2 * MOST_SAMPLES)])) == 1
+
+
+@pytest.mark.parametrize("theta", [0.2, -0.2])
+def test_a_block_is_drawn_on_the_edge_on_which_it_rocks(theta: float):
+    (corners,) = outlines(STATUE, [theta])
+    low = min(corners, key=lambda one: one.y)
+    assert low.y == pytest.approx(0, abs=1e-12)
+    assert low.x == pytest.approx(math.copysign(0.15, theta))
+    for a, b, length in zip(corners, corners[1:], (0.3, 1.2, 0.3), strict=False):
+        assert math.dist(a, b) == pytest.approx(length)
+
+
+@pytest.mark.parametrize("theta", [(0.1, 0.3), (0.1, -0.2), (-0.1, -0.4), (0.0, 0.2), (0.2, 0.2)])
+def test_a_statue_is_drawn_on_its_pedestal(theta: tuple[float, float]):
+    """The corner on which it rocks is on the pedestal's top, and no corner is below it."""
+    stack = BODIES["figure </script> on plinth"]
+    pedestal, statue = outlines(stack, theta)
+    along = pedestal[2].minus(pedestal[3])
+    heights = [
+        (along.x * (one.y - pedestal[3].y) - along.y * (one.x - pedestal[3].x)) / math.hypot(*along)
+        for one in statue
+    ]
+    assert min(heights) == pytest.approx(0, abs=1e-12)
+
+
+def test_frames_say_what_becomes_of_the_body():
+    one = motion()
+    drawing, words = frames_svg(STATUE, one, [0.05, 0.5, 2.0])
+    assert "at 0.050 g it stays at rest" in words
+    assert drawing.count("<polygon") == 3
+    assert "overturns at" in words or "rocks to" in words
+
+
+def test_the_played_page_is_small_and_the_same_every_time(tmp_path: Path):
+    one = motion(samples=MOST_PLAYED)
+    for name in ("a.html", "b.html"):
+        write_play_page(BODIES["figure"], one, tmp_path / name)
+    assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+    assert (tmp_path / "a.html").stat().st_size < 400_000
+    with pytest.raises(InputError, match="more than the"):
+        write_play_page(STATUE, motion(samples=MOST_PLAYED + 1), tmp_path / "c.html")
+    with pytest.raises(InputError, match="zero throughout"):
+        write_play_page(STATUE, Motion(np.zeros(100), 0.01, "still", {}), tmp_path / "c.html")
