@@ -2,6 +2,7 @@
 
 import errno
 import json
+import os
 import subprocess
 import sys
 import time
@@ -12,6 +13,7 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.stages.log import in_words, logged
 from rockfrag.stages.one_run import RUNS, only_run
+from rockfrag.stages.same_numbers import same_numbers
 
 from .test_run import ROOT
 
@@ -134,3 +136,51 @@ def test_a_run_killed_at_any_level_ends_in_the_same_bytes(study_folder: Path):
         wanted = wanted or found
         assert found == wanted
         subprocess.run(["rm", "-r", str(study_folder / "results")], check=True)
+
+
+def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch):
+    chosen = same_numbers({"GLIBC_TUNABLES": "glibc.malloc.check=1:glibc.cpu.hwcaps=-AVX2"})
+    assert chosen["GLIBC_TUNABLES"].startswith("glibc.malloc.check=1:glibc.cpu.hwcaps=-FMA,")
+    assert chosen["OPENBLAS_NUM_THREADS"] == "1"
+    program = "import numpy; print(numpy.show_config(mode='dicts')['SIMD Extensions'].get('found'))"
+    found = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        env={**os.environ, **chosen},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert found.stdout.strip() == "None"
+
+
+FOREIGN = {
+    "OPENBLAS_CORETYPE": "Haswell",
+    "NPY_DISABLE_CPU_FEATURES": "X86_V4",
+    "NUMBA_CPU_NAME": "generic",
+    "NUMBA_CPU_FEATURES": "",
+    "PYTHONHASHSEED": "77",
+    "TZ": "Asia/Tokyo",
+    "LC_ALL": "de_DE.UTF-8",
+    "OPENBLAS_NUM_THREADS": "2",
+}
+
+
+@pytest.mark.slow
+def test_the_same_bytes_on_other_processors_and_in_other_places(
+    study_folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    from .conftest import study_content, write_study
+    from .test_run import tables_of
+
+    (study_folder / "building.yaml").write_text((ROOT / "config" / "building.yaml").read_text())
+    content = {**study_content(), "building": "building.yaml"}
+    content["fragility"]["measures"] = ["pga_g", "pgv_cm_s", "sa_0_3s_g"]
+    write_study(study_folder, content)
+    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    found = []
+    for more in ({}, FOREIGN):
+        environment = {**os.environ, **more}
+        subprocess.run(command, cwd=study_folder, env=environment, capture_output=True, check=True)
+        found.append(tables_of(study_folder))
+        subprocess.run(["rm", "-r", str(study_folder / "results")], check=True)
+    assert found[0] == found[1]

@@ -12,6 +12,7 @@ from rockfrag.motions.checks import positive
 from rockfrag.motions.pulse_extraction import strongest_pulse
 from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
 from rockfrag.motions.spectra import response_spectrum
+from rockfrag.processes import in_processes
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
@@ -76,6 +77,7 @@ def measure_motions(
     motions: Iterable[Motion],
     periods: Sequence[float] = SPECTRAL_PERIODS,
     damping: float = 0.05,
+    processes: int = 1,
 ) -> pd.DataFrame:
     """Table of :func:`measure_motion`, a row per motion in the order given.
 
@@ -87,13 +89,15 @@ def measure_motions(
         Periods of the spectral measures [s].
     damping
         Damping of the spectral measures and of the Housner intensity [-].
+    processes
+        How many processes may measure at once; the table does not depend on it.
 
     Raises
     ------
     InputError
         If two motions have the same name, or as :func:`measure_motion`.
     """
-    rows = [measure_motion(motion, periods, damping) for motion in motions]
+    rows = in_processes(lambda one: measure_motion(one, periods, damping), motions, processes)
     table = pd.DataFrame(rows)
     if rows and table["name"].duplicated().any():
         twice = table.loc[table["name"].duplicated(), "name"].iloc[0]

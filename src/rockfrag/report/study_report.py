@@ -1,11 +1,11 @@
 """The report of a study: its parts in order, every figure drawn once, and one page."""
 
-import multiprocessing
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from rockfrag.figure_style import save_figure
 from rockfrag.files import write_text
+from rockfrag.processes import in_processes
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import Picture, read_picture, render
 from rockfrag.report.part import Answer, FigureSpec, Part, Results, Section
@@ -52,23 +52,8 @@ def write_report(
 
 def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int) -> dict[str, Picture]:
     """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
-    if processes == 1 or "fork" not in multiprocessing.get_all_start_methods():
-        return {spec.name: draw(spec, folder) for spec in specs}
-    global _waiting
-    _waiting = (specs, folder)
-    # a fork has the tables and the libraries already, and needs to pickle no drawing
-    with multiprocessing.get_context("fork").Pool(processes) as pool:
-        pool.map(_draw_waiting, range(len(specs)), chunksize=1)
-    return {spec.name: read_picture(spec, folder / f"{spec.name}.svg") for spec in specs}
-
-
-_waiting: tuple[Sequence[FigureSpec], Path] = ((), Path())
-"""What the processes of :func:`draw_all` draw."""
-
-
-def _draw_waiting(number: int) -> None:
-    specs, folder = _waiting
-    draw(specs[number], folder)
+    pictures = in_processes(lambda spec: draw(spec, folder).svg, specs, processes)
+    return {spec.name: Picture(spec, svg) for spec, svg in zip(specs, pictures, strict=True)}
 
 
 def draw(spec: FigureSpec, folder: Path) -> Picture:
@@ -89,7 +74,7 @@ def study_page(
     study = results.study
     return render(
         title=study.title,
-        lead=_lead(study),
+        lead=_lead(results),
         answer=answer,
         sections=sections,
         pictures=pictures,
@@ -102,8 +87,9 @@ def study_page(
     )
 
 
-def _lead(study: Study) -> str:
-    motions, events = len(study.catalogue), study.catalogue["event"].nunique()
+def _lead(results: Results) -> str:
+    study, motions = results.study, len(results.ground)
+    events = len({one.metadata.get("event") for one in results.ground})
     return (
         f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
         f"{counted(motions, 'record')} of {counted(events, 'earthquake')}"

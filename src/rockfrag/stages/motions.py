@@ -1,10 +1,18 @@
 """Motions: records read, processed, felt by the floors of a building, and measured."""
 
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import pandas as pd
+
+from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
+
+LEFT_OUT = "left_out"
+"""Table of what a study that keeps going has left out."""
 
 WRITTEN = "motions/written"
 """Folder of the motions of all floors in the format that a study asks for."""
@@ -12,28 +20,24 @@ WRITTEN = "motions/written"
 
 def run(job: Job[Study]) -> Results:
     """Yield the motions as read, on the ground and on every floor, and their intensity measures."""
-    from rockfrag.motions.directions import measure_records, motion_of_row
+    from rockfrag.motions.directions import measure_records
     from rockfrag.motions.measures import measure_motions
-    from rockfrag.motions.processing import process
 
     study = job.study
-    place = study.catalogue_file.parent, Path(RECORDS_FOLDER)
-    rows = [
-        {str(key): value for key, value in row.items()}
-        for row in study.catalogue.to_dict("records")
-    ]
-    records = [motion_of_row(row, *place) for row in rows]
+    rows, felt, left_out = _felt(job)
+    records = [one.record for one in felt]
     yield "motions/records", records
-    ground = [process(one, study.processing) for one in records]
-    yield "motions/ground", ground
-    floors = [floor for one in ground for floor in _floors(study, one)]
+    yield "motions/ground", [one.ground for one in felt]
+    floors = [floor for one in felt for floor in one.floors]
     yield "motions/floors", floors
+    if study.keep_going:
+        yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
     if study.write_motions is not None:
         from rockfrag.records.write import write_motions
 
         write_motions(floors, job.folder / WRITTEN, study.write_motions)
-    table = measure_motions(floors)
-    pairs = measure_records(rows, *place, study.processing)
+    table = measure_motions(floors, processes=job.threads)
+    pairs = measure_records(rows, *_place(study), study.processing)
     if len(pairs):
         # what no direction decides is known of the ground alone
         grounds = {
@@ -42,7 +46,47 @@ def run(job: Job[Study]) -> Results:
         pairs = pairs.assign(name=pairs["name"].map(grounds)).dropna(subset="name")
         table = table.merge(pairs, on="name", how="left")
     yield "measures", table
-    job.log.info("%d records, %d motions of floors", len(records), len(floors))
+    missing = f", {len(left_out)} left out" if left_out else ""
+    job.log.info("%d records%s, %d motions of floors", len(records), missing, len(floors))
+
+
+@dataclass(frozen=True)
+class _Felt:
+    """A record as read, as it shakes the ground, and as every floor feels it."""
+
+    record: Motion
+    ground: Motion
+    floors: list[Motion]
+
+
+def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict[str, str]]]:
+    """Rows of the catalogue, what became of each, and which were left out and why."""
+    from rockfrag.motions.directions import motion_of_row
+    from rockfrag.motions.processing import process
+
+    study = job.study
+    rows, felt, left_out = [], [], []
+    for row in study.catalogue.to_dict("records"):
+        named = {str(key): value for key, value in row.items()}
+        try:
+            record = motion_of_row(named, *_place(study))
+            if record.pga == 0:
+                raise InputError(f"{record.name}: the record is zero throughout; leave it out.")
+            ground = process(record, study.processing)
+            felt.append(_Felt(record, ground, _floors(study, ground)))
+            rows.append(named)
+        except InputError as error:
+            if not study.keep_going:
+                raise
+            left_out.append({"motion": str(named["name"]), "reason": str(error)})
+            job.log.warning("left out: %s", error)
+    if not felt:
+        raise InputError(f"{study.catalogue_file}: no record can be used; {left_out[0]['reason']}")
+    return rows, felt, left_out
+
+
+def _place(study: Study) -> tuple[Path, Path]:
+    return study.catalogue_file.parent, Path(RECORDS_FOLDER)
 
 
 def _floors(study: Study, ground: Motion) -> list[Motion]:
@@ -74,7 +118,9 @@ STAGE = Stage(
         "motions/ground.parquet",
         "motions/floors.parquet",
         "measures",
+        *([LEFT_OUT] if study.keep_going else []),
         *([] if study.write_motions is None else [f"{WRITTEN}/"]),
     ),
-    settings=("motions", "building", "write_motions"),
+    settings=("motions", "building", "write_motions", "keep_going"),
+    parallel=True,
 )

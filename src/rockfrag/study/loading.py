@@ -117,6 +117,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
             confidence=content["fragility"]["confidence"],
         ),
         compare_with=content.get("compare_with"),
+        keep_going=content.get("keep_going", False),
         write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
     )
@@ -183,6 +184,8 @@ def _check_names(study: Study) -> None:
 
 def _check_records_exist(study: Study) -> None:
     for path in study.own_records:
+        if study.keep_going and not path.exists():
+            continue
         check_file(path, f"{study.catalogue_file}: column file")
 
 

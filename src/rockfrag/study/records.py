@@ -10,7 +10,8 @@ def check_records(study: Study) -> list[str]:
 
     Returns
     -------
-    Warnings about accelerations that look as if they were in another unit.
+    Warnings about accelerations that look as if they were in another unit, and about records that a
+    study which keeps going will leave out.
 
     Raises
     ------
@@ -29,10 +30,13 @@ def check_records(study: Study) -> list[str]:
             motion = motion_of_row(
                 {str(k): v for k, v in row.items()}, folder, Path(RECORDS_FOLDER)
             )
+            if motion.pga == 0:
+                raise InputError("the record is zero throughout; leave it out.")
         except InputError as error:
-            raise InputError(f"{where}: {error}") from None
-        if motion.pga == 0:
-            raise InputError(f"{where}: the record is zero throughout; leave it out.")
+            if not study.keep_going:
+                raise InputError(f"{where}: {error}") from None
+            warnings.append(f"{where} will be left out: {error}")
+            continue
         if doubt := peak_warning(motion.pga):
             warnings.append(f"{where}: {doubt}.")
     return warnings

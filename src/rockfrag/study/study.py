@@ -59,6 +59,8 @@ class Study:
         Settings of the fragility curves.
     compare_with
         ``thesis`` if the study is compared with the thesis that these tests come from, or None.
+    keep_going
+        Whether records that cannot be used are left out, and said to be, instead of ending the study.
     write_motions
         Format in which the motions of all floors are written too, or None.
     more
@@ -82,6 +84,7 @@ class Study:
     protocol_step_percent: float
     fragility: FragilitySettings
     compare_with: str | None
+    keep_going: bool
     write_motions: str | None
     more: Supplementary
 
@@ -150,4 +153,5 @@ class Study:
         """Files that must exist before the records can be read, fetched ones under ``records``."""
         wheels = self.catalogue["source"].isin(list(WHEELS))
         fetched = [f"{records}/{name}/{PROVENANCE}" for name in self.catalogue["source"][wheels]]
-        return [*dict.fromkeys(fetched), *(str(path) for path in self.own_records)]
+        own = (path for path in self.own_records if path.exists() or not self.keep_going)
+        return [*dict.fromkeys(fetched), *(str(path) for path in own)]

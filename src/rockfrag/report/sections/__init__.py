@@ -9,6 +9,7 @@ from rockfrag.report.sections.comparisons import COMPARISONS
 from rockfrag.report.sections.explanation import EXPLANATION
 from rockfrag.report.sections.floor_curves import FLOOR_CURVES
 from rockfrag.report.sections.fragility import FRAGILITY
+from rockfrag.report.sections.left_out import LEFT_OUT
 from rockfrag.report.sections.measured import MEASURED
 from rockfrag.report.sections.measures import MEASURES
 from rockfrag.report.sections.motions import MOTIONS
@@ -17,6 +18,7 @@ from rockfrag.report.sections.shaker import SHAKER
 from rockfrag.report.sections.validity import VALIDITY
 
 PARTS: tuple[Part, ...] = (
+    LEFT_OUT,
     AS_RECORDED,
     AMPLITUDES,
     COMPARISONS,

@@ -1,0 +1,62 @@
+"""A study that keeps going leaves out what it cannot use, and says so everywhere."""
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from rockfrag.cli import main
+from rockfrag.processes import in_processes
+
+from .conftest import study_content, write_study
+from .test_run import snakemake
+
+
+@pytest.fixture
+def damaged(study_folder: Path) -> Path:
+    """A study with one record that is no record, one of zeros, and one that is not there."""
+    (study_folder / "record1.txt").write_text("Not a record.\n")
+    (study_folder / "record2.txt").write_text("0.00 0.0\n0.01 0.0\n0.02 0.0\n" * 3)
+    rows = "".join(f"{0.01 * i:.2f} 0.0\n" for i in range(100))
+    (study_folder / "record2.txt").write_text(rows)
+    (study_folder / "record3.txt").unlink()
+    return study_folder
+
+
+def test_without_the_key_the_first_bad_record_ends_the_study(
+    damaged: Path, capsys: pytest.CaptureFixture[str]
+):
+    assert main(["check-config", str(damaged / "study.yaml")]) == 2
+    assert "record3.txt" in capsys.readouterr().err
+
+
+def test_with_the_key_check_config_says_what_will_be_left_out(
+    damaged: Path, capsys: pytest.CaptureFixture[str]
+):
+    path = write_study(damaged, {**study_content(), "keep_going": True})
+    assert main(["check-config", str(path)]) == 0
+    said = capsys.readouterr().err
+    for number in (1, 2, 3):
+        assert f"motion {number} will be left out" in said
+
+
+def test_the_study_goes_on_and_says_what_is_missing(damaged: Path):
+    write_study(damaged, {**study_content(), "keep_going": True})
+    done = snakemake(damaged, "--cores", "2")
+    assert done.returncode == 0, done.stderr[-3000:]
+    results = damaged / "results" / "tiny"
+    left_out = pd.read_csv(results / "left_out.csv")
+    assert list(left_out["motion"]) == ["motion 1", "motion 2", "motion 3"]
+    assert left_out["reason"].str.len().min() > 20
+    tests = pd.read_csv(results / "tests.csv")
+    assert set(tests["motion"]) == {"motion 0_ground", "motion 4_ground", "motion 5_ground"}
+    report = (results / "report.html").read_text()
+    assert "3 of 6 records could not be used" in report
+    assert "under 3 records of 3 earthquakes" in report
+
+
+def test_work_in_several_processes_comes_back_in_order():
+    for processes in (1, 3):
+        assert in_processes(lambda x: x * x, list(range(20)), processes) == [
+            x * x for x in range(20)
+        ]
