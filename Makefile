@@ -50,6 +50,7 @@ format: .venv/installed
 
 fuzz: .venv/installed
 	@.venv/bin/python benchmarks/fuzz_records.py --mutations $(MUTATIONS)
+	@.venv/bin/python benchmarks/fuzz_inputs.py --mutations $(MUTATIONS)
 
 bench: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]"

@@ -1,5 +1,6 @@
 """Text that users wrote: one reader of files with errors that say what is wrong and how to mend it."""
 
+import codecs
 import os
 import re
 from pathlib import Path
@@ -102,7 +103,7 @@ def table_encoding(path: str | os.PathLike[str]) -> str:
         raise InputError(f"{source}: this is not a text file; save the table as CSV (UTF-8).")
     try:
         # a character may be cut at the end of what was read
-        start[: start.rfind(b"\n") + 1].decode("utf-8")
+        codecs.getincrementaldecoder("utf-8")().decode(start, final=len(start) < _START)
     except UnicodeDecodeError:
         return "cp1252"
     return "utf-8-sig"

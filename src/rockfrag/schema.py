@@ -19,6 +19,9 @@ from jsonschema.validators import extend
 from rockfrag.errors import InputError
 from rockfrag.units import other_names, quantity, split_name
 
+LARGEST_WHOLE = 2**53
+"""Up to here every whole number is exact as a float too, and fits into every file."""
+
 _Schema = Mapping[str, Any]
 
 
@@ -54,6 +57,10 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
         for key, value in _leaves(plain):
             if isinstance(value, float) and not math.isfinite(value):
                 raise InputError(f"key {key}: expected a finite number, found {value}.")
+            if isinstance(value, int) and abs(value) > LARGEST_WHOLE:
+                raise InputError(
+                    f"key {key}: expected a number of at most {LARGEST_WHOLE}, found a larger one."
+                )
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     found = sorted(_validator(name).iter_errors(plain), key=_importance)

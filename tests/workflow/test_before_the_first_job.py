@@ -368,3 +368,11 @@ def test_fetched_files_stay_in_the_folder(tmp_path: Path, capsys: pytest.Capture
     for name in ("/tmp/x.csv", "../../../../x.csv"):
         content["fetch"] = [{"url": "https://example.org/x", "sha256": digest, "file": name}]
         assert "outside of this folder" in said(capsys, write_study(tmp_path, content))
+
+
+def test_whole_numbers_beyond_all_files_are_refused(
+    study_folder: Path, capsys: pytest.CaptureFixture[str]
+):
+    assert "key seed: expected a number of at most" in said(
+        capsys, write_study(study_folder, {**study_content(), "seed": 10**300})
+    )

@@ -160,12 +160,17 @@ def read_titles(path: str | os.PathLike[str]) -> list[str]:
 
 def _head(path: str | os.PathLike[str], encoding: str) -> tuple[int, str]:
     """Return the number of comments, lines that start with ``#``, before the header, and the header."""
-    with open(path, encoding=encoding, newline="") as file:
-        comments = 0
-        for line in file:
-            if not line.startswith("#"):
-                return comments, line
-            comments += 1
+    comments = 0
+    try:
+        with open(path, encoding=encoding, newline="") as file:
+            for line in file:
+                if not line.startswith("#"):
+                    return comments, line
+                comments += 1
+    except UnicodeError as error:
+        raise InputError(
+            f"{Path(path).name}: is not text in one encoding; save the table as CSV (UTF-8)."
+        ) from error
     return comments, ""
 
 

@@ -457,6 +457,10 @@ def _poles(body: Block, restitution: Restitution, g: float) -> NDArray[np.void]:
     for at, pole in ((0, +1), (1, -1)):
         alpha, frequency, arm = body.critical_angle(pole), body.frequency(pole, g), body.arm(pole)
         swing, aside, radius = frequency * frequency, -pole * arm.x, body.radius(pole)
+        if not swing * alpha * alpha > 0:
+            raise InputError(
+                "body: lengths, mass and inertia are too far apart; check their units."
+            )
         # of the impact that ends rocking on this pole and comes down on the other
         e = body.momentum_restitution(pole) if measured is None else measured[1 - at]
         poles[at] = (

@@ -334,9 +334,18 @@ def fastest_frequency(body: Body, g: float) -> float:
 
 
 def slowest_frequency(body: Body, g: float) -> float:
-    """Smallest frequency parameter p of the ways in which the body rocks [1/s]."""
+    """Smallest frequency parameter p of the ways in which the body rocks [1/s].
+
+    Raises
+    ------
+    InputError
+        If it is too small for a number.
+    """
     blocks = (body,) if isinstance(body, Block) else (body.contact_statue, body.rigidly_joined())
-    return min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
+    slowest = min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
+    if not slowest > 0:
+        raise InputError("body: its frequency parameter p is 0; check lengths, mass and inertia.")
+    return slowest
 
 
 def free_samples(body: Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.schema import checked
+from rockfrag.study.paths import is_file
 from rockfrag.study.steps import Steps, checked_steps
 
 CAMPAIGN_KEY = "campaign"
@@ -180,7 +181,7 @@ def _kept(source: Path, number: int, name: str) -> Path:
 
 
 def _existing(source: Path, key: str, path: Path, fetched: set[Path]) -> Path:
-    if not path.is_file() and path not in fetched:
+    if not is_file(path) and path not in fetched:
         raise InputError(
             f"{source}: key {key}: there is no {path}; put the file there, name yours, or give its address "
             "and digest under fetch."

@@ -29,7 +29,7 @@ from rockfrag.study.measured_table import (
     is_measured_table,
     measured_table_from,
 )
-from rockfrag.study.paths import check_file, existing_file
+from rockfrag.study.paths import check_file, existing_file, is_file
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
@@ -184,7 +184,7 @@ def _check_names(study: Study) -> None:
 
 def _check_records_exist(study: Study) -> None:
     for path in study.own_records:
-        if study.keep_going and not path.exists():
+        if study.keep_going and not is_file(path):
             continue
         check_file(path, f"{study.catalogue_file}: column file")
 

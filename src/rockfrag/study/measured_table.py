@@ -8,6 +8,7 @@ from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.schema import checked
+from rockfrag.study.paths import is_file
 from rockfrag.tabular import read_cells
 
 TABLE_KEY = "table"
@@ -71,7 +72,7 @@ def measured_table_from(content: Mapping[str, Any], path: str | os.PathLike[str]
     source = Path(path)
     content = checked(content, "measured_table", str(source))
     table = Path(os.path.normpath(source.parent / content[TABLE_KEY]))
-    if not table.is_file():
+    if not is_file(table):
         raise InputError(
             f"{source}: key {TABLE_KEY}: there is no {table}; put a CSV file with one row per test "
             "there, or name yours."

@@ -28,6 +28,14 @@ def existing_file(source: Path, key: str, name: str) -> Path:
     return path
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; there is none where the name is too long for one."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
 def check_file(path: Path, where: str) -> None:
     """Check that a file exists and has a name that the workflow can use.
 
@@ -36,7 +44,7 @@ def check_file(path: Path, where: str) -> None:
     InputError
         Behind ``where``, what is wrong.
     """
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"{where}: expected an existing file, found no {path}.")
     if set("{}") & set(str(path)):
         raise InputError(

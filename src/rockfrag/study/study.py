@@ -13,6 +13,7 @@ from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
+from rockfrag.study.paths import is_file
 from rockfrag.study.supplementary import Supplementary
 
 GROUND = "ground"
@@ -153,5 +154,5 @@ class Study:
         """Files that must exist before the records can be read, fetched ones under ``records``."""
         wheels = self.catalogue["source"].isin(list(WHEELS))
         fetched = [f"{records}/{name}/{PROVENANCE}" for name in self.catalogue["source"][wheels]]
-        own = (path for path in self.own_records if path.exists() or not self.keep_going)
+        own = (path for path in self.own_records if is_file(path) or not self.keep_going)
         return [*dict.fromkeys(fetched), *(str(path) for path in own)]
