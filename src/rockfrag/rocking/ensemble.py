@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
