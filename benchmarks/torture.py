@@ -4,9 +4,9 @@
     python benchmarks/torture.py --kills 6 --only kills
 
 Each trial starts from the results of an undisturbed run, or from nothing, does what a machine or a person
-might do, and then gives the same command once more. It passes if that command ends well without any other step, all
-results have the bytes of the undisturbed run, and nothing lies outside of ``results`` and ``.snakemake`` that was
-not there before. Prints a table in Markdown; exit status 1 if a trial failed.
+might do, and then gives the same command once more. It passes if that command ends well without any other
+step, all results have the bytes of the undisturbed run, and nothing lies outside of ``results`` and
+``.snakemake`` that was not there before. Prints a table in Markdown; exit status 1 if a trial failed.
 """
 
 import argparse
