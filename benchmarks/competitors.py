@@ -95,8 +95,8 @@ def _box(name: str, block: Block, z: float) -> str:
     </body>"""
 
 
-def mujoco_model(body: Body, timestep: float, stiff: bool) -> object:
-    """Bodies in a vertical plane on a rough floor; friction is high, so nothing slides."""
+def mujoco_model(body: Body, timestep: float, stiff: bool, friction: float) -> object:
+    """Bodies in a vertical plane on a floor, with the same friction at every interface."""
     import mujoco
 
     blocks = [body] if isinstance(body, Block) else [body.pedestal, body.statue]
@@ -106,22 +106,28 @@ def mujoco_model(body: Body, timestep: float, stiff: bool) -> object:
     return mujoco.MjModel.from_xml_string(f"""
 <mujoco>
   <option timestep="{timestep}" cone="elliptic" impratio="100" gravity="0 0 -{G}"/>
-  <default><geom condim="3" friction="3 0.005 0.0001" {contact}/></default>
+  <default><geom condim="3" friction="{friction} 0.005 0.0001" {contact}/></default>
   <worldbody><geom type="plane" size="50 50 1"/>{boxes}</worldbody>
 </mujoco>""")
 
 
 def mujoco_verdict(
-    body: Body, acceleration: Array, dt: float, timestep: float = 1e-3, stiff: bool = True
+    body: Body,
+    acceleration: Array,
+    dt: float,
+    timestep: float = 1e-3,
+    stiff: bool = True,
+    friction: float = 3.0,
 ) -> bool:
     """MuJoCo, the ground's acceleration as a force on each body, rolled out in compiled code by the second.
 
-    ``stiff`` takes contacts as stiff as the step allows; MuJoCo's default is softer.
+    ``stiff`` takes contacts as stiff as the step allows; MuJoCo's default is softer.  With the friction of the
+    default nothing slides.
     """
     import mujoco
     from mujoco import rollout
 
-    model = mujoco_model(body, timestep, stiff)
+    model = mujoco_model(body, timestep, stiff, friction)
     data = mujoco.MjData(model)
     spec = mujoco.mjtState.mjSTATE_QFRC_APPLIED
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
