@@ -62,6 +62,7 @@ WORK = np.dtype(
         # one row per closed end and per interface that sticks
         ("row", F, (6, 6)),
         ("column", F, (6, 6)),
+        ("light", F, (6,)),
         ("matrix", F, (6, 7)),
         ("owner", INT, (6,)),  # 3 k + end, or 3 k + 2 for shear
         # a step: start, stages, interpolation
@@ -78,6 +79,11 @@ WORK = np.dtype(
         ("touching", INT, (2, 2)),
         ("moves", INT, (2,)),
         ("limit", F, (2,)),
+        ("arm", F, (8, 6)),  # normal and tangent of each touching end: motions along them per coordinate
+        ("free", F, (8,)),  # acceleration or velocity along these without any contact
+        ("give", F, (8, 8)),  # ... and what a unit force along one gives along the other
+        ("along", INT, (6,)),  # of each unknown of a mode: its row in the three above ...
+        ("rub", F, (6,)),  # ... and the share of the tangent after it that friction adds
         ("old_v", F, (6,)),
         ("old_closed", INT, (2, 2)),
         ("old_slides", INT, (2,)),

@@ -6,8 +6,16 @@ taken, or the one that violates its inequalities least (``docs/contact.md``, 5 t
 
 import math
 
-from rockfrag.rocking.contact._solve import bias, end_of, look_at, rate, solve
-from rockfrag.rocking.kernels.jit import kernel
+from rockfrag.rocking.contact._solve import (
+    bias,
+    eliminate,
+    end_of,
+    fill_row,
+    look_at,
+    rate,
+    solve,
+)
+from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
 
 CONSISTENT = 2e-13
 """Violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
@@ -75,38 +83,111 @@ def slip_speed(p, w, v, k, trial):
 
 
 @kernel
-def _violation(p, w, v, impact, force, motion):
-    """How far the mode in ``w`` is from consistent, in units of ``force`` and of ``motion``."""
-    worst = 0.0
+def _weigh(p, w, ah, av, impact):
+    """Fill what forces at the touching ends do to each other, which is the same in all modes."""
+    size = 3 * p.count
     for k in range(p.count):
-        pressed = 0.0
         for end in range(2):
             if w.touching[k, end] == 0:
                 continue
             x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
-            apart = rate(p, w.q, w.out, k, x, y, -ty, tx)
-            if not impact:
-                apart += bias(w.q, v, k, x, y, -ty, tx, kind)
-            if w.closed[k, end] == 1:
-                worst = max(worst, -w.normal[k, end] / force)
-                pressed += w.normal[k, end]
-                if not abs(apart) < UNSOLVED * motion:
-                    return math.inf
-            else:
-                worst = max(worst, -apart / motion)
-        if w.closed[k, 0] == 0 and w.closed[k, 1] == 0:
+            for turn in range(2):
+                dx, dy = (-ty, tx) if turn == 0 else (tx, ty)
+                row = 4 * k + 2 * end + turn
+                fill_row(p, w.q, k, x, y, dx, dy, w.arm[row])
+                total = 0.0 if impact else bias(w.q, w.v, k, x, y, dx, dy, kind)
+                for body in range(p.count):
+                    at = 3 * body
+                    if impact:
+                        total += w.arm[row, at] * w.v[at] + w.arm[row, at + 1] * w.v[at + 1]
+                        total += w.arm[row, at + 2] * w.v[at + 2]
+                    else:
+                        total -= w.arm[row, at] * ah + w.arm[row, at + 1] * (p.g + av)
+                w.free[row] = total
+    for row in range(4 * p.count):
+        if w.touching[row // 4, (row // 2) % 2] == 0:
             continue
-        if w.slides[k] == 0:
-            margin = (w.limit[k] * pressed - abs(w.shear[k])) / max(w.limit[k], 1.0)
+        for other in range(row + 1):
+            if w.touching[other // 4, (other // 2) % 2] == 0:
+                continue
+            total = 0.0
+            for d in range(size):
+                total += w.arm[row, d] * p.inverse[d] * w.arm[other, d]
+            w.give[row, other] = total
+            w.give[other, row] = total
+
+
+@kernel
+def _try_mode(p, w, impact, force, motion):
+    """How far the mode in ``w`` is from consistent, in units of ``force`` and of ``motion``; needs `_weigh`."""
+    m = 0
+    for k in range(p.count):
+        first = True
+        for end in range(2):
+            if w.closed[k, end] == 0:
+                continue
+            w.along[m] = 4 * k + 2 * end
+            w.rub[m] = -w.slides[k] * p.kinetic[k]
+            m += 1
+            if first and w.slides[k] == 0:
+                w.along[m] = 4 * k + 2 * end + 1
+                w.rub[m] = 0.0
+                m += 1
+            first = False
+    for i in range(m):
+        row = w.along[i]
+        for j in range(m):
+            w.matrix[i, j] = _gives(w, row, j)
+        w.matrix[i, 6] = -w.free[row]
+    if not eliminate(w.matrix, m):
+        return math.inf
+    worst = 0.0
+    at = 0
+    for k in range(p.count):
+        pressed, shear = 0.0, 0.0
+        slides = w.slides[k]
+        closed = -1
+        for end in range(2):
+            if w.touching[k, end] == 0:
+                continue
+            row = 4 * k + 2 * end
+            apart = w.free[row]
+            for j in range(m):
+                apart += _gives(w, row, j) * w.matrix[j, 6]
+            if w.closed[k, end] == 0:
+                worst = max(worst, -apart / motion)
+                continue
+            if not abs(apart) < UNSOLVED * motion:
+                return math.inf
+            worst = max(worst, -w.matrix[at, 6] / force)
+            pressed += w.matrix[at, 6]
+            at += 1
+            if closed < 0:
+                closed = end
+                if slides == 0:
+                    shear = w.matrix[at, 6]
+                    at += 1
+        if closed < 0:
+            continue
+        if slides == 0:
+            margin = (w.limit[k] * pressed - abs(shear)) / max(w.limit[k], 1.0)
             worst = max(worst, -margin / force)
         elif impact or w.moves[k] == 0:
-            end = 0 if w.closed[k, 0] == 1 else 1
-            x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
-            along = rate(p, w.q, w.out, k, x, y, tx, ty)
-            if not impact:
-                along += bias(w.q, v, k, x, y, tx, ty, kind)
-            worst = max(worst, -w.slides[k] * along / motion)
+            row = 4 * k + 2 * closed + 1
+            speed = w.free[row]
+            for j in range(m):
+                speed += _gives(w, row, j) * w.matrix[j, 6]
+            worst = max(worst, -slides * speed / motion)
     return worst
+
+
+@inlined_kernel
+def _gives(w, row, unknown):
+    """What unit of an unknown force gives along a row of ``w.give``."""
+    at = w.along[unknown]
+    if w.rub[unknown] == 0.0:
+        return w.give[row, at]
+    return w.give[row, at] + w.rub[unknown] * w.give[row, at + 1]
 
 
 @kernel
@@ -137,6 +218,7 @@ def _search(p, w, ah, av, impact, force, motion, exclude):
     -------
     The violation of the mode found; its solution is in ``w``.
     """
+    _weigh(p, w, ah, av, impact)
     touch0 = w.touching[0, 0] + 2 * w.touching[0, 1]
     touch1 = w.touching[1, 0] + 2 * w.touching[1, 1] if p.count > 1 else 0
     best = math.inf
@@ -162,10 +244,9 @@ def _search(p, w, ah, av, impact, force, motion, exclude):
                         _set_interface(w, 1, code1, way1)
                         if exclude and _is_mode(p, w, w.old_closed, w.old_slides):
                             continue
-                        if not solve(p, w, w.q, w.v, ah, av, impact):
-                            continue
-                        wrong = _violation(p, w, w.v, impact, force, motion)
+                        wrong = _try_mode(p, w, impact, force, motion)
                         if wrong <= CONSISTENT:
+                            solve(p, w, w.q, w.v, ah, av, impact)
                             return wrong
                         if wrong < best:
                             best = wrong
@@ -198,6 +279,16 @@ def approach(p, w, k, end):
 
 
 @kernel
+def _only_touching(p, w):
+    """Whether all closed ends of the mode still touch."""
+    for k in range(p.count):
+        for end in range(2):
+            if w.closed[k, end] == 1 and w.touching[k, end] == 0:
+                return False
+    return True
+
+
+@kernel
 def settle(p, w, ah, av, exclude):
     """Find the mode in which the touching ends go on; False if none is consistent."""
     for k in range(p.count):
@@ -216,9 +307,11 @@ def settle(p, w, ah, av, exclude):
             w.closed[k, 0] = w.old_closed[k, 0]
             w.closed[k, 1] = w.old_closed[k, 1]
             w.slides[k] = w.old_slides[k]
-        solve(p, w, w.q, w.v, ah, av, False)
-        old = _violation(p, w, w.v, False, p.weight, p.g)
+        old = math.inf
+        if _only_touching(p, w):
+            old = _try_mode(p, w, False, p.weight, p.g)
         if old < wrong:
+            solve(p, w, w.q, w.v, ah, av, False)
             wrong = old
         else:
             w.closed[0, 0], w.closed[0, 1] = now_closed[0], now_closed[1]

@@ -97,7 +97,7 @@ def bias(q, v, k, x, y, dx, dy, kind):
 
 
 @inlined_kernel
-def _fill(p, q, k, x, y, dx, dy, row):
+def fill_row(p, q, k, x, y, dx, dy, row):
     row[3 * k] = dx
     row[3 * k + 1] = dy
     row[3 * k + 2] = dx * (y - q[3 * k + 1]) - dy * (x - q[3 * k])
@@ -105,7 +105,7 @@ def _fill(p, q, k, x, y, dx, dy, row):
         row[3 * k - 3] = -dx
         row[3 * k - 2] = -dy
         row[3 * k - 1] = dy * (x - q[3 * k - 3]) - dx * (y - q[3 * k - 2])
-    elif p.count > 1:
+    else:
         row[3] = 0.0
         row[4] = 0.0
         row[5] = 0.0
@@ -125,8 +125,12 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     -------
     Whether the equations had a solution.
     """
+    if p.count == 1 and not impact:
+        return _solve_lone(p, w, q, v, ah, av)
+    stands = w.closed[0, 0] == 1 and w.closed[0, 1] == 1 and w.slides[0] == 0
+    if stands and not impact and not (w.closed[1, 0] == 1 and w.closed[1, 1] == 1):
+        return _solve_statue(p, w, q, v, ah, av)
     m = 0
-    size = 3 * p.count
     for k in range(p.count):
         friction = w.slides[k] * p.kinetic[k] if rough else 0.0
         first = True
@@ -134,19 +138,19 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
             if w.closed[k, end] == 0:
                 continue
             x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
-            _fill(p, q, k, x, y, -ty, tx, w.row[m])
+            fill_row(p, q, k, x, y, -ty, tx, w.row[m])
             w.owner[m] = 3 * k + end
             right = -bias(q, v, k, x, y, -ty, tx, kind) if not impact else 0.0
             if w.slides[k] != 0:
-                _fill(p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
+                fill_row(p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
             else:
-                for d in range(size):
+                for d in range(6):
                     w.column[m, d] = w.row[m, d]
             w.matrix[m, 6] = right
             m += 1
             if first and w.slides[k] == 0:
-                _fill(p, q, k, x, y, tx, ty, w.row[m])
-                for d in range(size):
+                fill_row(p, q, k, x, y, tx, ty, w.row[m])
+                for d in range(6):
                     w.column[m, d] = w.row[m, d]
                 w.owner[m] = 3 * k + 2
                 w.matrix[m, 6] = -bias(q, v, k, x, y, tx, ty, kind) if not impact else 0.0
@@ -166,15 +170,17 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
         w.shear[k] = 0.0
     for i in range(m):
         total = w.matrix[i, 6]
-        for d in range(size):
+        for d in range(6):
             total -= w.row[i, d] * w.out[d]
         w.matrix[i, 6] = total
+        for d in range(6):
+            w.light[d] = w.row[i, d] * p.inverse[d]
         for j in range(m):
             total = 0.0
-            for d in range(size):
-                total += w.row[i, d] * p.inverse[d] * w.column[j, d]
+            for d in range(6):
+                total += w.light[d] * w.column[j, d]
             w.matrix[i, j] = total
-    if not _eliminate(w.matrix, m):
+    if not eliminate(w.matrix, m):
         return False
     for i in range(m):
         force = w.matrix[i, 6]
@@ -185,13 +191,106 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
         else:
             w.normal[k, end] = force
             w.shear[k] -= w.slides[k] * p.kinetic[k] * force
-        for d in range(size):
+        for d in range(6):
             w.out[d] += p.inverse[d] * w.column[i, d] * force
     return True
 
 
 @kernel
-def _eliminate(a, m):
+def _solve_lone(p, w, q, v, ah, av):
+    """Accelerations and forces of a lone block, whose equations are solved by hand: those of :func:`solve`."""
+    fx, fy = -ah, -(p.g + av)
+    turn = v[2]
+    light, slow = p.inverse[0], p.inverse[2]
+    slides = w.slides[0]
+    w.normal[0, 0] = 0.0
+    w.normal[0, 1] = 0.0
+    push, shear, twist = 0.0, 0.0, 0.0
+    if w.closed[0, 0] == 1 and w.closed[0, 1] == 1:
+        left, _, _, _, _, _, _ = end_of(p, w, q, 0, 0, 1)
+        right, y, _, _, _, _, _ = end_of(p, w, q, 0, 1, 1)
+        rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
+        push = -fy / light
+        shear = -slides * p.kinetic[0] * push if slides != 0 else -fx / light
+        # no turning: N0 rx0 + N1 rx1 = T ry
+        w.normal[0, 1] = (shear * ry - push * rx0) / (rx1 - rx0)
+        w.normal[0, 0] = push - w.normal[0, 1]
+    elif w.closed[0, 0] == 1 or w.closed[0, 1] == 1:
+        end = 0 if w.closed[0, 0] == 1 else 1
+        x, y, _, _, _, _, _ = end_of(p, w, q, 0, end, 1)
+        rx, ry = x - q[0], y - q[1]
+        across = light + rx * rx * slow
+        both = -rx * ry * slow
+        need = turn * turn * ry - fy
+        if slides != 0:
+            push = need / (across - slides * p.kinetic[0] * both)
+            shear = -slides * p.kinetic[0] * push
+        else:
+            along = light + ry * ry * slow
+            also = turn * turn * rx - fx
+            whole = across * along - both * both
+            push = (need * along - also * both) / whole
+            shear = (also * across - need * both) / whole
+        w.normal[0, end] = push
+        twist = ry * shear - rx * push
+    w.shear[0] = shear
+    w.out[0] = fx + shear * light
+    w.out[1] = fy + push * light
+    w.out[2] = twist * slow
+    return True
+
+
+@kernel
+def _solve_statue(p, w, q, v, ah, av):
+    """Accelerations and forces where the pedestal stands and the statue does not: those of :func:`solve`."""
+    fx, fy = -ah, -(p.g + av)
+    light, slow = p.inverse[3], p.inverse[5]
+    w.normal[1, 0] = 0.0
+    w.normal[1, 1] = 0.0
+    w.shear[1] = 0.0
+    pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0
+    if w.closed[1, 0] == 1 or w.closed[1, 1] == 1:
+        end = 0 if w.closed[1, 0] == 1 else 1
+        x, y, tx, ty, _, _, kind = end_of(p, w, q, 1, end, w.kind[1, end])
+        rx, ry = x - q[3], y - q[4]
+        # arms of normal (-ty, tx) and tangent (tx, ty)
+        one, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        across = light + one * one * slow
+        both = one * two * slow
+        need = ty * fx - tx * fy - bias(q, v, 1, x, y, -ty, tx, kind)
+        if w.slides[1] != 0:
+            push = need / (across - w.slides[1] * p.kinetic[1] * both)
+            shear = -w.slides[1] * p.kinetic[1] * push
+        else:
+            along = light + two * two * slow
+            also = -tx * fx - ty * fy - bias(q, v, 1, x, y, tx, ty, kind)
+            whole = across * along - both * both
+            push = (need * along - also * both) / whole
+            shear = (also * across - need * both) / whole
+        w.normal[1, end] = push
+        w.shear[1] = shear
+        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        twist = one * push + two * shear
+        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+    left, _, _, _, _, _, _ = end_of(p, w, q, 0, 0, 1)
+    right, y, _, _, _, _, _ = end_of(p, w, q, 0, 1, 1)
+    rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
+    shear = pull_x - p.mass[0] * fx
+    push = pull_y - p.mass[0] * fy
+    w.normal[0, 1] = (shear * ry + moment - push * rx0) / (rx1 - rx0)
+    w.normal[0, 0] = push - w.normal[0, 1]
+    w.shear[0] = shear
+    w.out[0] = 0.0
+    w.out[1] = 0.0
+    w.out[2] = 0.0
+    w.out[3] = fx + pull_x * light
+    w.out[4] = fy + pull_y * light
+    w.out[5] = twist * slow
+    return True
+
+
+@kernel
+def eliminate(a, m):
     """Solve m equations whose right-hand side is column 6, in place; False if they are singular."""
     for i in range(m):
         best = i
