@@ -119,45 +119,45 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
     return rows
 
 
-def friction_rows(kind: str, set_: Cases, quick: bool) -> list[dict[str, object]]:
+def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, object]]:
     """Rows of bodies that may slide, with the same friction at every interface: the package and MuJoCo.
 
-    Each body has its own coefficient, from 0.2 to 0.8.  Verdicts are held against those at a tenth of the step,
-    on the same cases for both.
+    Each body has its own coefficient, from 0.2 to 0.8.  Verdicts are held against those at a tenth of the step.
     """
-    mus = np.random.default_rng(5).uniform(0.2, 0.8, len(set_.bodies)).tolist()
-    chosen = list(set_.each(20 if quick else 200))
+    bodies = whole.bodies[:: 1 + len(whole.bodies) // 10]
+    set_ = Cases(bodies, whole.accelerations, whole.scales[:, :: 1 + whole.scales.shape[1] // 4])
+    mus = np.random.default_rng(5).uniform(0.2, 0.8, len(bodies)).tolist()
 
-    def verdicts(step: float) -> list[bool]:
-        found = []
-        for (i, _, _), body, values in chosen:
-            answer = overturns(body, values, set_.dt, friction=[mus[i]], step=step, threads=1)
-            found.append(bool(answer.overturned[0, 0, 0]))
-        return found
+    def verdicts(step: float = STEP) -> np.ndarray:
+        return overturns(
+            bodies, set_.accelerations, set_.dt, set_.scales, friction=mus, step=step, threads=1
+        ).overturned
 
-    finest = verdicts(0.01)
-    seconds = cpu_seconds(lambda: verdicts(STEP), 3)
-    wrong = sum(one != other for one, other in zip(verdicts(STEP), finest, strict=True))
-    count = len(chosen)
-    rows = [row(kind, f"{SLIDING}, rockfrag", count, seconds, wrong, count / seconds)]
+    finest = verdicts(0.1 * STEP)
+    seconds = cpu_seconds(verdicts, 3)
+    wrong = int((verdicts() != finest).sum())
+    own = set_.count / seconds
+    rows = [row(kind, f"{SLIDING}, rockfrag", set_.count, seconds, wrong, own)]
     try:
         import mujoco  # noqa: F401
     except ImportError:
         return rows
-    wrong, theirs, own, runs = 0, 0.0, 0.0, 0
-    for n, (((i, _, _), body, values), right) in enumerate(zip(chosen, finest, strict=True)):
+    wrong, theirs, ours, runs = 0, 0.0, 0.0, 0
+    count = min(set_.count, 20 if quick else 200)
+    for n, (at, body, values) in enumerate(set_.each(count)):
         if n % max(1, count // 4) == 0:
-            own += cpu_seconds(lambda: verdicts(STEP), 1)
+            ours += cpu_seconds(verdicts, 1)
             runs += 1
         found: list[bool] = []
         theirs += cpu_seconds(
-            lambda b=body, a=values, f=found, mu=mus[i]: f.append(
+            lambda b=body, a=values, f=found, mu=mus[at[0]]: f.append(
                 mujoco_verdict(b, a, set_.dt, friction=mu)
             ),
             1,
         )
-        wrong += found[0] != right
-    rows.append(row(kind, f"{SLIDING}, MuJoCo 1 ms", count, theirs, wrong, runs * count / own))
+        wrong += found[0] != finest[at]
+    own = runs * set_.count / ours
+    rows.append(row(kind, f"{SLIDING}, MuJoCo 1 ms", count, theirs, wrong, own))
     return rows
 
 
