@@ -79,7 +79,11 @@ WORK = np.dtype(
         ("touching", INT, (2, 2)),
         ("moves", INT, (2,)),
         ("limit", F, (2,)),
-        ("arm", F, (8, 6)),  # normal and tangent of each touching end: motions along them per coordinate
+        (
+            "arm",
+            F,
+            (8, 6),
+        ),  # normal and tangent of each touching end: motions along them per coordinate
         ("free", F, (8,)),  # acceleration or velocity along these without any contact
         ("give", F, (8, 8)),  # ... and what a unit force along one gives along the other
         ("along", INT, (6,)),  # of each unknown of a mode: its row in the three above ...
