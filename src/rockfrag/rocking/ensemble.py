@@ -38,7 +38,7 @@ from rockfrag.rocking.kernels.jit import compiling_alone
 from rockfrag.rocking.kernels.lanes import block, stack_case
 from rockfrag.rocking.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
 from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
-from rockfrag.rocking.kernels.record import EVENT, SAMPLE
+from rockfrag.rocking.kernels.record import EVENT, SAMPLE, SUMMARY
 from rockfrag.rocking.measured_restitution import Restitution, lone_restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
 from rockfrag.units import GRAVITY
@@ -75,6 +75,11 @@ class EnsembleResult:
         without friction.
     peak_slip_ground, peak_slip_interface
         Largest displacement either way [m].
+    lost_contact
+        With ``forces``, as in :class:`Response` [s]; NaN otherwise.
+    friction_demand, least_normal_force
+        With ``forces``, as in :class:`Response` [-] and [N], shape (bodies, motions, scales, 2): of (ground,
+        interface), of a lone block of the ground alone; NaN otherwise.
     scales
         Factors on the motions, shape (motions, scales).
     """
@@ -92,6 +97,9 @@ class EnsembleResult:
     slip_interface: Array
     peak_slip_ground: Array
     peak_slip_interface: Array
+    lost_contact: Array
+    friction_demand: Array
+    least_normal_force: Array
     scales: Array
 
     def table(self) -> pd.DataFrame:
@@ -99,7 +107,8 @@ class EnsembleResult:
 
         Columns: ``body``, ``motion`` (positions in the lists given), ``scale`` and every attribute of that
         shape, with its unit in the name: ``overturning_time_s``, ``peak_velocity_rad_s``,
-        ``slip_ground_m``.
+        ``slip_ground_m``; with ``forces`` also ``friction_demand_ground``, ``friction_demand_interface``,
+        ``least_normal_force_ground_n`` and ``least_normal_force_interface_n``.
         """
         shape = self.overturned.shape
         body = np.arange(shape[0])[:, np.newaxis, np.newaxis]
@@ -110,8 +119,12 @@ class EnsembleResult:
         columns |= {
             name + units.get(name, ""): values
             for name, values in vars(self).items()
-            if name != "scales"
+            if name != "scales" and values.ndim == len(shape)
         }
+        if not np.isnan(self.friction_demand).all():
+            for k, place in enumerate(("ground", "interface")):
+                columns[f"friction_demand_{place}"] = self.friction_demand[..., k]
+                columns[f"least_normal_force_{place}_n"] = self.least_normal_force[..., k]
         return pd.DataFrame(
             {name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()}
         )
@@ -157,6 +170,7 @@ def overturns(
     linear: bool = False,
     friction: float | Sequence[FrictionInput] | None = None,
     vertical: MotionLike | Sequence[MotionLike] | None = None,
+    forces: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -185,6 +199,8 @@ def overturns(
         One entry per body, each as in :func:`simulate`, or one number for all; None: nothing slides.
     vertical
         Vertical accelerations, upwards [m/s²], one for each motion and sampled as it; they are scaled with it.
+    forces
+        Also tell the friction that the responses asked, and least normal forces; not with friction.
     g
         Acceleration of gravity [m/s²].
     step
@@ -200,9 +216,9 @@ def overturns(
 
     Notes
     -----
-    Cases with a start of their own, or with linearised equations, are marched one by one as :func:`simulate`
-    does, which follows every impact and takes some ten times as long; a fall is then certain when a block lies
-    down.  With friction or vertical motion a block has also fallen when it has left the edge of its pedestal.
+    Cases with a start of their own, with linearised equations or with ``forces`` are marched one by one as
+    :func:`simulate` does, which follows every impact and takes some ten times as long; a fall is then certain
+    when a block lies down.  With friction a block has also fallen when it has left the edge of its pedestal.
     """
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)
@@ -224,7 +240,8 @@ def overturns(
         return result
     if not result.overturned.size:
         return result
-    if checked_switch("linear", linear) or theta0 is not None or omega0 is not None:
+    alone = checked_switch("linear", linear) or checked_switch("forces", forces)
+    if alone or theta0 is not None or omega0 is not None:
         starts = [
             initial_state(body, *start)
             for body, *start in zip(
@@ -234,7 +251,10 @@ def overturns(
                 strict=True,
             )
         ]
-        _fill(result, np.arange(len(body_list)), _one_by_one(setting, given, starts, linear))
+        found, marched = _one_by_one(setting, given, starts, linear)
+        _fill(result, np.arange(len(body_list)), found)
+        if forces:
+            _fill_forces(result, body_list, marched)
         return result
     for kind, march in ((Block, _blocks), (Stack, _stacks)):
         rows = [i for i, body in enumerate(body_list) if isinstance(body, kind)]
@@ -260,6 +280,9 @@ def _empty_result(factors: Array, n_bodies: int) -> EnsembleResult:
         slip_interface=np.zeros(shape),
         peak_slip_ground=np.zeros(shape),
         peak_slip_interface=np.zeros(shape),
+        lost_contact=np.full(shape, np.nan),
+        friction_demand=np.full((*shape, 2), np.nan),
+        least_normal_force=np.full((*shape, 2), np.nan),
         scales=factors,
     )
 
@@ -298,14 +321,17 @@ def _fill_with_friction(result: EnsembleResult, setting: _Setting, standing: Sta
         getattr(result, f"peak_slip_{place}")[:] = found["peak_slip"][..., k]
 
 
-def _one_by_one(setting: _Setting, given: _Bodies, starts: list[np.void], linear: bool) -> _Found:
-    """Verdicts of bodies as single histories give them, of which nothing else is kept."""
+def _one_by_one(
+    setting: _Setting, given: _Bodies, starts: list[np.void], linear: bool
+) -> tuple[_Found, NDArray[np.void]]:
+    """Verdicts and summaries of bodies as single histories give them, of which nothing else is kept."""
     g, dts, factors = setting.g, setting.dts, setting.factors
     records = [
         body_record(body, e, linear, g)
         for body, e in zip(given.bodies, given.restitution, strict=True)
     ]
     outcomes = np.zeros((len(records), *factors.shape), OUTCOME)
+    summaries = np.zeros(outcomes.shape, SUMMARY)
     nothing = np.empty(0, SAMPLE), np.empty(0, EVENT)
 
     def work(place: tuple[int, int, int]) -> None:
@@ -320,10 +346,23 @@ def _one_by_one(setting: _Setting, given: _Bodies, starts: list[np.void], linear
             summary["speed2"] * dt, summary["closest"], summary["impacts"],
             summary["given_way"],
         )  # fmt: skip
+        summaries[place] = summary
 
     with ThreadPoolExecutor(setting.threads) as pool:
         list(pool.map(work, np.ndindex(*outcomes.shape)))
-    return outcomes, np.broadcast_to(dts[:, np.newaxis], (len(records), len(dts), 1))
+    return (outcomes, np.broadcast_to(dts[:, np.newaxis], (len(records), len(dts), 1))), summaries
+
+
+def _fill_forces(result: EnsembleResult, bodies: list[Body], summaries: NDArray[np.void]) -> None:
+    """Write what cases have asked of their contacts into the result."""
+    result.lost_contact[:] = summaries["lost_contact"]
+    asked = summaries["demand"]
+    for i, body in enumerate(bodies):
+        # a lone block is the kernels' block 2
+        numbers = ("2",) if isinstance(body, Block) else ("1", "2")
+        for k, number in enumerate(numbers):
+            result.friction_demand[i, ..., k] = asked[i]["friction" + number]
+            result.least_normal_force[i, ..., k] = asked[i]["normal" + number]
 
 
 def _march(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Block, Body, Vector
+from rockfrag.rocking.kernels.elementary import hypot
 from rockfrag.rocking.kernels.jit import compiling_alone
 from rockfrag.rocking.kernels.record import fill_sines
 
@@ -84,20 +85,21 @@ def contact_forces(
     theta: Array,
     omega: Array,
     alpha: Array,
-    g: float,
+    gravity: Array,
 ) -> tuple[Array, Array]:
     """Normal and friction force of each interface on what stands on it.
 
     Parameters
     ----------
-    ground
-        Ground acceleration [m/s²], shape (n,).
+    ground, gravity
+        Ground acceleration, and gravity with the ground's upward acceleration [m/s²], shape (n,).
     state, theta, omega, alpha
         As in :class:`Response`, shape (n, blocks).
 
     Returns
     -------
-    Normal force (up) and friction force (to the right) [N], each of shape (n, blocks).
+    Normal force and friction force across and along the face that carries, up and to the right [N], each of
+    shape (n, blocks).
     """
     normal = np.zeros_like(theta)
     friction = np.zeros_like(theta)
@@ -111,7 +113,7 @@ def contact_forces(
             rows = (state[:, 0] == pole) | (state[:, 0] == 0) & (pole == 1)
             ax, ay = _acceleration(body.arm(pole), turning(rows, 0))
             friction[rows, 0] = body.mass * (ground[rows] + ax)
-            normal[rows, 0] = body.mass * (g + ay)
+            normal[rows, 0] = body.mass * (gravity[rows] + ay)
         return normal, friction
     m1, m2 = body.pedestal.mass, body.statue.mass
     for one in (+1, -1):
@@ -123,7 +125,15 @@ def contact_forces(
             xd, yd = _acceleration(body.reach(one, two), first)
             x2, y2 = _acceleration(body.statue_arm(two), second)
             friction[rows, 1] = m2 * (ground[rows] + xd + x2)
-            normal[rows, 1] = m2 * (g + yd + y2)
+            normal[rows, 1] = m2 * (gravity[rows] + yd + y2)
             friction[rows, 0] = friction[rows, 1] + m1 * (ground[rows] + x1)
-            normal[rows, 0] = normal[rows, 1] + m1 * (g + y1)
+            normal[rows, 0] = normal[rows, 1] + m1 * (gravity[rows] + y1)
+    # of the interface so far upright and level: the pedestal's top turns with it
+    along = body.interface_pole(+1).minus(body.interface_pole(-1))
+    length = hypot(along.x, along.y)
+    tx = (along.x * cosine[:, 0] + along.y * sine[:, 0]) / length
+    ty = (along.y * cosine[:, 0] - along.x * sine[:, 0]) / length
+    across = tx * normal[:, 1] - ty * friction[:, 1]
+    friction[:, 1] = tx * friction[:, 1] + ty * normal[:, 1]
+    normal[:, 1] = across
     return normal, friction

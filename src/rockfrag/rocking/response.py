@@ -96,8 +96,17 @@ class Response:
         and ``lost_interface`` (in impacts so far), with friction ``lost_friction``, and ``residual``, which is
         zero but for rounding.
     normal_force, friction_force
-        Forces of each interface on the block above it [N], shape (n, blocks); with friction across and along the
-        face that carries.
+        Forces of each interface on the block above it, across and along the face that carries [N], shape (n,
+        blocks).
+    friction_demand
+        Largest |T| / N that the response asked of each interface [-], shape (blocks,): by forces and by impulses,
+        between samples too, until the last time that the block which falls was on this side of its balance.
+        Infinite where a normal force was not positive.  With friction, by the forces at the samples.
+    least_normal_force
+        Least normal force of each interface until then [N], shape (blocks,).
+    lost_contact
+        When a normal force first was none [s], NaN if they pushed throughout: the body would have jumped, and
+        what follows is beyond pure rocking.  NaN with friction, where flight is among the modes.
     impacts, grazings
         Numbers of impacts, and of contacts that met with less than 1e-3 rad/s.
     paradoxes, forced
@@ -107,8 +116,9 @@ class Response:
         Number of impacts in which the law of a measured restitution had to give way, lest energy grow.
     closest_approach
         Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
-        p times it for the velocity); a small number means that the verdict was close to flipping.  NaN once a
-        block has slid or flown.
+        p times it for the velocity).  A verdict with a small one hangs on little; a large one promises nothing,
+        since impacts and chaos decide too (see :func:`rockfrag.rocking.sureness.verdict_sureness`).  NaN once
+        a block has slid or flown.
     """
 
     body: Body
@@ -128,6 +138,9 @@ class Response:
     energy: pd.DataFrame
     normal_force: NDArray[np.float64]
     friction_force: NDArray[np.float64]
+    friction_demand: NDArray[np.float64]
+    least_normal_force: NDArray[np.float64]
+    lost_contact: float
     impacts: int
     grazings: int
     paradoxes: int
@@ -159,17 +172,11 @@ class Response:
         names = [mode_name(int((c - s) // 3), int(s)) for c, s in zip(known, slides, strict=True)]
         return np.asarray(np.array(names)[which.reshape(codes.shape)])
 
-    @property
-    def least_normal_force(self) -> NDArray[np.float64]:
-        """Least normal force at each interface [N], shape (blocks,); ≤ 0: the block would have jumped."""
-        return np.asarray(self.normal_force.min(axis=0))
 
-    @property
-    def friction_demand(self) -> NDArray[np.float64]:
-        """Largest |T| / N that the model silently assumes at each interface [-], shape (blocks,).
-
-        Infinite where the normal force was not positive.
-        """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.abs(self.friction_force) / self.normal_force
-        return np.asarray(np.where(self.normal_force > 0, ratio, np.inf).max(axis=0))
+def sampled_demand(
+    normal: NDArray[np.float64], friction: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the largest |T| / N of each interface over the samples, infinite where N is not positive."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.abs(friction) / normal
+    return np.asarray(np.where(normal > 0, ratio, np.inf).max(axis=0))

@@ -30,6 +30,7 @@ from rockfrag.rocking.kernels.record import (
     CHATTER,
     CLOSING,
     EVENT,
+    LIFTING,
     OPENING,
     SAMPLE,
     SUMMARY,
@@ -42,7 +43,7 @@ from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 
-KINDS = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter"}
+KINDS = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
 """What the kinds of events are called."""
 
 
@@ -192,11 +193,11 @@ def _response(
         for name in ("theta", "omega", "alpha", "c")
     )
     samples, dt = shaking.samples, shaking.dt
-    ground = np.zeros(n)
+    ground, gravity = np.zeros(n), np.full(n, float(record["gravity"]))
     ground[: min(n, samples.size)] = samples[:n]
-    normal, friction = contact_forces(
-        body, ground, state, theta, omega, alpha, float(record["gravity"])
-    )
+    up = shaking.vertical[:n]
+    gravity[: up.size] += gravity[: up.size] * up
+    normal, friction = contact_forces(body, ground, state, theta, omega, alpha, gravity)
     time = np.arange(n, dtype=np.float64) * dt
     fallen = int(summary["fallen"])
     return Response(
@@ -222,6 +223,9 @@ def _response(
         paradoxes=0,
         forced=0,
         given_way=int(summary["given_way"]),
+        friction_demand=np.array([summary["demand"]["friction" + block] for block in blocks]),
+        least_normal_force=np.array([summary["demand"]["normal" + block] for block in blocks]),
+        lost_contact=float(summary["lost_contact"]),
         closest_approach=float(summary["closest"]),
     )
 

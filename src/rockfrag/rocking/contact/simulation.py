@@ -1,5 +1,6 @@
 """One body, one motion, with friction, flight and vertical motion."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,7 +33,7 @@ from rockfrag.rocking.inputs import (
 )
 from rockfrag.rocking.kernels.jit import compiling_alone
 from rockfrag.rocking.kernels.single import GRAZING_SPEED
-from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name
+from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -127,6 +128,9 @@ def simulate_with_friction(
         impacts=int(work["impacts"]),
         grazings=_grazings(table),
         given_way=0,
+        friction_demand=sampled_demand(history[:, 14 : 14 + blocks], history[:, 16 : 16 + blocks]),
+        least_normal_force=np.asarray(history[:, 14 : 14 + blocks].min(axis=0)),
+        lost_contact=math.nan,
         paradoxes=int(work["paradoxes"]),
         forced=int(work["forced"]),
         closest_approach=float("nan"),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rockfrag.rocking.kernels.demand import DEMAND, add_demand, ask_forces, no_demand
 from rockfrag.rocking.kernels.elementary import hypot, sin_cos
 from rockfrag.rocking.kernels.equations import (
     STATE,
@@ -17,7 +18,7 @@ from rockfrag.rocking.kernels.equations import (
     statue_balance,
 )
 from rockfrag.rocking.kernels.jit import entry_kernel, inlined_kernel, kernel
-from rockfrag.rocking.kernels.roots import slope, value
+from rockfrag.rocking.kernels.roots import NEVER, bend, slope, value
 
 SUMMARY = np.dtype(
     [
@@ -33,6 +34,9 @@ SUMMARY = np.dtype(
         ("work", np.float64),  # of the ground acceleration on the moving body [J]
         ("events", np.int64),
         ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
+        ("lost_contact", np.float64),  # when a normal force first was none [s], NaN if it never was
+        ("demand", DEMAND),  # until the fall is certain
+        ("beyond", DEMAND),  # since a block has last passed balance
     ],
     align=True,
 )  # fmt: skip
@@ -59,8 +63,8 @@ EVENT = np.dtype(
 )  # fmt: skip
 """A change of the contact state."""
 
-OPENING, CLOSING, CHATTER = 0, 1, 2
-"""Kinds of events."""
+OPENING, CLOSING, CHATTER, LIFTING = 0, 1, 2, 3
+"""Kinds of events; a contact that lifts would have to pull as a whole, and the march goes on as if it did."""
 
 BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
 """A way to balance: critical angle [rad] and squared frequency parameter [1/s²]."""
@@ -85,6 +89,9 @@ def begin(state, summary):
     summary.fallen, summary.fall_time = 0, math.nan
     summary.impacts, summary.grazings, summary.events, summary.given_way = 0, 0, 0, 0
     summary.closest, summary.work = math.inf, 0.0
+    summary.lost_contact = math.nan
+    no_demand(summary.demand)
+    no_demand(summary.beyond)
     summary.ratio1, summary.ratio2 = 0.0, 0.0
     summary.peak1, summary.speed1 = abs(state.theta1), abs(state.omega1)
     summary.peak2, summary.speed2 = abs(state.theta2), abs(state.omega2)
@@ -142,7 +149,13 @@ def _peak(angle, end, theta, rate_at_end, h):
 
 @kernel
 def track(balances, state, series, end, h, summary):
-    """Update peaks and the closest approach to an unstable equilibrium after a step that ends in a state."""
+    """Update peaks and the closest approach to an unstable equilibrium after a step that ends in a state.
+
+    Returns
+    -------
+    Whether a block is beyond its balance then.
+    """
+    ratio1, ratio2 = 0.0, 0.0
     theta1, theta2 = state.theta1, state.theta2
     omega1, omega2 = state.omega1, state.omega2
     summary.peak1 = max(summary.peak1, _peak(series.one.angle, end, theta1, omega1, h))
@@ -151,11 +164,50 @@ def track(balances, state, series, end, h, summary):
     summary.speed2 = max(summary.speed2, abs(omega2))
     c1, c2 = state.c1, state.c2
     if c2 != 0:
-        ratio = _approach(balances[_way_of_statue(c2)], c2, theta2, omega2, summary)
-        summary.ratio2 = max(summary.ratio2, ratio)
+        ratio2 = _approach(balances[_way_of_statue(c2)], c2, theta2, omega2, summary)
+        summary.ratio2 = max(summary.ratio2, ratio2)
     if c1 != 0:
-        ratio = _approach(balances[_way_of_pedestal(c1, c2)], c1, theta1, omega1, summary)
-        summary.ratio1 = max(summary.ratio1, ratio)
+        ratio1 = _approach(balances[_way_of_pedestal(c1, c2)], c1, theta1, omega1, summary)
+        summary.ratio1 = max(summary.ratio1, ratio1)
+    return ratio1 >= 1.0 or ratio2 >= 1.0
+
+
+@kernel
+def note_demand(body, step, series, end, work, summary):
+    """Note what the forces of a step ask of its contacts, up to an instant ``end`` that its state has reached.
+
+    A step is looked at in its middle and at its end, and at its beginning if the contacts have just changed;
+    between them forces are nearly parabolas, and steps are short.  What is asked beyond balance counts only if the
+    block comes back.
+
+    Returns
+    -------
+    Time in the step at which a normal force first was none; NEVER if they push, or beyond balance.
+    """
+    state, trial = work.state, work.trial
+    # what has come back from beyond balance was not yet a fall
+    inside = not work.beyond[0]
+    demand = summary.demand if inside else summary.beyond
+    if inside:
+        add_demand(summary.demand, summary.beyond)
+        no_demand(summary.beyond)
+    lifts = NEVER
+    least = math.inf
+    one, two = series.one.angle, series.two.angle
+    per = 1.0 / (step.length * step.length)
+    trial.c1, trial.c2 = state.c1, state.c2
+    for part in range(3):
+        tau = 0.5 * part * end
+        trial.theta1, trial.omega1 = value(one, tau), slope(one, tau) / step.length
+        trial.theta2, trial.omega2 = value(two, tau), slope(two, tau) / step.length
+        trial.ground, trial.gravity = step.ground + step.rise * tau, step.gravity + step.lift * tau
+        before = least
+        least = ask_forces(body, trial, bend(one, tau) * per, bend(two, tau) * per, demand)
+        if least <= 0.0 and lifts == NEVER and inside:
+            # a straight line between the two
+            share = before / (before - least) if part > 0 else 0.0
+            lifts = tau if part == 0 else tau - 0.5 * end * (1.0 - share)
+    return lifts
 
 
 @kernel

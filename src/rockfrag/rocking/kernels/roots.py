@@ -32,6 +32,15 @@ def slope(q, tau):
     return total
 
 
+@inlined_kernel
+def bend(q, tau):
+    """Evaluate d²q/dτ²."""
+    total = ORDER * (ORDER - 1) * q[ORDER]
+    for k in range(ORDER - 1, 1, -1):
+        total = total * tau + k * (k - 1) * q[k]
+    return total
+
+
 # --------------------------------------------------------------------------- may a contact have closed?
 
 

@@ -22,6 +22,7 @@ from rockfrag.rocking.kernels.contact_states import (
     release,
     settle,
 )
+from rockfrag.rocking.kernels.demand import add_demand, ask_impulses, no_demand
 from rockfrag.rocking.kernels.equations import (
     STATE,
     accelerations,
@@ -35,12 +36,14 @@ from rockfrag.rocking.kernels.record import (
     BALANCE,
     CHATTER,
     CLOSING,
+    LIFTING,
     OPENING,
     begin,
     copy_state,
     fill_balances,
     keep_event,
     keep_sample,
+    note_demand,
     track,
     work_of,
 )
@@ -91,12 +94,17 @@ class Scratch(NamedTuple):
     series: Any
     restoring: Any
     balances: Any
+    beyond: Any  # (1,) whether a block is beyond its balance
 
 
 def scratch() -> Scratch:
     """Memory for one march."""
     return Scratch(
-        *np.zeros(3, STATE), np.zeros(1, SERIES)[0], np.zeros(1, RESTORING)[0], np.zeros(8, BALANCE)
+        *np.zeros(3, STATE),
+        np.zeros(1, SERIES)[0],
+        np.zeros(1, RESTORING)[0],
+        np.zeros(8, BALANCE),
+        np.zeros(1, np.bool_),
     )
 
 
@@ -129,6 +137,7 @@ def march(body, shaking, initial, history, events, summary, work):
     state.c1, state.c2 = settle(body, state)
     fill_balances(body, work.balances)
     fill_restoring(body, work.restoring, work.trial)
+    work.beyond[0] = False
     if len(history) > 0:
         keep_sample(body, state, history[0], 0.0)
     done = 1
@@ -145,6 +154,9 @@ def march(body, shaking, initial, history, events, summary, work):
             summary.fallen = 1 if lying1 and not body.fixed else 2
             summary.fall_time = (done - 1) * shaking.dt
             break
+        if not work.beyond[0]:
+            add_demand(summary.demand, summary.beyond)
+            no_demand(summary.beyond)
         if k >= n - 1 and state.c1 == 0 and state.c2 == 0:
             break
     return done
@@ -185,8 +197,12 @@ def _through_sample(body, shaking, k, events, summary, work):
             at = min(1.0, when)
             moves = state.c1 != 0 or state.c2 != 0
             _move(state, series, at, step.length)
+            lifts = note_demand(body, step, series, at, work, summary)
+            if lifts != NEVER and math.isnan(summary.lost_contact):
+                summary.lost_contact = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
+                keep_event(body, summary.lost_contact, LIFTING, state, state, events, summary)
             if moves:
-                track(work.balances, state, series, at, step.length, summary)
+                work.beyond[0] = track(work.balances, state, series, at, step.length, summary)
                 summary.work += work_of(body, state.c1, state.c2, series, at, step)
             tau += at * remaining
             if when > 1.0:
@@ -210,8 +226,21 @@ def _through_sample(body, shaking, k, events, summary, work):
                 closes = closes1, closes2
                 kind, gave_way = land(body, state, closes, work.restoring, ahead, HISTORY, forced)
                 summary.given_way += gave_way
+                demand = summary.beyond if work.beyond[0] else summary.demand
+                # of a series of impacts that is ended at once, its first one asks as all do
+                after = state if kind == CLOSING else _struck(body, before, closes, work.trial)
+                ask_impulses(body, before, after, demand)
             clock = (k + (sub + tau) / substeps) * shaking.dt
             keep_event(body, clock, kind, before, state, events, summary)
+
+
+@kernel
+def _struck(body, before, closes, after):
+    """Fill the state after an impact that nothing else has ended, and return it."""
+    copy_state(before, after)
+    n1, n2, w1, w2, _ = impact(body, before, closes[0], closes[1])
+    after.c1, after.c2, after.omega1, after.omega2 = n1, n2, w1, w2
+    return after
 
 
 @kernel
