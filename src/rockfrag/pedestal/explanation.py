@@ -6,6 +6,7 @@ pair, tested over events as everywhere else.
 """
 
 import itertools
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
@@ -72,6 +73,24 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
     choices = [result["p_bh"] < 0.05, result["p_equivalence"] < 0.05, result["p_bh"].isna()]
     result["judgement"] = np.select(choices, [CHANGES, SAME, ""], OPEN)
     return result
+
+
+def where_laws_agree(effects: pd.DataFrame, laws: Mapping[str, tuple[str, str]]) -> pd.DataFrame:
+    """Leave a judgement open where the laws of one departure do not all give it.
+
+    Parameters
+    ----------
+    effects
+        As :func:`explain` returns them.
+    laws
+        Departure and law of each factor that has several.
+    """
+    known = effects[effects["factor"].isin(laws) & (effects["judgement"] != "")]
+    base = known["factor"].map(lambda factor: laws[factor][0])
+    kinds = known.groupby([base, known["level"], known["floor"]])["judgement"].transform("nunique")
+    judgement = effects["judgement"].copy()
+    judgement.loc[kinds.index[kinds > 1]] = OPEN
+    return effects.assign(judgement=judgement)
 
 
 def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:

@@ -19,7 +19,7 @@ from rockfrag.pedestal.mass_bias import ratio_bias
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.rocking.measured_restitution import LAWS, Law, MeasuredRestitution, Restitution
 
 Floats = NDArray[np.float64]
 
@@ -67,8 +67,9 @@ def factor_cases(
         The ideal stack; its statue is the lone object.
     levels
         Any of ``statue_restitution``, ``interface_restitution``, ``ground_restitution`` (factors on
-        the restitution that conserves momentum), ``pedestal_lean_deg``, ``statue_offset_mm``,
-        ``statue_cg_offset_mm``, ``pedestal_width_cm``; others are left alone.
+        the restitution that conserves momentum; once by each law that differs, see `LAW_OF`),
+        ``pedestal_lean_deg``, ``statue_offset_mm``, ``statue_cg_offset_mm``, ``pedestal_width_cm``; others
+        are left alone.
 
     Raises
     ------
@@ -77,8 +78,11 @@ def factor_cases(
     """
     cases = []
     for factor in DEPARTURES:
-        for level in levels.get(factor, ()):
-            cases.append(departed_case(object_name, stack, {factor: level}))
+        base, law = LAW_OF.get(factor, (factor, LAWS[0]))
+        for level in levels.get(base, ()):
+            # below what momentum leaves, the law of the couple is that of position
+            if law != "couple" or level > 1:
+                cases.append(departed_case(object_name, stack, {factor: level}))
     return cases
 
 
@@ -118,19 +122,20 @@ def departed_case(object_name: str, stack: Stack, departures: Mapping[str, float
         setup.alone,
         None
         if setup.ground is None and setup.interface is None
-        else (setup.ground, setup.interface),
+        else MeasuredRestitution((setup.ground, setup.interface), setup.law),
     )
 
 
 @dataclass(frozen=True)
 class Setup:
-    """What stands on the table, and its restitutions: of the lone object, the pedestal, the interface."""
+    """What stands on the table; restitutions of the lone object, the pedestal, the interface; their law."""
 
     lone: Block
     stack: Stack
     alone: float | None = None
     ground: float | None = None
     interface: float | None = None
+    law: Law = LAWS[0]
 
 
 def _restitution(block: Block, factor: float) -> float:
@@ -179,15 +184,35 @@ def _pedestal_width(setup: Setup, centimetres: float) -> Setup:
     return replace(setup, stack=replace(setup.stack, pedestal=pedestal))
 
 
-DEPARTURES: Mapping[str, Callable[[Setup, float], Setup]] = {
+Change = Callable[[Setup, float], Setup]
+"""What a level of a factor does to what stands on the table."""
+
+_RESTITUTIONS: Mapping[str, Change] = {
+    "statue_restitution": _statue_restitution,
+    "interface_restitution": _interface_restitution,
+    "ground_restitution": _ground_restitution,
+}
+
+LAW_OF: Mapping[str, tuple[str, Law]] = {
+    name if law == LAWS[0] else f"{name}_{law}": (name, law)
+    for name in _RESTITUTIONS
+    for law in LAWS
+}
+"""What a factor of restitution varies, and the law by which stacks follow it."""
+
+
+def _by_law(factor: str) -> Change:
+    base, law = LAW_OF[factor]
+    return lambda setup, level: replace(_RESTITUTIONS[base](setup, level), law=law)
+
+
+DEPARTURES: Mapping[str, Change] = {
     # shapes before restitutions, which are factors on what the shapes give
     "pedestal_lean_deg": _pedestal_lean,
     "statue_offset_mm": _statue_offset,
     "statue_cg_offset_mm": _statue_cg_offset,
     "pedestal_width_cm": _pedestal_width,
-    "statue_restitution": _statue_restitution,
-    "interface_restitution": _interface_restitution,
-    "ground_restitution": _ground_restitution,
+    **{factor: _by_law(factor) for factor in LAW_OF},
 }
 """How each mechanical factor changes what stands on the table, by its name."""
 

@@ -20,6 +20,7 @@ from rockfrag.motions.scaling import factors_to_pga, scale
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
 
@@ -59,12 +60,13 @@ class Variant:
 
 @dataclass(frozen=True)
 class Specimen:
-    """One configuration on the table: names of object and configuration, ``P`` or ``NP``, the body."""
+    """One configuration on the table: names of object and configuration, ``P`` or ``NP``, body, restitution."""
 
     configuration: str
     object: str
     pedestal: str
     body: Body
+    restitution: Restitution = None
 
 
 def building_variants(
@@ -190,6 +192,7 @@ class _Ground:
             [motion.acceleration],
             motion.dt,
             factors_to_pga(motion, self.amplitudes_g),
+            restitution=[specimen.restitution for specimen in self.specimens],
             threads=self.threads,
         )
         bodies = np.array(["", "pedestal", "statue"])

@@ -64,10 +64,12 @@ def explanation_tables(
         One row per factor, level, object and motion: ``factor``, ``level`` (text), ``reference``,
         ``object``, ``event``, ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g``, ``ratio``.
     effects
-        See :func:`rockfrag.pedestal.explanation.explain`, levels in rising order.
+        See :func:`rockfrag.pedestal.explanation.explain`, levels in rising order; restitution once by each
+        law, and judged only where these agree.
     """
-    from rockfrag.pedestal.explanation import explain
+    from rockfrag.pedestal.explanation import explain, where_laws_agree
     from rockfrag.pedestal.simulated_explanation import (
+        LAW_OF,
         Case,
         case_ratios,
         factor_cases,
@@ -106,7 +108,7 @@ def explanation_tables(
         parts.append(table.assign(factor="step_percent", level=step))
     parts.append(mass_error_rows(ideal, stacks, settings.table_mass_kg))
     ratios = with_references(pd.concat(parts, ignore_index=True), ideal)
-    return ratios, _in_order(explain(ratios))
+    return ratios, _in_order(where_laws_agree(explain(ratios), LAW_OF))
 
 
 def _asks_for_an_effect(study: Study) -> bool:
@@ -135,7 +137,13 @@ def inversion_table(
     have none.
     """
     from rockfrag.pedestal.inversion import NEUTRAL, invert
-    from rockfrag.pedestal.simulated_explanation import DEPARTURES, case_ratios, departed_case
+    from rockfrag.pedestal.simulated_explanation import (
+        DEPARTURES,
+        LAW_OF,
+        case_ratios,
+        departed_case,
+    )
+    from rockfrag.rocking.measured_restitution import LAWS
 
     settings = study.more.explanation
     if settings is None or not settings.wanted_percent:
@@ -147,6 +155,9 @@ def inversion_table(
     if len(widths) == 1:
         neutral["pedestal_width_cm"] = 100 * widths.pop()
     step = float(np.log1p(study.protocol_step_percent / 100))
+    # restitution by the first law; what it finds is judged beside the others
+    other_laws = [factor for factor, (_, law) in LAW_OF.items() if law != LAWS[0]]
+    ratios = ratios[~ratios["factor"].isin(other_laws)]
     table = invert(ratios, wanted, study.floors, neutral, step)
     together = table[table["factor_1"].isin(DEPARTURES) & table["factor_2"].isin(DEPARTURES)]
     ladder = protocol_of(study).amplitudes()

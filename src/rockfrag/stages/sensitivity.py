@@ -18,7 +18,8 @@ def run(job: Job[Study]) -> Results:
     settings = read_yaml(study.building_file)
     variants = building_variants(settings, study.more.sensitivity, str(study.building_file))
     specimens = [
-        Specimen(one.name, one.object, one.label, one.body) for one in study.configurations
+        Specimen(one.name, one.object, one.label, one.body, one.restitution)
+        for one in study.configurations
     ]
     tests = building_sensitivity(
         variants,

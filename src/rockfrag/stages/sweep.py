@@ -75,6 +75,7 @@ def sweep(
         [motion.acceleration for motion in motions],
         [motion.dt for motion in motions],
         scales,
+        restitution=[configuration.restitution],
         threads=threads,
     )
     each = len(values)
@@ -127,6 +128,7 @@ def as_recorded(
         [motion.acceleration for motion in motions],
         [motion.dt for motion in motions],
         np.tile(NEAR, (len(motions), 1)),
+        restitution=[configuration.restitution],
         threads=threads,
     )
     itself = len(NEAR) // 2

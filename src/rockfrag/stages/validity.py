@@ -33,14 +33,14 @@ def validity_table(
     from rockfrag.motions.scaling import scale_to_pga
     from rockfrag.rocking import simulate
 
-    bodies = {one.name: one.body for one in configurations}
+    by_name = {one.name: one for one in configurations}
     known = tests[tests["amplitude_g"].notna()]
     rows = []
     for test in known.to_dict("records"):
         motion = motions[test["motion"]]
         shaken = scale_to_pga(motion, test["amplitude_g"])
-        body = bodies[test["configuration"]]
-        response = simulate(body, shaken.acceleration, shaken.dt)
+        one = by_name[test["configuration"]]
+        response = simulate(one.body, shaken.acceleration, shaken.dt, restitution=one.restitution)
         rows.append(
             (
                 float(np.max(response.friction_demand)),

@@ -1,12 +1,15 @@
 """The bodies of a study: a table of blocks and a table of which block stands on which."""
 
 import os
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.plausibility import check_density
 from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.body_record import body_record
+from rockfrag.rocking.measured_restitution import Law, Measured, MeasuredRestitution, Restitution
 from rockfrag.tabular import Row, read_rows
 
 
@@ -22,12 +25,15 @@ class Configuration:
         Names of the blocks; ``pedestal`` is empty where the object stands on the ground.
     body
         What the mechanics see.
+    restitution
+        What was measured of its impacts, as :func:`rockfrag.rocking.simulate` takes it; None conserves momentum.
     """
 
     name: str
     object: str
     pedestal: str
     body: Body
+    restitution: Restitution = None
 
     @property
     def label(self) -> str:
@@ -130,3 +136,31 @@ def read_configurations(
 def each_alone(blocks: dict[str, Block]) -> list[Configuration]:
     """Every block as an object that stands alone."""
     return [Configuration(name, name, "", block) for name, block in blocks.items()]
+
+
+def with_restitution(
+    configuration: Configuration, measured: Mapping[str, Measured], law: Law
+) -> Configuration:
+    """Return a configuration whose blocks come off impacts as was measured of each alone.
+
+    Parameters
+    ----------
+    measured
+        Ratio of angular velocities [-], or two of impacts that end on the right and on the left corner, by block;
+        a block that is not named conserves momentum.
+    law
+        How a stack follows it.
+
+    Raises
+    ------
+    InputError
+        If a block would gain energy.
+    """
+    of_object = measured.get(configuration.object)
+    of_pedestal = measured.get(configuration.pedestal)
+    if of_object is None and (of_pedestal is None or not configuration.pedestal):
+        return configuration
+    value = (of_pedestal, of_object) if configuration.pedestal else of_object
+    restitution = MeasuredRestitution(value, law)  # type: ignore[arg-type]
+    body_record(configuration.body, restitution)
+    return replace(configuration, restitution=restitution)

@@ -15,6 +15,8 @@ from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.records.catalogue import read_catalogue
+from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.measured_restitution import LAWS
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
@@ -23,6 +25,7 @@ from rockfrag.study.configurations import (
     each_alone,
     read_configurations,
     read_specimens,
+    with_restitution,
 )
 from rockfrag.study.measured_table import (
     MeasuredTable,
@@ -109,7 +112,9 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         specimens_file=specimens_file,
         configurations_file=configurations_file,
         specimens=specimens,
-        configurations=_chosen(source, known, bodies.get("use")),
+        configurations=_measured(
+            source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
+        ),
         amplitudes=_amplitudes(source, content["amplitudes"]),
         protocol_step_percent=float(content["protocol"]["step_percent"]),
         fragility=FragilitySettings(
@@ -158,6 +163,30 @@ def _chosen(
                 f"{', '.join(by_name)}, found {name}."
             )
     return tuple(by_name[name] for name in names) if names is not None else tuple(known)
+
+
+def _measured(
+    source: Path,
+    chosen: Sequence[Configuration],
+    specimens: Mapping[str, Block],
+    content: Mapping[str, Any] | None,
+) -> tuple[Configuration, ...]:
+    """Return the configurations with what the study says of their impacts."""
+    if content is None:
+        return tuple(chosen)
+    key = f"{source}: key bodies.restitution"
+    measured = {}
+    for name, value in content["blocks"].items():
+        if name not in specimens:
+            raise InputError(
+                f"{key}.blocks: expected names of the specimens {', '.join(specimens)}, found {name}."
+            )
+        measured[name] = tuple(value) if isinstance(value, list) else value
+    law = content.get("law", LAWS[0])
+    try:
+        return tuple(with_restitution(one, measured, law) for one in chosen)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from error
 
 
 def _check_names(study: Study) -> None:

@@ -15,7 +15,7 @@ from rockfrag.figure_style import (
     figure_style,
     new_figure,
 )
-from rockfrag.pedestal.simulated_explanation import REFERENCE
+from rockfrag.pedestal.simulated_explanation import LAW_OF, REFERENCE
 from rockfrag.report.figures.amplitudes import BAND, GREY, MARKERS
 from rockfrag.report.figures.effects import NONE, ratio_axis
 from rockfrag.report.findings import ratio_text
@@ -28,6 +28,12 @@ FACTORS = {
     "statue_restitution": ("Object's restitution everywhere", "× {}"),
     "interface_restitution": ("Object's restitution on the pedestal", "× {}"),
     "ground_restitution": ("Pedestal's restitution", "× {}"),
+    "statue_restitution_couple": ("Object's restitution everywhere, by a couple", "× {}"),
+    "interface_restitution_couple": ("Object's restitution on the pedestal, by a couple", "× {}"),
+    "ground_restitution_couple": ("Pedestal's restitution, by a couple", "× {}"),
+    "statue_restitution_ratio": ("Object's restitution everywhere, as a ratio", "× {}"),
+    "interface_restitution_ratio": ("Object's restitution on the pedestal, as a ratio", "× {}"),
+    "ground_restitution_ratio": ("Pedestal's restitution, as a ratio", "× {}"),
     "pedestal_lean_deg": ("Pedestal leans", "{}°"),
     "statue_offset_mm": ("Object off the pedestal's middle", "{} mm"),
     "statue_cg_offset_mm": ("Object's centre of gravity off its middle", "{} mm"),
@@ -72,8 +78,10 @@ def _section(results: Results) -> Section | None:
     whole = departures(effects)
     if whole.empty:
         return None
-    clear = whole[(whole["ratio"] > NONE[1]) | (whole["ratio"] < NONE[0])]
-    small = len(whole) - len(clear)
+    beyond = (whole["ratio"] > NONE[1]).astype(int) - (whole["ratio"] < NONE[0]).astype(int)
+    differ = _laws_differ(whole, beyond)
+    clear = whole[(beyond != 0) & ~differ]
+    small = int((beyond == 0).sum())
     words = (
         f"{sentence(of_all(small, len(whole), 'departure'))} {'leaves' if small == 1 else 'leave'} the "
         "mean ratio P/NP within ±10 %."
@@ -81,6 +89,12 @@ def _section(results: Results) -> Section | None:
     if len(clear):
         strong = [f"{row['name']} {ratio_text(row)}" for row in clear.to_dict("records")]
         words += f" Beyond: {listed(strong)}."
+    if differ.any():
+        unclear = [f"{row['name']} {ratio_text(row)}" for row in whole[differ].to_dict("records")]
+        words += (
+            " No conclusion where the laws of impact, which a measured restitution leaves open, differ: "
+            f"{listed(unclear)}."
+        )
     rows = whole.to_dict("records")
     shown = whole.assign(
         ratio_text=[ratio_text(row) for row in rows],
@@ -106,6 +120,12 @@ def _section(results: Results) -> Section | None:
         ],
         [figure, table_html(shown, _COLUMNS, "Ratio P/NP over all floors.")],
     )
+
+
+def _laws_differ(whole: pd.DataFrame, beyond: pd.Series) -> pd.Series:
+    """Whether the laws of a departure do not agree on which side of ±10 % its ratio is."""
+    base = whole["factor"].map(lambda factor: LAW_OF.get(factor, (factor, ""))[0])
+    return beyond.groupby([base, whole["level"]]).transform("nunique") > 1
 
 
 def _name(row: Mapping[Hashable, Any]) -> str:
