@@ -48,7 +48,11 @@ def test_an_interface_that_takes_more_energy_acts_like_a_lone_object_that_does(m
     rows = case_ratios(factor_cases("T2", ROCK, {"interface_restitution": (0.9,)}), motions, LADDER)
     lone = Case("lone", 0.0, "T2", TOWER, ROCK, lossy, (None, lossy))
     alike = case_ratios([lone], motions, LADDER)
-    assert rows["p_g"].to_numpy() == pytest.approx(alike["np_g"].to_numpy(), abs=0, nan_ok=True)
+    # on so heavy a pedestal by every law
+    for _, by_law in rows.groupby("factor"):
+        assert by_law["p_g"].to_numpy() == pytest.approx(
+            alike["np_g"].to_numpy(), abs=0, nan_ok=True
+        )
 
 
 def test_mass_that_is_not_counted_scales_every_ratio_by_the_masses(motions):

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rockfrag.rocking.simulation import simulate
     from rockfrag.rocking.spectra import RockingSpectrum, rocking_spectrum
     from rockfrag.rocking.step_sensitivity import FragileVerdicts, fragile_verdicts
+    from rockfrag.rocking.sureness import verdict_sureness
     from rockfrag.rocking.thresholds import Thresholds, find_thresholds
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "simulate",
     "stream_histories",
     "stream_overturns",
+    "verdict_sureness",
 ]
 
 _HOMES = {
@@ -59,6 +61,7 @@ _HOMES = {
     "simulation": ("simulate",),
     "spectra": ("RockingSpectrum", "rocking_spectrum"),
     "step_sensitivity": ("FragileVerdicts", "fragile_verdicts"),
+    "sureness": ("verdict_sureness",),
     "thresholds": ("Thresholds", "find_thresholds"),
 }
 
