@@ -3,6 +3,7 @@
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make torture  a small study killed, starved and misused; make fuzz damaged inputs (MUTATIONS=1000000)
+# make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
 # Paths are relative throughout, so the checkout may stand anywhere, spaces included.
@@ -16,7 +17,7 @@ RUN := .venv/bin/python -m
 # what failed has said so in a sentence; make, which would add three lines, dies of a closed pipe instead
 QUIETLY := || { kill -PIPE $$PPID; exit 1; }
 
-.PHONY: run smoke report-pdf test validate coverage lint bench fuzz torture format
+.PHONY: run smoke report-pdf test validate coverage lint docs bench fuzz torture format
 .DEFAULT_GOAL := run
 
 run: .venv/installed
@@ -55,6 +56,11 @@ fuzz: .venv/installed
 
 torture: .venv/installed
 	@.venv/bin/python benchmarks/torture.py
+
+docs: .venv/installed
+	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[docs]"
+	@$(RUN) sphinx -q -b html docs docs/_build
+	@echo "docs/_build/index.html"
 
 bench: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]"

