@@ -12,14 +12,14 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.motions.intensity import housner_intensity, pgv
+from rockfrag.motions.intensity import pgv
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
-HOUSNER_BAND = 2.4
-"""Width of the band of periods, 0.1 to 2.5 s, of Housner's intensity [s]."""
+HOUSNER_PERIODS = np.linspace(0.1, 2.5, 25)
+"""Periods of the velocity spectrum over which Housner's rule takes a mean, those of his intensity [s]."""
 
 ANGLES = np.linspace(0.02, 1.0, 40)
 """Rotations over the critical angle at which ASCE 43-05 compares capacity with demand."""
@@ -44,7 +44,7 @@ def housner(block: Block, motion: Motion) -> float:
     """Factor at which half of all motions topple the block by their velocity spectrum (Housner, 1963).
 
     The critical angle is Sv √(m R² / (g R I_O)), that is Sv = g α / p. Sv is the mean of the undamped
-    pseudo-velocity spectrum from 0.1 to 2.5 s, Housner's intensity over 2.4 s.
+    pseudo-velocity spectrum from 0.1 to 2.5 s.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def housner(block: Block, motion: Motion) -> float:
         The motion.
     """
     wanted = GRAVITY * block.alpha / block.frequency()
-    return float(wanted / (housner_intensity(motion, 0.0) / HOUSNER_BAND))
+    return float(wanted / response_spectrum(motion, HOUSNER_PERIODS, 0.0).pseudo_velocity.mean())
 
 
 def peak_velocity(block: Block, motion: Motion) -> float:
