@@ -22,10 +22,11 @@ release = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "_templates"]
+exclude_patterns = ["_build", "reference/static"]
 html_theme = "furo"
 html_title = f"rockfrag {release}"
 html_extra_path = ["tutorial.ipynb"]
+html_static_path = ["reference/static"]
 html_copy_source = False
 html_show_sourcelink = False
 myst_enable_extensions = ["dollarmath", "deflist"]
@@ -52,6 +53,12 @@ PAGES = {
 }
 """Documents outside this folder, and the page that shows each."""
 
+LIVE = """```{raw} html
+<iframe src="_static/play.html" title="A figure on a plinth, simulated live" style="width: 100%; height:
+56rem; border: 0"> </iframe>
+```"""
+"""What stands for ``{{ live }}`` on the front page."""
+
 GENERATED = {
     "/reference/configuration.md": ROOT / "config" / "README.md",
     "/reference/results.md": ROOT / "results" / "README.md",
@@ -61,7 +68,7 @@ GENERATED = {
 
 def _site_links(app: Sphinx, name: str, source: list[str]) -> None:
     """Turn links of the repository into links of the site; what the site does not show becomes plain text."""
-    source[0] = source[0].replace("{{ live }}", "")
+    source[0] = source[0].replace("{{ live }}", LIVE)
 
     def link(found: re.Match[str]) -> str:
         text, target = found[1], found[2]
@@ -97,13 +104,14 @@ def _generate(app: Sphinx) -> None:
         if name.endswith("configuration.md"):
             text += _schema_tables()
         _write(folder / name.lstrip("/"), text)
+    _write_live(folder / "reference" / "static" / "play.html")
     _write(folder / "reference" / "command-line.md", _command_line())
     _write(folder / "reference" / "api.md", _library())
 
 
 def _write(path: Path, text: str) -> None:
     # untouched files keep their time, so that nothing is built twice
-    path.parent.mkdir(exist_ok=True)
+    path.parent.mkdir(parents=True, exist_ok=True)
     if not path.is_file() or path.read_text(encoding="utf-8") != text:
         path.write_text(text, encoding="utf-8")
 
@@ -156,6 +164,20 @@ def _keys(schema: dict, above: str):
         words = str(one.get("description", "")).replace("|", "\\|")
         yield f"{above}{name}", words
         yield from _keys(one, f"{above}{name}.")
+
+
+def _write_live(path: Path) -> None:
+    """The page of the front page's frame: a figure on a plinth under a pulse, simulated by whoever reads it."""
+    from rockfrag.motions import ricker_symmetric
+    from rockfrag.records.motion import Motion
+    from rockfrag.report.play_page import write_play_page
+    from rockfrag.rocking import Block, Stack
+
+    pulse = ricker_symmetric(4.0, 0.9, 0.01)
+    named = Motion(pulse.acceleration, pulse.dt, "a near-fault pulse of 0.9 s")
+    body = Stack(Block(0.5, 0.9, 400.0), Block(0.35, 1.2, 180.0))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_play_page(body, named, path)
 
 
 def _plain_bars(

@@ -8,8 +8,10 @@ import pytest
 
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.as_json import as_json
+from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request, read_request
-from rockfrag.assess.words import doubts, five_lines, verdict
+from rockfrag.assess.risk import Estimate
+from rockfrag.assess.words import doubts, estimate_words, five_lines, verdict
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 from rockfrag.rocking import Block
@@ -181,3 +183,29 @@ def test_default_motions_are_those_of_the_wide_study(default_records):
     near = motion_set(Records(magnitude=7.5, distance_km=5), Place(), default_records)
     assert len(near.ground) == 40
     assert np.mean([m.metadata["magnitude"] for m in near.ground]) > 7.1
+
+
+def test_the_page_says_it_all_and_loads_nothing(motions, tmp_path):
+    request = asked(name="Venus <i>", **ON_PLINTH, pga="0.4 g", return_period_years=475)
+    page = write_answer(assess_with(request, motions), tmp_path)
+    text = page.read_text(encoding="utf-8")
+    assert "Venus &lt;i&gt;" in text and "Venus <i>" not in text
+    for words in ("What helps", "How sure that is", "What rules of thumb say", "ASCE 43-05"):
+        assert words in text
+    assert "http://" not in text.replace("http://www.w3.org", "")
+    assert json.loads(page.with_suffix(".json").read_text(encoding="utf-8"))["name"] == "Venus <i>"
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (Estimate(0.05, 0.0019, 0.6, {}), "5 % (0 to 60 %)"),
+        (Estimate(0.036, 0.0066, 0.18, {}), "4 % (1 to 18 %)"),
+        (Estimate(0.012, 0.003, 0.045, {}), "1.2 % (0.3 to 4.5 %)"),
+        (Estimate(0.0004, 0.0001, 0.12, {}), "0.04 % (0.01 to 12.00 %)"),
+        (Estimate(0.0, 0.0, 0.031, {}), "less than 3.1 %"),
+        (Estimate(1.0, 0.82, 1.0, {}), "more than 82 %"),
+    ],
+)
+def test_estimates_have_as_many_digits_as_they_deserve(found, words):
+    assert estimate_words(found) == words

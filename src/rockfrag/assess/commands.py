@@ -1,7 +1,9 @@
 """The commands ``rockfrag assess`` and ``rockfrag rules-of-thumb``."""
 
 import argparse
+import shutil
 import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +72,7 @@ def add_assess_commands(commands: Any) -> None:
     out.add_argument(
         "--output", metavar="FOLDER", default="assessment", help="where page and JSON are written"
     )
+    out.add_argument("--pdf", action="store_true", help="print the page too, by Chromium or Chrome")
     out.add_argument("--json", action="store_true", help="print the answer as JSON")
     out.add_argument("--pages", action="store_true", help="of an inventory: write a page for each")
     parser.set_defaults(run=_assess)
@@ -97,12 +100,24 @@ def _assess(options: argparse.Namespace) -> int:
     for doubt in doubts(found):
         print(f"warning: {doubt}", file=sys.stderr)
     place = write_answer(found, options.output)
+    if options.pdf:
+        from rockfrag.report.pdf import print_page
+
+        place = print_page(place)
     if options.json:
         print(as_json(found), end="")
     else:
-        print("\n".join(five_lines(found)))
+        print("\n".join(_fitted(line) for line in five_lines(found)))
         print(f"{place}", file=sys.stderr)
     return 0
+
+
+def _fitted(line: str) -> str:
+    """Break a line where a terminal ends; what goes into a file or a pipe stays whole."""
+    if not sys.stdout.isatty():
+        return line
+    width = max(shutil.get_terminal_size().columns, 40)
+    return textwrap.fill(line, width, subsequent_indent="    ")
 
 
 def _request(options: argparse.Namespace) -> Any:

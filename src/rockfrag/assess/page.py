@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from markupsafe import Markup
+from numpy.typing import NDArray
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.as_json import as_json
@@ -27,6 +28,7 @@ from rockfrag.assess.words import (
     verdict,
 )
 from rockfrag.files import file_name, write_text
+from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.page import Column, Picture, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw
@@ -69,7 +71,18 @@ def page_of(found: Assessment) -> str:
         sections=sections,
         pictures=_drawn([*([answer.figure] if answer.figure else []), *specs]),
         provenance=_provenance(found),
+        live=_live(found),
     )
+
+
+def _live(found: Assessment) -> Markup:
+    """The object under some motions, live: two components, those that topple it first and a middling one."""
+    order = np.argsort(_first_levels(found), kind="stable")
+    chosen = [found.motions.base[i] for i in (order[0], order[len(order) // 2])]
+    motions = carried([motion for motion in chosen if motion.pga > 0])
+    if not motions:
+        return Markup("")
+    return live_kernel(found.request.objects.arrangements, motions)
 
 
 def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
@@ -94,13 +107,14 @@ def _answer(found: Assessment) -> Answer:
             lambda: shares_figure(found),
         ),
         rests_on=assumptions(found),
-        could_overturn=[*doubts(found), f"Least known is {NAMES[found.main.largest]}."]
+        could_overturn=[*doubts(found), f"The range comes mostly from {NAMES[found.main.largest]}."]
         if found.main.largest
         else doubts(found),
         questions=[
             ("What helps?", "remedies"),
             ("How does it stand best?", "arrangements"),
             ("How sure is that?", "sure"),
+            ("What if it were 5 cm wider?", "live"),
         ],
     )
 
@@ -288,13 +302,15 @@ def _levels(found: Assessment) -> Section:
     )
 
 
+def _first_levels(found: Assessment) -> NDArray[np.float64]:
+    """Least level at which each motion topples the object, infinite where none does, shape (motions,)."""
+    fell = found.verdicts.overturned
+    levels = found.verdicts.ladder.levels[fell.argmax(axis=1)]
+    return np.where(fell.any(axis=1), levels, np.inf)
+
+
 def _motions(found: Assessment) -> Section:
-    verdicts = found.verdicts
-    first = np.where(
-        verdicts.overturned.any(axis=1),
-        verdicts.ladder.levels[verdicts.overturned.argmax(axis=1)],
-        np.inf,
-    )
+    first = _first_levels(found)
     order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
     table = pd.DataFrame(
         {

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.remedies import Remedy
 from rockfrag.assess.risk import LEVEL, Estimate
+from rockfrag.assess.verdicts import LARGEST_FACTOR
+from rockfrag.report.wording import counted
 
 NAMES: Mapping[str, str] = {
     "motions": "the motions of other earthquakes",
@@ -16,7 +18,7 @@ NAMES: Mapping[str, str] = {
     "period": "the building's first period",
     "damping": "the building's damping",
     "model": "the planar rocking model",
-    "conversion": "velocity, of which the hazard says nothing",
+    "conversion": "how fast the ground moves at that hazard",
     "hazard": "the hazard curve",
 }
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -42,15 +44,22 @@ def share_words(value: float) -> str:
 
 
 def estimate_words(estimate: Estimate) -> str:
-    """A probability with its interval, such as ``3.8 % (0.7 to 19 %)``."""
+    """A probability with its interval, such as ``4 % (1 to 18 %)``, to as many digits as the interval deserves."""
     if estimate.value == 0:
         return f"less than {share_words(estimate.upper)}"
     if estimate.value == 1:
         return f"more than {share_words(estimate.lower)}"
-    low, high = (
-        share_words(value).removesuffix(" %") for value in (estimate.lower, estimate.upper)
+    # two digits of the upper limit, but enough to tell the estimate from nothing
+    digits = max(0, 1 - _place(estimate.upper), -_place(estimate.value))
+    value, low, high = (
+        f"{100 * one:.{digits}f}" for one in (estimate.value, estimate.lower, estimate.upper)
     )
-    return f"{share_words(estimate.value)} ({low} to {high} %)"
+    return f"{value} % ({low} to {high} %)"
+
+
+def _place(share: float) -> int:
+    """Power of ten of a share in per cent; that of 10⁻⁴ % for less."""
+    return math.floor(math.log10(max(100 * share, 1e-4)))
 
 
 def value_words(found: Assessment, value: float) -> str:
@@ -113,18 +122,15 @@ def _at_the_site(found: Assessment) -> str:
         )
     period = " (475 years)" if found.request.level is None else ""
     return (
-        f"{found.request.name}, {place}, {found.level.words}{period}: rocks in {share_words(found.rocking_share)} "
-        f"of the motions and topples in {estimate_words(found.share)}."
+        f"{found.request.name}, {place}, {found.level.words}{period}: rocks in "
+        f"{share_words(found.rocking_share)} and topples in {estimate_words(found.share)} of the motions."
     )
 
 
 def _probability(found: Assessment) -> str:
     if found.probability is None:
-        return "no hazard was given; --hazard FILE or --return-period YEARS gives the probability in 50 years."
-    return (
-        f"{estimate_words(found.probability)} in {found.request.years:g} years; the {LEVEL:.0%} interval "
-        "holds motions, body, floor, model and hazard."
-    )
+        return "no hazard was given; --hazard FILE or --return-period YEARS gives it."
+    return f"{estimate_words(found.probability)} in {found.request.years:g} years, {100 * LEVEL:.0f} % interval."
 
 
 def _arrangements(found: Assessment) -> str:
@@ -152,19 +158,21 @@ def _worst_direction(found: Assessment) -> str:
     directions = found.directions
     if directions is None or not math.isfinite(directions.factor):
         return f"{plane}."
-    return f"{plane}; along the worst direction of each record {directions.factor:.2f} times the level topples it."
+    return (
+        f"{plane}; from the worst direction {directions.factor:.2f} times the shaking topples it."
+    )
 
 
 def _helps(found: Assessment) -> str:
     if not found.remedies:
         return "nothing was tried."
     best = [remedy_words(found, remedy) for remedy in found.remedies[:3]]
-    return "; ".join(best) + "; fixing everything to the floor ends rocking."
+    return "; ".join(best) + "."
 
 
 def remedy_words(found: Assessment, remedy: Remedy) -> str:
     """A change and its factor."""
-    what = "amplitude" if found.probability is None and found.share is None else "probability"
+    what = "amplitude" if found.probability is None and found.share is None else "risk"
     if math.isnan(remedy.factor):
         return f"{remedy.name}: {value_words(found, remedy.value)}"
     if remedy.factor == 0:
@@ -176,10 +184,10 @@ def _sure(found: Assessment) -> str:
     main = found.main
     parts = [found.motions.words + "."]
     if main.largest:
-        parts.append(f"Least known: {NAMES[main.largest]}.")
+        parts.append(f"The range comes mostly from {NAMES[main.largest]}.")
     assumed = found.request.objects.assumed + found.request.place.assumed
     if assumed:
-        parts.append(f"{len(assumed)} things were assumed (see the page).")
+        parts.append(f"Assumed: {counted(len(assumed), 'thing')}, see the page.")
     return " ".join(parts)
 
 
@@ -200,7 +208,8 @@ def assumptions(found: Assessment) -> list[str]:
         lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
     factor = found.verdicts.ladder.allowed.mean()
     lines.append(
-        f"Motions are scaled by 0.1 to 10 at most; {factor:.0%} of all scaled motions were within that."
+        f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most; {100 * factor:.0f} % of all "
+        "that the levels ask for is within that."
     )
     return lines
 
