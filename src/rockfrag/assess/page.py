@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.as_json import as_json
+from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.figures import shares_figure, sources_figure
 from rockfrag.assess.remedies import without_simulation
 from rockfrag.assess.words import (
@@ -38,7 +39,7 @@ MOTIONS_SHOWN = 15
 
 
 def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
-    """Write page and JSON of an assessment into a folder, and return the path of the page.
+    """Write page, JSON and the fragility for OpenQuake into a folder, and return the path of the page.
 
     Parameters
     ----------
@@ -49,6 +50,7 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
     """
     stem = Path(folder) / file_name(found.request.name)
     write_text(as_json(found), f"{stem}.json")
+    write_text(as_nrml(found), f"{stem}.xml")
     page = Path(f"{stem}.html")
     write_text(page_of(found), page)
     return page
