@@ -1,4 +1,5 @@
 # The study, its stages and its folder.
+import json
 import os
 import shlex
 import sys
@@ -39,6 +40,12 @@ logger.info(
 )
 
 
+def captions(figure):
+    """What the study's report says of a figure: its chapter and its caption."""
+    with open(f"{RESULTS}/figures/captions.json", encoding="utf-8") as file:
+        return json.load(file)[figure]
+
+
 def flagged(path):
     """An output as Snakemake wants it: folders marked, figures and the page put into its report."""
     if path == "figures/":
@@ -46,12 +53,17 @@ def flagged(path):
             directory(f"{RESULTS}/figures"),
             patterns=["{figure}.svg"],
             category="Figures",
+            subcategory=lambda wildcards: captions(wildcards.figure)["chapter"],
+            labels=lambda wildcards: {"shows": captions(wildcards.figure)["caption"]},
             caption="../report/figure.rst",
         )
     if path == "report.html":
         return report(
             f"{RESULTS}/report.html",
             category="Report",
+            labels={
+                "shows": "The answer, and all chapters with their figures and tables"
+            },
             caption="../report/report.rst",
         )
     if path.endswith("/"):

@@ -18,7 +18,7 @@ from rockfrag.report.figures.campaign import (
 )
 from rockfrag.report.page import Column, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import FIGURES, draw
+from rockfrag.report.study_report import FIGURES, draw, write_captions
 from rockfrag.report.wording import counted, estimate, listed, number, of_all, probability, sentence
 from rockfrag.stages.campaign import OURS, TABLES
 from rockfrag.stages.digest import source_digest
@@ -50,6 +50,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         for spec in section.parts
         if isinstance(spec, FigureSpec)
     }
+    write_captions(answer, sections, folder / FIGURES)
     tests = tables["tests"]
     page = render(
         title=study.title,

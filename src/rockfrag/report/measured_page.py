@@ -15,7 +15,7 @@ from rockfrag.fragility.user_table import UserFragility
 from rockfrag.report.figures.fragility import calibration_figure, measures_figure, surface_figure
 from rockfrag.report.page import Column, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.report.study_report import FIGURES, draw
+from rockfrag.report.study_report import FIGURES, draw, write_captions
 from rockfrag.report.wording import counted, estimates, listed, probability
 from rockfrag.stages.digest import package_digest
 from rockfrag.study.measured_table import MeasuredTable
@@ -95,15 +95,18 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
     pictures = {name: draw(spec, folder / FIGURES) for name, spec in specs.items()}
     tests = found.tests
     motions, fell = tests["motion"].nunique(), int(tests["overturned"].sum())
+    answer = _answer(study, found, specs)
+    sections = [
+        _choice(tables["recommendation"], specs, found.choice.words),
+        _curves(study, tables, specs),
+    ]
+    write_captions(answer, sections, folder / FIGURES)
     page = render(
         title=study.title,
         lead=f"{counted(len(tests), 'measured test')} with {counted(motions, 'motion')}, "
         f"{fell} of them overturned.",
-        answer=_answer(study, found, specs),
-        sections=[
-            _choice(tables["recommendation"], specs, found.choice.words),
-            _curves(study, tables, specs),
-        ],
+        answer=answer,
+        sections=sections,
         pictures=pictures,
         provenance={
             "Configuration": study.source.name,

@@ -1,5 +1,6 @@
 """The report of a study: its parts in order, every figure drawn once, and one page."""
 
+import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -46,8 +47,30 @@ def write_report(
     specs = [one for section in sections for one in section.parts if isinstance(one, FigureSpec)]
     specs += [first.figure] if first.figure else []
     pictures = draw_all(specs, folder / FIGURES, processes)
+    write_captions(first, sections, folder / FIGURES)
     page = study_page(results, first, sections, pictures)
     write_text(page, folder / "report.html")
+
+
+def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) -> None:
+    """Write what the page says of each figure into the folder of the figures, for Snakemake's report.
+
+    Parameters
+    ----------
+    answer, sections
+        What stands on the page.
+    folder
+        Folder of the figures; ``captions.json`` has chapter and caption of each by name.
+    """
+    found = [(answer.figure, "The answer")] if answer.figure else []
+    found += [
+        (one, section.title)
+        for section in sections
+        for one in section.parts
+        if isinstance(one, FigureSpec) and one is not answer.figure
+    ]
+    captions = {one.name: {"chapter": chapter, "caption": one.caption} for one, chapter in found}
+    write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
 
 
 def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int) -> dict[str, Picture]:
