@@ -247,9 +247,12 @@ function arrow(context, x, y, length) {
   context.moveTo(x + length, y); context.lineTo(x + length - tip, y - 4); context.lineTo(x + length - tip, y + 4);
   context.fill();
 }
+// the history as it stands, drawn once; each frame adds the time to it
+const drawnHistory = document.createElement("canvas");
 function drawHistory() {
   if (!response) return;
-  const [context, width, height] = sized(find("history"));
+  const canvas = find("history");
+  const [context, width, height] = sized(canvas);
   const left = 44, bottom = height - 18, top = 16, middle = top + (bottom - top) * 0.66;
   const end = Math.max(duration(), motion().dt);
   const x = (t) => left + (t / end) * (width - left - 8);
@@ -291,12 +294,21 @@ function drawHistory() {
   context.fillText("ground", 2, base + 4);
   context.fillText("0", left, height - 4);
   context.fillText(`${shown(end, 1)} s`, width - 42, height - 4);
+  Object.assign(drawnHistory, { width: canvas.width, height: canvas.height });
+  drawnHistory.getContext("2d").drawImage(canvas, 0, 0);
+  drawTime();
+  canvas.setAttribute("aria-label",
+    `Rotation over ${shown(end, 1)} s with ${peaks.length} impacts; ${response.fallen > 0 ? "it overturns" : "it stays up"}.`);
+}
+function drawTime() {
+  if (!response) return;
+  const [context, width, height] = sized(find("history"));
+  context.drawImage(drawnHistory, 0, 0, width, height);
+  const x = 44 + (time / Math.max(duration(), motion().dt)) * (width - 52);
   context.strokeStyle = colours.accent;
   context.beginPath();
-  context.moveTo(x(time), 0); context.lineTo(x(time), bottom);
+  context.moveTo(x, 0); context.lineTo(x, height - 18);
   context.stroke();
-  find("history").setAttribute("aria-label",
-    `Rotation over ${shown(end, 1)} s with ${peaks.length} impacts; ${response.fallen > 0 ? "it overturns" : "it stays up"}.`);
 }
 const logarithm = (g) => Math.log(g / data.amplitudes[0]) / Math.log(data.amplitudes.at(-1) / data.amplitudes[0]);
 function drawBar() {
@@ -389,7 +401,7 @@ function refresh() {
   computeBar();
   drawBar();
   fillSizes();
-  if (response) { time = turnedMost(); drawScene(); drawHistory(); }
+  if (response) { time = turnedMost(); drawScene(); drawTime(); }
 }
 // the moment of the largest rotation, which a still picture shows best
 function turnedMost() {
@@ -419,7 +431,7 @@ function frame(now) {
   time += step * Number(find("speed").value);
   if (time >= duration()) { time = duration(); stop(); }
   drawScene();
-  drawHistory();
+  drawTime();
   if (playing) requestAnimationFrame(frame);
 }
 // who wants less motion goes from event to event
@@ -440,7 +452,7 @@ function move(to) {
   find("play").dataset.begun = "1";
   time = Math.max(0, Math.min(duration(), to));
   drawScene();
-  drawHistory();
+  drawTime();
 }
 function nextEvent() {
   const next = response?.events.find((one) => one.time > time + 1e-6);
