@@ -51,6 +51,19 @@ def test_play_writes_a_page_that_loads_nothing(
     assert "ends in .html" in capsys.readouterr().err
 
 
+def test_a_body_without_a_mass_is_of_stone_and_one_of_four_numbers_is_none(
+    record: Path, capsys: pytest.CaptureFixture[str]
+):
+    case = ["simulate", str(record), "--unit", "g", "--body"]
+    assert main([*case, "30cm", "120cm"]) == 0
+    shown = capsys.readouterr().out
+    # 2500 kg/m³ over 0.3 m by 0.3 m by 1.2 m
+    assert main([*case, "30cm", "120cm", "270kg"]) == 0
+    assert capsys.readouterr().out == shown
+    assert main([*case, "30cm", "120cm", "270kg", "4"]) == 2
+    assert capsys.readouterr().err.startswith("--body: expected width, height and")
+
+
 def test_info_draws_a_record(record: Path, tmp_path: Path):
     picture = tmp_path / "record.png"
     assert main(["info", str(record), "--unit", "g", "--picture", str(picture)]) == 0

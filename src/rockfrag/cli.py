@@ -90,12 +90,12 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
     """Add what tells one body and one record."""
     parser.add_argument("record", help="file with the record")
     parser.add_argument(
-        "--body", nargs=3, required=True, metavar=("WIDTH", "HEIGHT", "MASS"),
-        help="the statue, or the lone block: 35cm 120cm 180kg, or numbers of m, m and kg",
+        "--body", nargs="+", required=True, metavar="SIZE",
+        help="the statue, or the lone block: width, height and mass, as 35cm 120cm 180kg or numbers of m, m and "
+        "kg; without a mass a square block of stone",
     )  # fmt: skip
     parser.add_argument(
-        "--pedestal", nargs=3, metavar=("WIDTH", "HEIGHT", "MASS"),
-        help="the block it stands on, in the same way",
+        "--pedestal", nargs="+", metavar="SIZE", help="the block it stands on, in the same way",
     )  # fmt: skip
     parser.add_argument("--unit", help="unit of a record that does not state its own")
     parser.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
@@ -167,13 +167,16 @@ def _play(options: argparse.Namespace) -> int:
 
 def _block(option: str, given: Sequence[str]) -> "Block":
     """Make a block of width, height and mass as people write them."""
-    from rockfrag.plausibility import check_density, size_warning
+    from rockfrag.plausibility import STONE, check_density, size_warning
     from rockfrag.rocking import Block
 
     try:
-        width, height, mass = (
-            quantity(text, unit, unit) for text, unit in zip(given, ("m", "m", "kg"), strict=True)
-        )
+        if len(given) not in (2, 3):
+            raise InputError(
+                f"expected width, height and, if known, mass, such as 35cm 120cm 180kg; got {' '.join(given)}."
+            )
+        width, height = (quantity(text, "m", "m") for text in given[:2])
+        mass = quantity(given[2], "kg", "kg") if len(given) == 3 else STONE * width**2 * height
         block = Block(width, height, mass)
         check_density(width, height, mass)
     except InputError as error:

@@ -6,6 +6,9 @@ from rockfrag.units import GRAVITY
 DENSITIES = (20.0, 22_600.0)
 """Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
 
+STONE = 2500.0
+"""Density of stone [kg/m³], where nobody says how heavy an object is."""
+
 DEPTHS = (0.1, 3.0)
 """Least depth of an object over its width, largest over the longer of width and height: a panel rocking in its
 strong direction, and a long shelf seen from its end."""

@@ -146,7 +146,9 @@ def test_another_width_is_another_body_at_once(browser: Browser, report: Path):
     before = verdict(browser)
     assert "Live: overturns" in before
     change(browser, "sizes input", "48", "input")
-    assert "Live: stands" in verdict(browser) and "not in the study’s table" in verdict(browser)
+    assert "Live: stands" in verdict(browser) and "not in the table of the study" in verdict(
+        browser
+    )
     browser.run("document.querySelector('#live .reset').click()")
     assert verdict(browser) == before
     browser.run("document.querySelector('#live .wider').click()")

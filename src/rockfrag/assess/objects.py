@@ -8,12 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from rockfrag.errors import InputError
-from rockfrag.plausibility import DENSITIES, check_density, size_warning
+from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.shapes import read_shape
-
-STONE = 2500.0
-"""Density of a block whose mass is not given [kg/m³]."""
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""

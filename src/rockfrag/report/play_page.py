@@ -15,6 +15,8 @@ from rockfrag.rocking import simulate
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
+_STEP = 100 * (AMPLITUDES_G[1] / AMPLITUDES_G[0] - 1)
+
 MOST_SAMPLES = 20_000
 """Samples of a record for which the page stays below 400 kB."""
 
@@ -61,7 +63,7 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
             "Body": repr(body),
             "Source": f"rockfrag {version('rockfrag')}",
         },
-        live=live_kernel({name: body}, [motion], verdicts),
+        live=live_kernel({name: body}, [motion]),
     )
     write_text(page, path)
 
@@ -79,21 +81,20 @@ def _size(block: Block) -> str:
 def _strength(fell: Sequence[bool]) -> Finding:
     """Say which of the amplitudes tried overturn."""
     verdicts = list(fell)
-    tried = (
-        f"{counted(len(verdicts), 'amplitude')} from {AMPLITUDES_G[0]:g} to {AMPLITUDES_G[-1]:g} g"
-    )
+    tried = f"amplitudes from {AMPLITUDES_G[0]:g} to {AMPLITUDES_G[-1]:g} g, {_STEP:.1f} % apart"
     if not any(verdicts):
-        return Finding("It does not overturn", f"It survives {tried}.")
+        return Finding("It does not overturn", f"It survives all {tried}.")
     first = verdicts.index(True)
     later = len(verdicts) - first - sum(verdicts[first:])
     windows = (
-        f" Of those above it {later} are survived again: how strong is not all that counts."
+        f" Of those above it {later} {'is' if later == 1 else 'are'} survived again: how strong the motion is, "
+        "is not all that counts."
         if later
         else " All that are stronger overturn it too."
     )
     return Finding(
         f"It overturns first at a peak of {number(AMPLITUDES_G[first], 3)} g",
-        f"Of {tried}.{windows}",
+        f"Tried were {tried}.{windows}",
     )
 
 

@@ -63,6 +63,7 @@ def live_kernel(
         Needs the style of :func:`rockfrag.report.page.render`, and loads nothing.
     """
     motions = carried(motions)
+    of_study = verdicts is not None
     if verdicts is None:
         verdicts = swept(bodies, motions)
     amplitudes = np.sort(verdicts["amplitude_g"].unique())
@@ -71,6 +72,7 @@ def live_kernel(
     first = rows[body][motion].find("1")
     shown = first if first >= 0 else len(amplitudes) - 1
     data = {
+        "source": "the study" if of_study else "the package",
         "gravity": GRAVITY,
         "module": _text(module_bytes()),
         "bodies": [_body(name, one) for name, one in bodies.items()],

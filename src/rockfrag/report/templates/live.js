@@ -125,10 +125,9 @@ function tell() {
   if (fell) text += ` at ${shown(response.fallTime, 2)} s`;
   text += `, ${peaks.length} impacts. `;
   if (table !== null) text += table === fell
-    ? `The table of the study: ${words(table)}. Equal.`
-    : `The table of the study: ${words(table)}. Not equal: within rounding of the edge between both.`;
-  else if (changed()) text += "Changed: not in the study’s table.";
-  else text += "This amplitude is not in the study’s table.";
+    ? `The table of ${data.source}: ${words(table)}. Equal.`
+    : `The table of ${data.source}: ${words(table)}. Not equal: within rounding of the edge between both.`;
+  else text += `${changed() ? "Changed: not" : "This amplitude is not"} in the table of ${data.source}.`;
   find("verdicts").innerHTML = text; // of numbers and fixed words alone
   find("peak").textContent = `${shown(chosen.amplitude, 3)} g` + (chosen.amplitude === motion().pga_g ? ", as recorded" : "");
 }
@@ -277,11 +276,15 @@ function drawHistory() {
     context.fillText(title, left + 6 + 70 * number, 12);
   });
   context.fillStyle = colours.soft;
-  context.fillText(`${shown((most * 180) / Math.PI, 1)}°`, 4, top + 8);
-  context.fillText("impacts", left + 6 + 70 * lines.length, 12);
+  const degrees = `${shown((most * 180) / Math.PI, 1)}°`;
+  context.textAlign = "right";
+  for (const [text, height] of [[degrees, top + 8], ["0", top + half + 4], ["−" + degrees, middle]])
+    context.fillText(text, left - 4, height);
+  context.textAlign = "left";
+  context.fillText("| impacts", left + 6 + 70 * lines.length, 12);
   context.strokeStyle = colours.ink;
   context.beginPath();
-  for (const t of peaks) { context.moveTo(x(t), 3); context.lineTo(x(t), 0); context.moveTo(x(t), top + half - 3); context.lineTo(x(t), top + half + 3); }
+  for (const t of peaks) { context.moveTo(x(t), top + half - 4); context.lineTo(x(t), top + half + 4); }
   context.stroke();
   // the ground's acceleration below
   const base = (middle + bottom) / 2 + 3, reach = (bottom - middle) / 2 - 4, samples = motion().samples;
