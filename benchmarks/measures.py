@@ -99,6 +99,17 @@ def two_thread_ratio(cases: Cases) -> float:
     )
 
 
+def vertical_ratio(cases: Cases) -> float:
+    """Time of the cases with vertical motion, of six tenths of the horizontal one, over that without."""
+    upward = [0.6 * values[::-1] for values in cases.accelerations]
+
+    def run(**vertical: Any) -> None:
+        overturns(cases.bodies, cases.accelerations, cases.dt, cases.scales, threads=1, **vertical)
+
+    run(vertical=upward)
+    return ratio_in_turn(lambda: run(vertical=upward), run, time.process_time)
+
+
 @entry_kernel  # type: ignore[misc]
 def _only_blocks(lane: Any, count: int) -> None:
     for _ in range(count):
@@ -161,14 +172,20 @@ _SMOOTH: dict[str, list[tuple[Any, int, Any, dict[str, float]]]] = {
     "lone": [
         (
             block, block.LANES, _only_blocks,
-            {"psi": 0.2, "angle": 0.25, "kappa": 1e-3, "crest": 10.0, "part_left": 1.0},
+            {
+                "psi": 0.2, "angle": 0.25, "kappa": 1e-3, "crest": 10.0, "part_left": 1.0,
+                "weight": 1.0, "weight_end": 1.0, "heavy": 1.0,
+            },
         )
     ],
     "stack": [
-        (stack_one, LANES, _only_one, {"theta": 0.2, "part_left": 1.0}),
+        (stack_one, LANES, _only_one, {"theta": 0.2, "part_left": 1.0, "weight": 1.0, "weight_end": 1.0}),
         (
             stack_two, LANES, _only_two,
-            {"theta1": 0.1, "theta2": 0.2, "m11": 3.0, "m22": 2.0, "part_left": 1.0, "part": 1.0},
+            {
+                "theta1": 0.1, "theta2": 0.2, "m11": 3.0, "m22": 2.0, "part_left": 1.0, "part": 1.0,
+                "weight": 1.0, "weight_end": 1.0,
+            },
         ),
     ],
 }  # fmt: skip

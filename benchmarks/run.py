@@ -30,6 +30,7 @@ from measures import (
     start_up,
     thesis_bodies,
     two_thread_ratio,
+    vertical_ratio,
     wall_seconds,
 )  # fmt: skip
 from scipy_stack import scipy_stack
@@ -262,6 +263,8 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
         other[f"{kind}_limit"] <= most,
     )
     add("two threads over one", "≥ 1.9", other[f"{kind}_threads"], other[f"{kind}_threads"] >= 1.9)
+    upward = other[f"{kind}_vertical"]
+    add("time with vertical motion over that without", "< 1.10", upward, upward < 1.10)
     memory = other[f"{kind}_memory_MiB"]
     add(
         f"memory of {other[f'{kind}_memory_histories']:.0e} histories [MiB]",
@@ -349,6 +352,7 @@ def main() -> None:
         # enough cases that the lanes that run dry at the end do not matter
         speed = next(r for r in rows if r["bodies"] == NAMES[kind])["histories_per_s_core"]
         other[f"{kind}_threads"] = two_thread_ratio(more(set_, round(3 * speed / set_.count) or 1))
+        other[f"{kind}_vertical"] = vertical_ratio(set_)
         costs += scaling(kind, 10**3 if given.quick else 10**6, speed)
         other[f"{kind}_cold_s"], other[f"{kind}_warm_s"] = start_up(kind)
         tenth = memory_histories // 10

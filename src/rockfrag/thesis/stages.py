@@ -12,6 +12,7 @@ def run(job: Job[Study]) -> Results:
     """Yield printed tables beside computed ones, statements with verdicts, contradictions."""
     yield from _printed_tables(job)
     yield from _statements(job)
+    yield "standing", _standing(job)
     if job.study.more.measured_tests is not None:
         yield "measured/claims", _measured_statements(job)
     if job.study.more.sensitivity is not None:
@@ -63,6 +64,27 @@ def _statements(job: Job[Study]) -> Results:
     job.log.info("statements: %s", ", ".join(f"{n} {verdict}" for verdict, n in verdicts))
 
 
+def _standing(job: Job[Study]) -> pd.DataFrame:
+    """Return which readings stand when motion and body differ a little."""
+    from rockfrag.stages.protocol import protocol_of
+    from rockfrag.thesis.standing import standing_readings
+
+    study = job.study
+    table = standing_readings(
+        study.configurations,
+        job.motions("motions/floors"),
+        study.amplitudes.values_g,
+        protocol_of(study),
+        study.seed,
+        job.threads,
+    )
+    columns = [name for name in table.columns if name.startswith("stands_")]
+    for reading, part in table.groupby("reading", sort=False):
+        fallen = ", ".join(f"{(~part[name]).sum()} at {name[7:]}" for name in columns)
+        job.log.info("%s: of %d readings change %s", reading, len(part), fallen)
+    return table
+
+
 def _measured_statements(job: Job[Study]) -> pd.DataFrame:
     from rockfrag.thesis.statements import Evidence, ledger
 
@@ -71,7 +93,7 @@ def _measured_statements(job: Job[Study]) -> pd.DataFrame:
 
 
 def _inputs(study: Study) -> list[str]:
-    names = ["motions/ground.parquet", "tests", "validity", "measures"]
+    names = ["motions/ground.parquet", "motions/floors.parquet", "tests", "validity", "measures"]
     if study.more.measured_tests is not None:
         names.append("measured/tests")
     if study.more.sensitivity is not None:
@@ -80,7 +102,7 @@ def _inputs(study: Study) -> list[str]:
 
 
 def _outputs(study: Study) -> list[str]:
-    names = [*TABLES, "claims_theory"]
+    names = [*TABLES, "claims_theory", "standing"]
     if study.has_pairs:
         names += ["claims", "contradictions"]
     if study.more.measured_tests is not None:
@@ -96,5 +118,5 @@ STAGE = Stage(
     inputs=_inputs,
     files=lambda study: study.body_files,
     outputs=_outputs,
-    settings=("bodies", "seed", "measured_tests", "building_sensitivity"),
+    settings=("bodies", "seed", "amplitudes", "protocol", "measured_tests", "building_sensitivity"),
 )

@@ -1,0 +1,48 @@
+"""The key ``bodies.restitution`` of a study: what was measured of each block, and the law of stacks."""
+
+from pathlib import Path
+
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import MeasuredRestitution
+from rockfrag.study.loading import study_from
+from rockfrag.yaml_file import read_yaml
+
+SMOKE = Path(__file__).parents[2] / "config" / "smoke.yaml"
+
+
+def study_with(restitution):
+    content = read_yaml(SMOKE)
+    return study_from(
+        {**content, "bodies": {**content["bodies"], "restitution": restitution}}, SMOKE
+    )
+
+
+def test_each_block_brings_what_was_measured_of_it():
+    study = study_with({"law": "ratio", "blocks": {"T1": 0.9, "P": [0.3, 0.35]}})
+    found = {one.name: one.restitution for one in study.configurations}
+    assert found["T1"] == MeasuredRestitution(0.9, "ratio")
+    assert found["P&T1"] == MeasuredRestitution(((0.3, 0.35), 0.9), "ratio")
+    assert found["T3"] is None
+    assert found["P&T3"] == MeasuredRestitution(((0.3, 0.35), None), "ratio")
+
+
+def test_without_the_key_momentum_is_conserved():
+    content = read_yaml(SMOKE)
+    assert {one.restitution for one in study_from(content, SMOKE).configurations} == {None}
+
+
+@pytest.mark.parametrize(
+    ("restitution", "message"),
+    [
+        ({"blocks": {"X": 0.9}}, "blocks: expected names of the specimens T1, .*, found X"),
+        ({"blocks": {"T1": 1.1}}, "1.1 would gain energy"),
+        ({"law": "newton", "blocks": {"T1": 0.9}}, "expected position, couple or ratio"),
+        ({"blocks": {"T1": "a"}}, "blocks.T1: expected a ratio"),
+        ({}, "restitution"),
+    ],
+)
+def test_what_cannot_be_is_refused_when_the_study_is_read(restitution, message):
+    with pytest.raises(InputError, match=message):
+        study_with(restitution)
