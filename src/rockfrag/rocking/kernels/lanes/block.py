@@ -62,6 +62,7 @@ LANE = np.dtype(
         ("case", _I, LANES),  # its number, -1 for none
         ("body", _I, LANES), ("motion", _I, LANES),
         ("k", _I, LANES), ("first", _I, LANES), ("last", _I, LANES),  # samples: reached; of its motion
+        ("following", _I, LANES),  # the sample after the one it has reached, if its motion has one
         ("side", _I, LANES),  # 1 on the right pole, -1 on the left, 0 at rest
         ("fell", _I, LANES),
         ("crowded", _I, LANES), ("crowd", _I, LANES),  # sample of the last impact, and how many that has had

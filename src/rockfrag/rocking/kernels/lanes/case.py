@@ -183,17 +183,15 @@ def next_samples(lane, factor, lanes, motions):
     samples, vertical = motions.samples, motions.vertical
     stops = 0
     for i in range(lanes):
+        last = lane.last[i]
         at = lane.k[i] + (1 if lane.flag[i] == QUIET else 0)
         lane.k[i] = at
-        stops |= (1 << i) if (lane.flag[i] > QUIET) | (at >= lane.last[i]) else 0
-    if vertical.size == 0:
+        lane.following[i] = min(at + 1, last)
+        stops |= (1 << i) if (lane.flag[i] > QUIET) | (at >= last) else 0
+    for i in range(lanes):
+        # unsigned, as an index that may be negative is looked at before it is used
+        lane.ground_end[i] = factor[i] * samples[np.uint64(lane.following[i])]
+    if vertical.size > 0:
         for i in range(lanes):
-            # unsigned, as an index that may be negative is looked at before it is used
-            following = np.uint64(min(lane.k[i] + 1, lane.last[i]))
-            lane.ground_end[i] = factor[i] * samples[following]
-    else:
-        for i in range(lanes):
-            following = np.uint64(min(lane.k[i] + 1, lane.last[i]))
-            lane.ground_end[i] = factor[i] * samples[following]
-            lane.weight_end[i] = 1.0 + lane.factor[i] * vertical[following]
+            lane.weight_end[i] = 1.0 + lane.factor[i] * vertical[np.uint64(lane.following[i])]
     return stops

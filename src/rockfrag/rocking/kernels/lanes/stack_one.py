@@ -37,6 +37,7 @@ LANE = np.dtype(
     [
         ("slot", np.int64, LANES),  # of the case, -1 for none
         ("k", np.int64, LANES), ("last", np.int64, LANES),  # sample it has reached, last one of its motion
+        ("following", np.int64, LANES),  # the sample after the one it has reached, if its motion has one
         # constants of its contact state (stack_constants.ONE), and the side that the rocking contact opens to
         ("gx", _F, LANES), ("gy", _F, LANES), ("per_angle", _F, LANES), ("per_speed", _F, LANES),
         ("right", _F, (HOLD, LANES)), ("left", _F, (HOLD, LANES)),

@@ -26,6 +26,7 @@ LANE = np.dtype(
     [
         ("slot", np.int64, LANES),  # of the case, -1 for none
         ("k", np.int64, LANES), ("last", np.int64, LANES),  # sample it has reached, last one of its motion
+        ("following", np.int64, LANES),  # the sample after the one it has reached, if its motion has one
         # constants of its contact state (stack_constants.TWO), and the sides that its contacts open to
         ("v1x", _F, LANES), ("v1y", _F, LANES), ("v2x", _F, LANES), ("v2y", _F, LANES),
         ("m11", _F, LANES), ("m22", _F, LANES), ("e", _F, LANES), ("f", _F, LANES),
