@@ -39,6 +39,14 @@ class Part(JITCodeLibrary):
 class Whole(JITCodeLibrary):
     """The code of an entry kernel and of all parts that it needs, each linked once."""
 
+    def _optimize_functions(self, module: Any) -> None:
+        """Leave optimising to the passes over the whole."""
+
+    def _optimize_final_module(self) -> None:
+        """Optimise once: what numba does before that looks for reference counts, of which there are none."""
+        passes, builder = self._codegen._module_pass_manager()
+        passes.run(self._final_module, builder)
+
     def finalize(self) -> None:
         """Link callers before those they call: code that nothing linked so far calls would be dropped."""
         self._linking_libraries = _callers_first(self._linking_libraries)
@@ -106,6 +114,8 @@ class _KernelCompiler(CompilerBase):
             untyped_passes.TranslateByteCode,
             untyped_passes.FixupArgs,
             untyped_passes.IRProcessing,
+            # tuple[0] is then a part of the tuple, not a function of tuple and index to be compiled
+            untyped_passes.GenericRewrites,
             untyped_passes.ReconstructSSA,
             typed_passes.NopythonTypeInference,
             typed_passes.PreLowerStripPhis,
