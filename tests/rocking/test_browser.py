@@ -29,7 +29,7 @@ const [wasm, cases, motions, out] = process.argv.slice(2);
 const bytes = new Float64Array(new Uint8Array(fs.readFileSync(motions)).buffer);
 rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
   const found = [];
-  const told = JSON.parse(fs.readFileSync(cases)).map(({ given, start, count, ...rest }) => {
+  const told = JSON.parse(fs.readFileSync(cases)).map(({ given, start, count, lifted, ...rest }) => {
     let body;
     try {
       body = kernel.bodyOf(given);
@@ -37,8 +37,9 @@ rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
       return { error: error.message };
     }
     const samples = bytes.subarray(start, start + count);
-    const r = kernel.march({ body, samples, ...rest });
-    const verdict = kernel.march({ body, samples, ...rest, history: false });
+    const more = lifted ? { vertical: bytes.subarray(0, count).map((a) => 0.6 * a) } : {};
+    const r = kernel.march({ body, samples, ...rest, ...more });
+    const verdict = kernel.march({ body, samples, ...rest, ...more, history: false });
     for (const name of HISTORY) found.push(Float64Array.from(r[name]));
     for (const number of [(e) => e.time, (e) => e.energy_after, (e) => e.before.omega2]) {
       found.push(Float64Array.from(r.events, number));
@@ -107,6 +108,23 @@ def some_body(rng) -> Body:
     return Stack(pedestal, statue, offset=0.03 * statue.width * rng.uniform(-1, 1))
 
 
+def some_restitution(rng, body: Body):
+    """A measured restitution, of both contacts or of one, or none."""
+    if rng.random() < 0.5:
+        return None
+
+    def of(block):
+        largest = min(block.pole_inertia(1), block.pole_inertia(-1)) / max(
+            block.pole_inertia(1), block.pole_inertia(-1)
+        )
+        return float(rng.uniform(0.5, 0.99) * math.sqrt(largest))
+
+    if isinstance(body, Block):
+        return of(body)
+    ground, interface = of(body.pedestal), of(body.contact_statue)
+    return [(ground, interface), (None, interface), (ground, None)][rng.integers(0, 3)]
+
+
 @needs_node
 def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
     rng = np.random.default_rng(11)
@@ -115,21 +133,39 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
     cases, responses, records = [], [], []
     while len(cases) < 50:
         body, start = some_body(rng), int(rng.integers(0, 2000))
+        restitution = some_restitution(rng, body)
         count, scale = int(rng.integers(200, 1000)), float(rng.uniform(0.2, 1.5))
-        linear, dt = bool(rng.random() < 0.3), float(rng.choice([0.005, 0.01, 0.02]))
+        # vertical motion is scaled by the page after it is divided by gravity, here before
+        scale = 1.0 if rng.random() < 0.2 else scale
+        linear, dt = (
+            scale != 1.0 and bool(rng.random() < 0.3),
+            float(rng.choice([0.005, 0.01, 0.02])),
+        )
         released = bool(rng.random() < 0.3)
         lean = 0.3 * (body.alpha if isinstance(body, Block) else body.statue.alpha)
         angles = {"theta2": lean} if released else {}
         theta0 = None if not released else lean if isinstance(body, Block) else (0.0, lean)
         cases.append(
             {
-                "given": told(body, linear=linear), "start": start, "count": count, "scale": scale, "dt": dt,
-                "initial": angles,
+                "given": told(body, linear=linear, restitution=restitution), "start": start, "count": count,
+                "scale": scale, "dt": dt, "initial": angles,
             }
         )  # fmt: skip
         samples = scale * motion[start : start + count]
-        responses.append(simulate(body, samples, dt, linear=linear, theta0=theta0))
-        records.append(body_record(body, None, linear))
+        vertical = 0.6 * motion[:count] if scale == 1.0 else None
+        cases[-1]["lifted"] = vertical is not None
+        responses.append(
+            simulate(
+                body,
+                samples,
+                dt,
+                linear=linear,
+                theta0=theta0,
+                restitution=restitution,
+                vertical=vertical,
+            )
+        )
+        records.append(body_record(body, restitution, linear))
         assert math.isfinite(responses[-1].theta[-1, -1])
     said, numbers = in_node(tmp_path, cases, motion)
     found = iter(np.split(numbers, np.cumsum([n for one in said for n in lengths(one)])))
@@ -179,6 +215,7 @@ def test_bodies_that_cannot_stand_are_refused(tmp_path):
         "once the pedestal's lean": told(Stack(base, statue))
         | {"pedestal": given(base) | {"lean": 0.3}},
         "touch the ground": {"statue": given(wide), "pedestal": given(Block(0.4, 0.05, 100.0))},
+        "gain energy": told(statue, restitution=1.2),
         "mass of 0": {"statue": given(statue) | {"mass": 0}},
         "width of null": {"statue": given(statue) | {"width": None}},
     }

@@ -232,9 +232,7 @@ class Block:
         The block turns about ``pole_before`` and comes down on the other pole (Housner 1963; thesis
         eq. 2.12, 2.14: 1 - 1.5 sin²α for a uniform block).
         """
-        before, after = self.arm(pole_before), self.arm(-pole_before)
-        product = before.x * after.x + before.y * after.y
-        return (self.centroidal_inertia + self.mass * product) / self.pole_inertia(-pole_before)
+        return geometry.momentum_restitution(self.shape, -pole_before)
 
 
 @dataclass(frozen=True)
@@ -315,7 +313,7 @@ class Stack:
             return self.statue
         aside = Vector(self.contact_offset - self.offset, 0.0)
         centre = self.statue.centre.minus(aside).turned(-self.statue.lean)
-        return Block(
+        made = Block(
             width=pile.high - pile.low,
             height=self.statue.height,
             mass=self.statue.mass,
@@ -324,6 +322,9 @@ class Stack:
             cg_offset=centre.x,
             lean=self.statue.lean,
         )
+        # to the last bit what the kernels know, without the turn there and back
+        vars(made)["shape"] = pile.statue
+        return made
 
     def interface_pole(self, pole: int) -> Vector:
         """Statue's pole as it stands, from the middle of the pedestal's base [m]."""

@@ -1,6 +1,5 @@
 """What a measured restitution is, and what kernels are told of it (``docs/restitution.md``)."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -8,9 +7,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Vector
+from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.checks import real_number, shown
-from rockfrag.rocking.kernels.equations import COUPLE, POSITION, RATIO
+from rockfrag.rocking.kernels import geometry
+from rockfrag.rocking.kernels.geometry import COUPLE, RATIO
 
 Law = Literal["position", "couple", "ratio"]
 """How the restitution of a lone block is carried over to a stack."""
@@ -77,7 +77,7 @@ def largest_restitution(block: Block, pole: int | None = None) -> float:
     """
     if pole is None:
         return min(largest_restitution(block, +1), largest_restitution(block, -1))
-    return math.sqrt(block.pole_inertia(-pole) / block.pole_inertia(pole))
+    return geometry.largest_restitution(block.shape, pole)
 
 
 def impulse_position(block: Block, restitution: float, pole: int) -> float:
@@ -98,17 +98,7 @@ def impulse_position(block: Block, restitution: float, pole: int) -> float:
     -------
     Position σ of the impulse in half widths from the middle towards the new pole [-].
     """
-    centre, b, m = block.centre, block.b, block.mass
-    inertia = block.centroidal_inertia
-    old = centre.minus(Vector(-pole * b, 0.0))
-    new = centre.minus(Vector(pole * b, 0.0))
-
-    def product(arm: Vector) -> float:
-        return inertia + m * (centre.x * arm.x + centre.y * arm.y)
-
-    return (product(old) - restitution * product(new)) / (
-        m * pole * b * (old.x - restitution * new.x)
-    )
+    return geometry.impulse_position(block.shape, restitution, pole)
 
 
 def lone_restitution(block: Block, restitution: Restitution) -> tuple[float, float] | None:
@@ -165,13 +155,13 @@ def _after(name: str, block: Block, value: float, pole: int, law: Law) -> After:
     by_momentum = block.momentum_restitution(-pole)
     if law == "ratio":
         return RATIO, value
-    if law == "position" and value >= by_momentum:
-        return POSITION, impulse_position(block, value, pole)
-    if by_momentum <= 0:
+    if by_momentum <= 0 and not (law == "position" and value >= by_momentum):
         raise InputError(
             f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "
             "multiply; choose the law position or ratio."
         )
+    if law == "position":
+        return geometry.by_position(block.shape, value, pole)
     return COUPLE, value / by_momentum
 
 

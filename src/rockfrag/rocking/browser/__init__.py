@@ -10,7 +10,7 @@ _FOLDER = Path(__file__).parent
 
 
 def module_bytes() -> bytes:
-    """Return the module's bytes, 42 kB."""
+    """Return the bytes of the module."""
     return (_FOLDER / "march.wasm").read_bytes()
 
 

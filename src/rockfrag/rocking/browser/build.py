@@ -38,7 +38,10 @@ def build() -> bytes:
     call = np.zeros(1, CALL)[0]
     entries = {
         "describe": (describe, (call,)),
-        "march": (march_call, (call, np.zeros(1), np.zeros(1, SAMPLE), np.zeros(1, EVENT))),
+        "march": (
+            march_call,
+            (call, np.zeros(1), np.zeros(1), np.zeros(1, SAMPLE), np.zeros(1, EVENT)),
+        ),
     }
     objects = [_object(name, *entry) for name, entry in entries.items()]
     return _with_section(_linked(objects, list(entries)), "layout", _layout())

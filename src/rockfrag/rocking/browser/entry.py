@@ -3,6 +3,8 @@
 They are compiled to WebAssembly alone (``build``), from the kernels that everything else is computed with.
 """
 
+import math
+
 import numpy as np
 
 from rockfrag.rocking.kernels import geometry
@@ -28,6 +30,7 @@ CALL = np.dtype(
     [
         # what describe reads
         ("statue", BLOCK), ("pedestal", BLOCK), ("offset", _F), ("stacked", _I),
+        ("ground", _F), ("interface", _F),  # measured restitution, NaN where momentum is conserved
         # what it leaves: whether the body stands (``geometry``), and the frequency parameters that steps and the
         # length of free rocking follow from [1/s]
         ("fault", _I), ("fastest", _F), ("slowest", _F),
@@ -37,12 +40,15 @@ CALL = np.dtype(
         ("summary", SUMMARY), ("done", _I),
         # what it works in
         ("state", STATE), ("before", STATE), ("trial", STATE),
-        ("series", SERIES), ("restoring", RESTORING), ("balances", BALANCE, 8),
+        ("series", SERIES), ("restoring", RESTORING), ("balances", BALANCE, 8), ("beyond", _I, (1,)),
     ],
     align=True,
 )  # fmt: skip
 """What a page and the module hand to each other."""
 
+
+GAINS_ENERGY = 6
+"""Fault of a measured restitution, beside those of ``geometry``."""
 
 # as a part of what is compiled here, and not as the entry that Python calls
 _march = kernel(march.py_func)
@@ -50,28 +56,32 @@ _march = kernel(march.py_func)
 
 @kernel
 def describe(call):
-    """Describe a body to the kernels: fill the geometry of its record; its gravity is there already."""
+    """Describe a body to the kernels: fill its record, in which its gravity stands already."""
     body, given = call.body, call.statue
-    statue = geometry.shape_of(
-        given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
-    )  # fmt: skip
+    statue = _shape(given)
     g = body.gravity
+    body.measured = not (math.isnan(call.ground) and math.isnan(call.interface))
     call.fault = geometry.STANDS if geometry.can_stand(statue) else geometry.FALLS_ALONE
     if call.stacked == 0:
         geometry.fill_block(body, statue)
+        if body.measured:
+            # of a lone block all laws are the same
+            body.after2r.law, body.after2r.value = geometry.RATIO, call.interface
+            body.after2l.law, body.after2l.value = geometry.RATIO, call.interface
+            _check_restitution(call, statue, call.interface)
         call.fastest = max(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
         call.slowest = min(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
         return
     given = call.pedestal
-    pedestal = geometry.shape_of(
-        given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
-    )  # fmt: skip
+    pedestal = _shape(given)
     pile = geometry.pile_of(pedestal, statue, given.height, given.lean, call.offset)
     if not geometry.can_stand(pedestal):
         call.fault = geometry.FALLS_ALONE
     if call.fault == geometry.STANDS:
         call.fault = geometry.fault_of(pile)
     geometry.fill_pile(body, pile)
+    _measure(call, pedestal, call.ground, body.after1r, body.after1l)
+    _measure(call, pile.statue, call.interface, body.after2r, body.after2l)
     whole = geometry.joined(pile)
     call.fastest = 0.0
     call.slowest = np.inf
@@ -84,10 +94,41 @@ def describe(call):
 
 
 @kernel
-def march_call(call, samples, history, events):
+def _shape(given):
+    return geometry.shape_of(
+        given.width, given.height, given.mass, given.inertia, given.cg_height, given.cg_offset, given.lean
+    )  # fmt: skip
+
+
+@kernel
+def _measure(call, block, restitution, right, left):
+    """Fill how a contact comes off its impacts, where that was measured."""
+    if math.isnan(restitution):
+        return
+    right.law, right.value = geometry.by_position(block, restitution, 1)
+    left.law, left.value = geometry.by_position(block, restitution, -1)
+    _check_restitution(call, block, restitution)
+
+
+@kernel
+def _check_restitution(call, block, restitution):
+    """Note a restitution with which energy could grow."""
+    largest = min(geometry.largest_restitution(block, 1), geometry.largest_restitution(block, -1))
+    if call.fault == geometry.STANDS and not 0.0 <= restitution <= largest:
+        call.fault = GAINS_ENERGY
+
+
+@kernel
+def march_call(call, samples, vertical, history, events):
     """March the body of a call; see ``single.march``."""
-    shaking = Shaking(samples, call.scale, call.dt, call.substeps, call.free_samples)
+    shaking = Shaking(samples, vertical, call.scale, call.dt, call.substeps, call.free_samples)
     scratch = Scratch(
-        call.state, call.before, call.trial, call.series, call.restoring, call.balances
+        call.state,
+        call.before,
+        call.trial,
+        call.series,
+        call.restoring,
+        call.balances,
+        call.beyond,
     )
     call.done = _march(call.body, shaking, call.initial, history, events, call.summary, scratch)

@@ -15,7 +15,7 @@ async function rockfragKernel(bytes) {
     new TextDecoder().decode(WebAssembly.Module.customSections(module, "layout")[0]),
   );
   const { gravity, step, free_time: freeTime } = layout.constants;
-  const KINDS = ["opening", "impact", "chatter"];
+  const KINDS = ["opening", "impact", "chatter", "lift-off"];
   const FAULTS = [
     "",
     "A centre of gravity is not above its base, so the block cannot stand.",
@@ -23,6 +23,7 @@ async function rockfragKernel(bytes) {
     "The statue's centre of gravity is not above the part of its base that lies on the pedestal.",
     "A centre of gravity is not above its base once the pedestal's lean is counted.",
     "The statue could touch the ground beside its pedestal before anything has fallen.",
+    "restitution: it would gain energy or is no ratio.",
   ];
 
   // ---- memory: what a function returns, a call, and arrays after it, all aligned to eight bytes
@@ -89,16 +90,21 @@ async function rockfragKernel(bytes) {
     return numbers;
   }
 
-  function bodyOf({ statue, pedestal = null, offset = 0, linear = false, g = gravity }) {
+  // a body and its measured restitution: a ratio, of a stack [ground, interface]; null conserves momentum
+  function bodyOf({ statue, pedestal = null, offset = 0, restitution = null, linear = false, g = gravity }) {
+    const [ground, between] = pedestal ? (restitution ?? [null, null]) : [null, restitution];
+    const byMomentum = { law: 0, value: 1 };
     reserve(arrays);
     new Uint8Array(memory.buffer, bodyAt, fields.body.size).fill(0);
     write(layout.call, call, {
       statue: given(statue, "statue"),
       offset,
       stacked: pedestal ? 1 : 0,
+      ground: ground ?? NaN,
+      interface: between ?? NaN,
       body: {
         gravity: g, linear: linear ? (pedestal ? 1 : 2) : 0,
-        eta1r: 1, eta1l: 1, eta2r: 1, eta2l: 1,
+        after1r: byMomentum, after1l: byMomentum, after2r: byMomentum, after2l: byMomentum,
       },
     });
     if (pedestal) write(layout.call, call, { pedestal: given(pedestal, "pedestal") });
@@ -131,17 +137,21 @@ async function rockfragKernel(bytes) {
   let room = 256; // events
 
   function runMarch({
-    body, samples, dt, scale = 1, substeps, freeSamples, initial = {}, history = true,
+    body, samples, vertical = new Float64Array(0), dt, scale = 1, substeps, freeSamples, initial = {}, history = true,
   }) {
     const steps = substeps && freeSamples !== undefined ? null : shakingOf(body, dt);
     const free = freeSamples ?? steps.freeSamples;
     const rows = history ? samples.length + free : 0;
     const samplesAt = arrays;
-    const historyAt = samplesAt + 8 * samples.length;
+    const verticalAt = samplesAt + 8 * samples.length;
+    const historyAt = verticalAt + 8 * vertical.length;
     const eventsAt = historyAt + rows * layout.sample.size;
     const places = history ? room : 0;
     reserve(eventsAt + places * layout.event.size);
     new Float64Array(memory.buffer, samplesAt, samples.length).set(samples);
+    // the kernels take it over gravity
+    const g = new DataView(body.record.buffer, body.record.byteOffset).getFloat64(fields.body.fields.gravity[0], true);
+    new Float64Array(memory.buffer, verticalAt, vertical.length).set(vertical.map((a) => a / g));
     new Uint8Array(memory.buffer, bodyAt, fields.body.size).set(body.record);
     write(layout.call, call, {
       initial: { c1: 0, c2: 0, theta1: 0, omega1: 0, theta2: 0, omega2: 0, ...initial },
@@ -153,13 +163,14 @@ async function rockfragKernel(bytes) {
     march(
       result, result + 8, call,
       ...array(samplesAt, samples.length, 8),
+      ...array(verticalAt, vertical.length, 8),
       ...array(historyAt, rows, layout.sample.size),
       ...array(eventsAt, places, layout.event.size),
     );
     const { summary, done } = read(layout.call, call);
     if (history && summary.events > room) {
       room = 2 * summary.events;
-      return runMarch({ body, samples, dt, scale, substeps, freeSamples, initial, history });
+      return runMarch({ body, samples, vertical, dt, scale, substeps, freeSamples, initial, history });
     }
     return {
       done,
@@ -192,5 +203,5 @@ async function rockfragKernel(bytes) {
     });
   }
 
-  return { bodyOf, shakingOf, march: runMarch };
+  return { bodyOf, shakingOf, march: runMarch, restitution: true };
 }

@@ -17,9 +17,6 @@ import numpy as np
 from rockfrag.rocking.kernels.elementary import atan2, hypot, sin, sin_cos
 from rockfrag.rocking.kernels.jit import kernel
 
-COUPLE, POSITION, RATIO = 1, 2, 3
-"""Laws of a measured restitution (``docs/restitution.md``)."""
-
 AFTER = np.dtype([("law", np.int64), ("value", np.float64)])
 """How a contact comes off an impact: by momentum (0) or by a law with its number, which is a factor on the rate
 that momentum gives (COUPLE), the place of the impulse from the middle (0) to the new pole (1) of the base

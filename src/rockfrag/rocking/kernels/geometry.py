@@ -110,6 +110,44 @@ def can_stand(shape: Shape) -> bool:
     return critical_angle(shape, 1) > 0.0 and critical_angle(shape, -1) > 0.0
 
 
+# --------------------------------------------------------------------------- impacts of a lone block
+
+MOMENTUM, COUPLE, POSITION, RATIO = 0, 1, 2, 3
+"""Laws by which a contact comes off an impact (``docs/restitution.md``)."""
+
+
+def _product(shape: Shape, pole: int) -> float:
+    """Moment of inertia in the angular momentum about the other pole of what turns about this one."""
+    x, y = arm(shape, pole)
+    return shape.inertia + shape.mass * (shape.x * x + shape.y * y)
+
+
+def momentum_restitution(shape: Shape, pole: int) -> float:
+    """Ratio of the rates after and before an impact on this pole that conserves momentum [-]."""
+    (x1, y1), (x2, y2) = arm(shape, -pole), arm(shape, pole)
+    return (shape.inertia + shape.mass * (x1 * x2 + y1 * y2)) / pole_inertia(shape, pole)
+
+
+def largest_restitution(shape: Shape, pole: int) -> float:
+    """Largest ratio with which no impact on this pole gains energy [-]."""
+    return math.sqrt(pole_inertia(shape, -pole) / pole_inertia(shape, pole))
+
+
+def impulse_position(shape: Shape, restitution: float, pole: int) -> float:
+    """Where the impulse acts if the block comes off with this ratio, from the middle (0) to the new pole (1)."""
+    old, new = arm(shape, -pole)[0], arm(shape, pole)[0]
+    excess = _product(shape, -pole) - restitution * _product(shape, pole)
+    return excess / (shape.mass * pole * shape.b * (old - restitution * new))
+
+
+def by_position(shape: Shape, restitution: float, pole: int) -> tuple[int, float]:
+    """Law and number of a measured restitution: its place, or a couple where momentum leaves more than that."""
+    by_momentum = momentum_restitution(shape, pole)
+    if restitution >= by_momentum:
+        return POSITION, impulse_position(shape, restitution, pole)
+    return COUPLE, restitution / by_momentum
+
+
 # --------------------------------------------------------------------------- a statue on a pedestal
 
 

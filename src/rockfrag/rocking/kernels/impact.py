@@ -19,14 +19,12 @@ Every outcome of every impact is worked out here, so a contact law has its place
 """
 
 from rockfrag.rocking.kernels.equations import (
-    COUPLE,
-    POSITION,
-    RATIO,
     kinetic_energy,
     metric,
     pole,
     turn_between,
 )
+from rockfrag.rocking.kernels.geometry import COUPLE, POSITION, RATIO
 from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
 
 GAIN = 1e-9
