@@ -20,18 +20,20 @@ from rockfrag.rocking.kernels.taylor import ORDER, SERIES, Step, fill_series, ra
 
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)))
 H, GROUND, RISE = 0.01, 2.0, -1.5
+GRAVITY, LIFT = 9.0, 3.0
+"""Of a ground that moves vertically too."""
 
 
 def product(u, v, k):
     return sum(u[j] * v[k - j] for j in range(k + 1))
 
 
-def series_by_recurrence(mass, moments, g, angles, rates, ground):
+def series_by_recurrence(mass, moments, gravity, angles, rates, ground):
     """Both angles over a step: M(Δ) θ'' + D(Δ) (θ2'², -θ1'²) + f = 0, every coefficient from those before it.
 
-    ``mass``: M11, M22, E, F; ``ground``: acceleration, and what it grows by; time in steps.
+    ``mass``: M11, M22, E, F; ``gravity``, ``ground``: accelerations, and what they grow by; time in steps.
     """
-    (m11, m22, e, f), a = mass, [*ground, *[0.0] * ORDER]
+    (m11, m22, e, f), a, g = mass, [*ground, *[0.0] * ORDER], [*gravity, *[0.0] * ORDER]
     theta = [[angles[i], rates[i]] for i in (0, 1)]
     sine, cosine = (
         [fn(x) for x in (*angles, angles[1] - angles[0])] for fn in (math.sin, math.cos)
@@ -45,7 +47,7 @@ def series_by_recurrence(mass, moments, g, angles, rates, ground):
         right = []
         for i, (vx, vy) in enumerate(moments):
             push = product(a, [vy * y - vx * x for x, y in zip(s[i], c[i], strict=True)], k)
-            weight = g * (vx * c[i][k] + vy * s[i][k])
+            weight = product(g, [vx * x + vy * y for x, y in zip(c[i], s[i], strict=True)], k)
             square = [product(rate[1 - i], rate[1 - i], j) for j in range(k + 1)]
             bend = [(j + 1) * (j + 2) * theta[1 - i][j + 2] for j in range(k)] + [0.0]
             right.append(
@@ -73,15 +75,15 @@ def fill(body, state, step, series):
 
 
 @entry_kernel
-def written_out(mass, weight1, weight2, g, rates, ground):
-    return rates_of_two(mass, weight1, weight2, g, rates, ground)
+def written_out(mass, weight1, weight2, rates, ground, gravity):
+    return rates_of_two(mass, weight1, weight2, rates, ground, gravity)
 
 
 def step_of(theta, omega):
     mass, moment1, moment2 = constants_of(BODY)
     scaled = [(H * H * x, H * H * y) for x, y in (moment1, moment2)]
     rates = [H * w for w in omega]
-    return mass, scaled, float(BODY["gravity"]), theta, rates, (GROUND, RISE)
+    return mass, scaled, (GRAVITY, LIFT), theta, rates, (GROUND, RISE)
 
 
 CASES = [((0.10, -0.05), (0.4, -0.9)), ((0.02, 0.0), (-1.0, 2.0)), ((0.3, 0.05), (0.0, 0.0))]
@@ -90,9 +92,9 @@ CASES = [((0.10, -0.05), (0.4, -0.9)), ((0.02, 0.0), (-1.0, 2.0)), ((0.3, 0.05),
 @pytest.mark.parametrize(("theta", "omega"), CASES)
 def test_the_series_of_one_history_are_those_of_the_recurrence(theta, omega):
     state = np.zeros(1, STATE)
-    state[0] = (1, -1, theta[0], omega[0], theta[1], omega[1], 0.0)
+    state[0] = (1, -1, theta[0], omega[0], theta[1], omega[1], 0.0, GRAVITY)
     series = np.zeros(1, SERIES)[0]
-    fill(BODY, state[0], Step(H, GROUND, RISE), series)
+    fill(BODY, state[0], Step(H, GROUND, RISE, GRAVITY, LIFT), series)
     plain = series_by_recurrence(*step_of(theta, omega))
     np.testing.assert_allclose(series["one"]["angle"], plain[0], rtol=1e-9, atol=1e-18)
     np.testing.assert_allclose(series["two"]["angle"], plain[1], rtol=1e-9, atol=1e-18)
@@ -100,7 +102,7 @@ def test_the_series_of_one_history_are_those_of_the_recurrence(theta, omega):
 
 @pytest.mark.parametrize(("theta", "omega"), CASES)
 def test_the_series_written_out_for_lanes_are_those_of_the_recurrence(theta, omega):
-    mass, moments, g, _, rates, ground = step_of(theta, omega)
+    mass, moments, gravity, _, rates, ground = step_of(theta, omega)
     m11, m22, e, f = mass
     delta = theta[1] - theta[0]
     c, s = math.cos(delta), math.sin(delta)
@@ -108,7 +110,8 @@ def test_the_series_written_out_for_lanes_are_those_of_the_recurrence(theta, ome
         (vy * math.cos(t) - vx * math.sin(t), vx * math.cos(t) + vy * math.sin(t))
         for t, (vx, vy) in zip(theta, moments, strict=True)
     ]
-    found = written_out((m11, m22, e * c + f * s, f * c - e * s), *weights, g, tuple(rates), ground)
+    coupled = m11, m22, e * c + f * s, f * c - e * s
+    found = written_out(coupled, *weights, tuple(rates), ground, gravity)
     plain = series_by_recurrence(*step_of(theta, omega))
     for one, angle in zip(found, plain, strict=True):
         np.testing.assert_allclose(one, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17)
