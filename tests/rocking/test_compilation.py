@@ -1,13 +1,16 @@
 """What is compiled, how often, and what happens where numba's private parts are not known."""
 
+import ast
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.kernels import jit
 from rockfrag.rocking.kernels.lanes.block import march_blocks
 from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
 
@@ -21,6 +24,22 @@ def test_one_compilation_serves_every_ensemble(body, entry):
     for motions, scales in ((1, [1.0]), (2, np.ones((2, 3))), (1, np.linspace(0, 1, 5))):
         overturns([body] * motions, [MOTION] * motions, 0.01, scales)
     assert len(entry.signatures) == 1
+
+
+KERNELS = Path(jit.__file__).parent
+
+
+@pytest.mark.parametrize(
+    "path",
+    [*KERNELS.rglob("*.py"), *KERNELS.parent.glob("browser/*.py")],
+    ids=lambda path: path.stem,
+)
+def test_no_kernel_has_more_than_eight_parameters(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef):
+            given = node.args
+            count = len([*given.posonlyargs, *given.args, *given.kwonlyargs])
+            assert count <= 8, f"{path.name}: {node.name} has {count} parameters"
 
 
 UNKNOWN = """
