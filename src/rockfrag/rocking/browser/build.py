@@ -20,6 +20,7 @@ import numpy as np
 from rockfrag.rocking.browser.entry import CALL, describe, march_call
 from rockfrag.rocking.inputs import FREE_TIME, STEP
 from rockfrag.rocking.kernels._numba import whole_ir
+from rockfrag.rocking.kernels.jit import KNOWN, TESTED_NUMBA
 from rockfrag.rocking.kernels.record import EVENT, SAMPLE
 from rockfrag.units import GRAVITY
 
@@ -129,5 +130,9 @@ def _length(number: int) -> bytes:
 
 
 if __name__ == "__main__":
+    if not KNOWN:
+        raise SystemExit(
+            f"numba: the module is made with version {TESTED_NUMBA[0]}x; install that."
+        )
     MODULE.write_bytes(build())
     print(f"{MODULE}: {MODULE.stat().st_size} bytes")
