@@ -210,6 +210,17 @@ def test_a_motion_in_g_is_warned_about_and_zeros_are_not(body):
 
 
 @pytest.mark.parametrize("body", [T2, STACK], ids=["block", "stack"])
+def test_a_motion_in_cm_s2_is_warned_about_by_either_function(body):
+    with pytest.warns(UserWarning, match="divide it by 100"):
+        simulate(body, 100 * SHAKE, 0.01)
+    with pytest.warns(UserWarning, match="divide it by 100"):
+        overturns(body, SHAKE, 0.01, [1.0, 100.0])
+    with pytest.warns(UserWarning, match=r"multiply it by 9\.81"):
+        overturns(body, SHAKE, 0.01, [1e-4, 1e-3])
+
+
+@pytest.mark.filterwarnings("ignore:the peak acceleration")
+@pytest.mark.parametrize("body", [T2, STACK], ids=["block", "stack"])
 def test_hostile_motions_end(body):
     rng = np.random.default_rng(0)
     for values in (

@@ -19,7 +19,7 @@ REJECTED = 0.05
 
 TAILS = (
     "The limits of β hold for lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
-    "goodness of fit seldom shows, nominal 90 % limits held in 83 %."
+    "goodness of fit seldom shows, nominal 90 % limits held in 82 %."
 )
 """Said of every curve with limits of β, whether or not its fit is rejected; see the validation."""
 

@@ -32,6 +32,7 @@ from rockfrag.rocking.inputs import (
     listed,
     listed_vertical,
     step_count,
+    warn_of_peak,
 )
 from rockfrag.rocking.kernels.equations import BODY
 from rockfrag.rocking.kernels.jit import compiling_alone
@@ -222,6 +223,10 @@ def overturns(
     """
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)
+    largest = np.abs(factors).max(axis=1, initial=0.0)
+    warn_of_peak(
+        max((np.abs(one).max() * s for one, s in zip(values, largest, strict=True)), default=0.0)
+    )
     up = listed_vertical(vertical, values, dts)
     checked_scales(factors, up or values)
     setting = _Setting(values, up, dts, factors, g, step, checked_threads(threads))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.plausibility import peak_warning
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.checks import positive_number, real_array, shown, whole_number
@@ -33,9 +34,6 @@ MOST_CASES = 50_000_000
 
 STRONGEST = 1e4
 """Peak acceleration [m/s²] beyond any earthquake."""
-
-WEAK_MOTION = 0.05
-"""A peak acceleration [m/s²] below this was probably given in g."""
 
 MotionLike = Motion | ArrayLike
 """A motion, or its accelerations [m/s²], shape (n,)."""
@@ -316,15 +314,10 @@ def check_case_count(count: int) -> None:
         )
 
 
-def warn_if_weak(values: NDArray[np.float64]) -> None:
-    """Warn if the motion looks as if it were given in g."""
-    peak = float(np.abs(values).max())
-    if 0 < peak < WEAK_MOTION:
-        warnings.warn(
-            f"the peak acceleration is {peak:.3g} m/s²; if the motion is in g, multiply it by 9.81",
-            UserWarning,
-            stacklevel=3,
-        )
+def warn_of_peak(peak: float) -> None:
+    """Warn if a motion looks as if it were given in another unit than m/s²."""
+    if doubt := peak_warning(peak):
+        warnings.warn(doubt, UserWarning, stacklevel=3)
 
 
 def fastest_frequency(body: Body, g: float) -> float:

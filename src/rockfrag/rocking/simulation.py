@@ -22,7 +22,7 @@ from rockfrag.rocking.inputs import (
     checked_vertical,
     free_samples,
     step_count,
-    warn_if_weak,
+    warn_of_peak,
 )
 from rockfrag.rocking.kernels.equations import STATE
 from rockfrag.rocking.kernels.jit import compiling_alone
@@ -116,7 +116,7 @@ def simulate(
         If an argument cannot be used; the message says which and why.
     """
     values, interval = checked_motion(motion, dt)
-    warn_if_weak(values)
+    warn_of_peak(float(np.abs(values).max()))
     record = body_record(body, restitution, checked_switch("linear", linear), g)
     up = checked_vertical(vertical, values, interval)
     if friction is not None:
