@@ -8,6 +8,7 @@ what lies beyond the ladder's resolution.
 """
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -18,7 +19,7 @@ from scipy import stats
 from rockfrag.pedestal.cluster_means import Array
 
 PLAUSIBLE = 0.05
-"""Levels whose T² has a smaller p value are excluded [-]."""
+"""Levels whose T² has a smaller p value, times the number of mechanisms tried, are excluded [-]."""
 
 LEAST_SCATTER = 0.005
 """Standard deviation of ln P/NP between events that a model is never taken to be surer than [-]."""
@@ -85,10 +86,11 @@ def invert(
     -------
     pandas.DataFrame
         One row per factor, acting everywhere, on the ``ground`` alone or ``above`` alone, and per pair of
-        factors, the most plausible first: factor_1, level_1, level_1_low, level_1_high (levels that are
-        not excluded, empty where all are); the same of factor_2 (empty for one factor); acts_on; ground,
-        above (P/NP of the model there); p (of the wanted effect under the model's scatter between
-        events; NaN with too few events); plausible; reaches (both ratios within 2 % of the wanted ones).
+        factors, the closest first: factor_1, level_1, level_1_low, level_1_high (levels that are not excluded
+        with all mechanisms counted, Bonferroni; empty where all are); the same of factor_2 (empty for one
+        factor); acts_on; ground, above (P/NP of the model there); p (of the wanted effect under the model's
+        scatter between events; NaN with too few events); plausible; reaches (both ratios within 2 % of the
+        wanted ones).
     """
     places = [name for name in ("ground", "above") if name in wanted]
     cells = _by_event(ratios, floors, places)
@@ -97,15 +99,18 @@ def invert(
     lines = _lines(cells, ideal, neutral)
     start = ideal.to_numpy(dtype=np.float64)
     found = []
+    everywhere_or_not = ("all floors", *(places if len(places) > 1 else []))
+    mechanisms = len(lines) * len(everywhere_or_not) + math.comb(len(lines), 2)
+    least_p = PLAUSIBLE / max(mechanisms, 1)
     for one in lines:
-        for acts_on in ("all floors", *(places if len(places) > 1 else [])):
+        for acts_on in everywhere_or_not:
             mask = np.array([acts_on in ("all floors", name) for name in places], dtype=float)
             tried = start + one.change * mask
-            found.append(_row([one], tried, acts_on, goal, places, resolution))
+            found.append(_row([one], tried, acts_on, goal, places, resolution, least_p))
     for one, two in itertools.combinations(lines, 2):
         both = one.change[:, None] + two.change[None, :]
         tried = start + both.reshape(-1, *both.shape[2:])
-        found.append(_row([one, two], tried, "all floors", goal, places, resolution))
+        found.append(_row([one, two], tried, "all floors", goal, places, resolution, least_p))
     table = pd.DataFrame(found, columns=[*COLUMNS, "distance"])
     table = table.sort_values("distance", kind="stable", ignore_index=True)
     return table.drop(columns="distance")
@@ -171,12 +176,13 @@ def _row(
     goal: Array,
     places: Sequence[str],
     resolution: float,
+    least_p: float,
 ) -> dict[str, object]:
     """Closest point of one or two factors, and what is not excluded around it."""
     p = hotelling(tried, goal, resolution)
     distance = np.abs(tried.mean(axis=1) - goal).max(axis=1)
     best = int(distance.argmin())
-    inside = p >= PLAUSIBLE
+    inside = p >= least_p
     shape = [line.level.size for line in lines]
     at = np.unravel_index(best, shape)
     reached = np.unravel_index(np.flatnonzero(inside), shape)

@@ -9,6 +9,7 @@ from rockfrag.report.sections.comparisons import COMPARISONS
 from rockfrag.report.sections.explanation import EXPLANATION
 from rockfrag.report.sections.floor_curves import FLOOR_CURVES
 from rockfrag.report.sections.fragility import FRAGILITY
+from rockfrag.report.sections.inversion import INVERSION
 from rockfrag.report.sections.left_out import LEFT_OUT
 from rockfrag.report.sections.measured import MEASURED
 from rockfrag.report.sections.measures import MEASURES
@@ -28,6 +29,7 @@ PARTS: tuple[Part, ...] = (
     MEASURES,
     VALIDITY,
     EXPLANATION,
+    INVERSION,
     MEASURED,
     SHAKER,
     BUILDING,

@@ -1,0 +1,81 @@
+"""What would give the effect that a study asks for: departures from the ideal model, alone and in pairs."""
+
+import math
+from collections.abc import Hashable, Mapping
+from typing import Any
+
+from rockfrag.pedestal.inversion import inversion_words
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import Part, Results, Section
+from rockfrag.report.sections.explanation import FACTORS, asks_explanation
+from rockfrag.study.study import Study
+
+SHOWN = 12
+"""Rows of the table, the closest first; the others are in ``explanation/inversion.csv``."""
+
+_COLUMNS = (
+    Column("name", "Departure, at the level that comes closest"),
+    Column("acts_on", "Acts on"),
+    Column("ground", "P/NP on the ground", 3),
+    Column("above", "P/NP above", 3),
+    Column("together", "Simulated together: ground, above", numeric=True),
+    Column("excluded", "Excluded"),
+)
+
+
+def _asked(study: Study) -> bool:
+    settings = study.more.explanation
+    return asks_explanation(study) and settings is not None and bool(settings.wanted_percent)
+
+
+def _section(results: Results) -> Section | None:
+    table = results.table("explanation/inversion")
+    settings = results.study.more.explanation
+    if table.empty or settings is None:
+        return None
+    wanted = {name: 1 + percent / 100 for name, percent in settings.wanted_percent.items()}
+    readable = table.assign(
+        factor_1=table["factor_1"].map(_title), factor_2=table["factor_2"].map(_title)
+    )
+    rows = table.head(SHOWN).to_dict("records")
+    shown = table.head(SHOWN).assign(
+        name=[
+            " with ".join(_departure(row, number) for number in (1, 2) if row[f"factor_{number}"])
+            for row in rows
+        ],
+        together=[_together(row) for row in rows],
+        excluded=["no" if row["plausible"] else "yes" for row in rows],
+    )
+    columns = [one for one in _COLUMNS if one.name not in ("ground", "above") or one.name in wanted]
+    caption = f"The closest of {len(table)} departures and pairs of them."
+    return Section(
+        "inversion",
+        "What would give the effect asked for",
+        inversion_words(readable, wanted),
+        [
+            "Between the levels tried, changes of ln P/NP are taken as straight; beyond them nothing is said. "
+            "Changes of two departures are added; the closest pairs were also simulated together. "
+            "“Excluded” are departures that no level brings within the scatter between earthquakes "
+            "(Hotelling’s T² at 5 %, all departures counted): few earthquakes exclude little."
+        ],
+        [table_html(shown, columns, caption)],
+    )
+
+
+def _title(factor: str) -> str:
+    return FACTORS[factor][0].lower() if factor else ""
+
+
+def _departure(row: Mapping[Hashable, Any], number: int) -> str:
+    title, unit = FACTORS[str(row[f"factor_{number}"])]
+    level = f"{row[f'level_{number}']:.3g}".replace("-", "−")
+    return f"{title if number == 1 else title.lower()} {unit.format(level)}"
+
+
+def _together(row: Mapping[Hashable, Any]) -> str:
+    values = [row.get("simulated_ground"), row.get("simulated_above")]
+    known = [float(one) for one in values if isinstance(one, float) and math.isfinite(one)]
+    return ", ".join(f"{one:.3f}" for one in known) if known else "–"
+
+
+INVERSION = Part(("explanation/inversion",), _section, asked=_asked)
