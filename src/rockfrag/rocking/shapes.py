@@ -18,13 +18,10 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from rockfrag.errors import InputError
+from rockfrag.plausibility import LARGEST_SIZE, MEAN_DENSITIES
 from rockfrag.rocking.bodies import Block
 
 MESH_ENDINGS = (".obj", ".ply", ".stl")
-LARGEST_SIZE = 30.0
-"""Largest extent of a free-standing object [m] that is believed; larger ones are in another unit."""
-DENSITIES = (100.0, 23000.0)
-"""Mean densities of objects [kg/m³], from hollow wood to the heaviest metal: others are mistaken units."""
 
 Array = NDArray[np.float64]
 
@@ -242,7 +239,7 @@ def read_shape(
     volume = float(mesh.volume)
     given = density if density is not None else _positive(path, "mass", mass) / volume
     weight = _positive(path, "density", given) * volume
-    if not DENSITIES[0] <= given <= DENSITIES[1]:
+    if not MEAN_DENSITIES[0] <= given <= MEAN_DENSITIES[1]:
         raise InputError(
             f"{path}: {weight:.4g} kg in {volume:.4g} m³ are {given:.4g} kg/m³, which no solid object has; "
             "check the mass and the unit of the mesh (metres_per_unit)."

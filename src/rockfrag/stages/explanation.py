@@ -32,7 +32,7 @@ def run(job: Job[Study]) -> Results:
         yield "explanation/inversion", inverted
     levels = effects[["factor", "level"]].drop_duplicates()
     job.log.info(
-        "%d ratios at %d levels of %d factors",
+        "ratios: %d, levels: %d, factors: %d",
         len(ratios),
         len(levels),
         effects["factor"].nunique(),

@@ -35,7 +35,7 @@ def run(job: Job[Study]) -> Results:
     exports.mkdir(parents=True, exist_ok=True)
     job.log.info("exported %s", ", ".join(export_curves(by_floor, exports)) or "no curve")
     best = choice.loc[choice["recommended"], "im"]
-    job.log.info("%d curves; best measures: %s", len(found.curves), ", ".join(dict.fromkeys(best)))
+    job.log.info("curves: %d; best measures: %s", len(found.curves), ", ".join(dict.fromkeys(best)))
 
 
 def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:

@@ -39,7 +39,7 @@ def run(job: Job[Study]) -> Results:
         study.fragility.confidence,
     )
     yield from found.items()
-    job.log.info("%d measured tests", len(found["measured/tests"]))
+    job.log.info("measured tests: %d", len(found["measured/tests"]))
 
 
 def measured_tables(

@@ -47,7 +47,7 @@ def run(job: Job[Study]) -> Results:
         table = table.merge(pairs, on="name", how="left")
     yield "measures", table
     missing = f", {len(left_out)} left out" if left_out else ""
-    job.log.info("%d records%s, %d motions of floors", len(records), missing, len(floors))
+    job.log.info("records: %d%s, motions of floors: %d", len(records), missing, len(floors))
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ def run(job: Job[Study]) -> Results:
     found = pedestal_tables(job.table("tests"), job.study.seed, slenderness)
     for name, table in found.items():
         yield f"pedestal/{name}", table
-    job.log.info("%d pairs with and without pedestal", len(found["pairs"]))
+    job.log.info("pairs with and without pedestal: %d", len(found["pairs"]))
 
 
 def pedestal_tables(

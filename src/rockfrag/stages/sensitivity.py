@@ -34,7 +34,7 @@ def run(job: Job[Study]) -> Results:
     by = ["axis", "value", "label", "credible"]
     laboratory = tests[tests["reading"] == READING]
     yield "building_sensitivity/means", mean_amplitudes_of(laboratory, by)
-    job.log.info("%d buildings", len(variants))
+    job.log.info("buildings: %d", len(variants))
 
 
 STAGE = Stage(

@@ -36,7 +36,7 @@ def run(job: Job[Study]) -> Results:
         histories += len(table)
         job.log.info("%s: %d histories so far", configuration.name, histories)
     yield "as_recorded", pd.concat(recorded, ignore_index=True)
-    job.log.info("%d response histories", histories)
+    job.log.info("response histories: %d", histories)
 
 
 def sweep(

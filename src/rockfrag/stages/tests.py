@@ -31,7 +31,7 @@ def run(job: Job[Study]) -> Results:
     by_name = {motion.name: motion for motion in motions}
     yield "validity", validity_table(laboratory, study.configurations, by_name)
     censored = int((laboratory["censored"] != "none").sum())
-    job.log.info("%d tests, %d of them not overturned", len(laboratory), censored)
+    job.log.info("tests: %d, not overturned: %d", len(laboratory), censored)
 
 
 STAGE = Stage(

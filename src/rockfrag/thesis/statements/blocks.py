@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.rocking import Block, overturns, simulate
 from rockfrag.rocking.restitution import (
     RestitutionFit,
@@ -262,12 +263,11 @@ def least_overturning_amplitudes(
 ) -> Floats:
     """Least overturning amplitude of `AMPLITUDES_G`, shape (bodies, motions); NaN if none does [g]."""
     motions = setting.sample
-    unit = np.array([GRAVITY / one.pga for one in motions])
     found = overturns(
         bodies,
         [one.acceleration for one in motions],
         [one.dt for one in motions],
-        unit[:, np.newaxis] * AMPLITUDES_G,
+        np.array([factors_to_pga(one, AMPLITUDES_G) for one in motions]),
         restitution=restitution,
         threads=setting.threads,
     )
