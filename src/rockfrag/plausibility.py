@@ -10,7 +10,7 @@ STONE = 2500.0
 """Density of stone [kg/m³], where nobody says how heavy an object is."""
 
 MEAN_DENSITIES = (100.0, DENSITIES[1])
-"""The same where the volume is known, so that nothing is left to the depth: hollow wood, and osmium [kg/m³]."""
+"""Least and largest density where the volume is known and no depth is guessed: hollow wood, and osmium [kg/m³]."""
 
 DEPTHS = (0.1, 3.0)
 """Least depth of an object over its width, largest over the longer of width and height: a panel rocking in its
