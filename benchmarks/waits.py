@@ -14,9 +14,12 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.files import write_table
+from rockfrag.motions.measures import measure_motions
+from rockfrag.records.motion import Motion
 from rockfrag.stages.log import last_seconds
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -38,15 +41,19 @@ REACH = {
     ("smoke", "warm"): 15,
     ("wide", "warm"): 90,
     ("make test", ""): 300,
+    ("measures of a motion", ""): 0.004,
 }
 """What is to be reached on two idle cores [s]."""
 
+MEASURED = 100
+"""Motions that are measured for the time of one."""
+
 SHARES = {
-    "rocking": ("sweep", "explain", "validity", "sensitivity", "vary"),
-    "drawing": ("report", "draw"),
-    "records and motions": ("read", "process", "shake", "measure_motions", "fetch"),
+    "rocking": ("sweep", "explanation", "building_sensitivity"),
+    "drawing": ("report", "campaign_report"),
+    "records and motions": ("fetch_records", "motions"),
 }
-"""What a stage mostly does, by words of its name; all others are statistics."""
+"""What a stage mostly does, by its name; all others are statistics."""
 
 
 def main() -> None:
@@ -65,12 +72,14 @@ def main() -> None:
                 continue
             if name == "make test":
                 seconds = timed(["make", "test"], ROOT, {})
+            elif name == "measures of a motion":
+                seconds = measuring_seconds()
             else:
                 seconds = study_seconds(project, name, state)
-            rows.append({"wait": f"{name} {state}".strip(), "seconds": round(seconds, 1)})
+            rows.append({"wait": f"{name} {state}".strip(), "seconds": float(f"{seconds:.3g}")})
             rows[-1]["reach"] = REACH[name, state]
             print(
-                f"{rows[-1]['wait']:<24} {seconds:7.1f} s   (to reach: {REACH[name, state]} s)",
+                f"{rows[-1]['wait']:<24} {seconds:7.3g} s   (to reach: {REACH[name, state]} s)",
                 flush=True,
             )
             if state in ("warm", "cold kernels"):
@@ -115,6 +124,20 @@ def study_seconds(project: Path, study: str, state: str) -> float:
     return timed(command, project, {"NUMBA_CACHE_DIR": str(kernels)})
 
 
+def measuring_seconds() -> float:
+    """Wall seconds that all intensity measures of a motion of 40 s take, its compiling aside."""
+    # noise without the highest frequencies, of which records have little
+    noise = np.convolve(np.random.default_rng(1).normal(size=4000), np.hanning(15), mode="same")
+    samples = noise * np.hanning(4000)
+    motions = [
+        Motion(name=f"noise {k}", acceleration=samples * (1 + k), dt=0.01) for k in range(MEASURED)
+    ]
+    measure_motions(motions[:1])
+    start = time.perf_counter()
+    measure_motions(motions)
+    return (time.perf_counter() - start) / MEASURED
+
+
 def timed(command: list[str], folder: Path, more: dict[str, str]) -> float:
     """Wall seconds of a command that must succeed."""
     start = time.perf_counter()
@@ -130,7 +153,7 @@ def shares_of(project: Path, study: str) -> dict[str, float]:
     """Share of the jobs' seconds by what they do; start-up is what a job takes beyond its stage."""
     seconds: dict[str, float] = {}
     for rule, whole in job_seconds(project / ".snakemake" / "metadata").items():
-        kinds = [kind for kind, words in SHARES.items() if any(word in rule for word in words)]
+        kinds = [kind for kind, stages in SHARES.items() if rule in stages]
         kind = kinds[0] if kinds else "statistics"
         own = min(
             last_seconds(project / "results" / study / "logs" / f"{rule}.log") or whole, whole
