@@ -14,6 +14,9 @@ MUTATIONS ?= 10000
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
+PIP := $(RUN) pip install --quiet --disable-pip-version-check
+# where the digests of all wheels are known they are checked (maintenance/pins.py writes them)
+HASHES = hashes/$(shell "$(PYTHON)" -c 'import sys, platform; print(f"{sys.platform}-{platform.machine()}-py{sys.version_info[0]}{sys.version_info[1]}")').txt
 # what failed has said so in a sentence; make, which would add three lines, dies of a closed pipe instead
 QUIETLY := || { kill -PIPE $$PPID; exit 1; }
 
@@ -67,9 +70,11 @@ bench: .venv/installed
 	@.venv/bin/python benchmarks/run.py
 	@.venv/bin/python benchmarks/waits.py
 
-.venv/installed: pyproject.toml constraints.txt
+.venv/installed: pyproject.toml constraints.txt $(wildcard hashes/*.txt)
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; name another with make PYTHON=…")'
 	@test -x .venv/bin/python || "$(PYTHON)" -m venv .venv
 	@echo "Installing into .venv (once)"
-	@$(RUN) pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[workflow,test,lint]"
+	@if test -f "$(HASHES)"; then $(PIP) --require-hashes --no-deps --requirement "$(HASHES)" && \
+		$(PIP) --no-deps --no-build-isolation --editable .; \
+		else $(PIP) --constraint constraints.txt --editable ".[workflow,test,lint]"; fi
 	@touch .venv/installed

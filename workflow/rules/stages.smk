@@ -15,7 +15,12 @@ for stage in STAGES:
             f"{RESULTS}/logs/{stage.name}.log",
         conda:
             "../envs/rockfrag.yaml"
-        threads: (workflow.cores or 1) if stage.parallel else 1
+        # a cluster's profile says how many threads a job may have at most
+        threads: (workflow.resource_settings.cores or 64) if stage.parallel else 1
+        resources:
+            mem_mb=stage.memory_mb(STUDY),
+            runtime=stage.minutes,
+        localrule: stage.small
         params:
             study=STUDY_FILE,
             triggers=stage.triggers(config),

@@ -123,6 +123,7 @@ def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFr
 
 STAGE = Stage(
     name="measured_tests",
+    small=True,
     run=run,
     wanted=lambda study: study.more.measured_tests is not None,
     inputs=("tests",),

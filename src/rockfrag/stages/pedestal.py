@@ -64,6 +64,7 @@ def pedestal_tables(
 
 STAGE = Stage(
     name="pedestal",
+    small=True,
     run=run,
     wanted=lambda study: study.has_pairs,
     inputs=("tests",),

@@ -35,6 +35,13 @@ Results = Iterator[tuple[str, "pd.DataFrame | list[Motion]"]]
 """What a stage yields: each of its results by name, as soon as it is there."""
 
 
+_LIBRARIES_MB = 1500
+"""Memory of a process that has loaded and compiled all that a stage uses [MiB]."""
+
+_BYTES_A_HISTORY = 600
+"""Memory for a row of a sweep while it is read and grouped: three copies of it."""
+
+
 @dataclass(frozen=True)
 class Stage(Generic[S]):
     """One stage of a study, which is one rule of the workflow.
@@ -60,6 +67,10 @@ class Stage(Generic[S]):
         Whether a study has this stage at all.
     parallel
         Whether it can use all cores, and gets them.
+    small
+        Whether it takes seconds, less than a cluster takes to start it.
+    minutes
+        For how long a cluster should lend a machine [min].
     """
 
     name: str
@@ -70,6 +81,12 @@ class Stage(Generic[S]):
     settings: tuple[str, ...] = ()
     wanted: Callable[[S], bool] = lambda study: True
     parallel: bool = False
+    small: bool = False
+    minutes: int = 120
+
+    def memory_mb(self, study: S) -> int:
+        """Memory that a cluster should lend [MiB]: libraries, and the sweeps as tables."""
+        return _LIBRARIES_MB + int(getattr(study, "histories", 0) * _BYTES_A_HISTORY / 2**20)
 
     def output_files(self, study: S) -> list[str]:
         """Paths of the results in the study's folder, those of a table in both forms."""

@@ -97,6 +97,12 @@ class Study:
             f"{len(self.configurations)} configurations, {len(self.amplitudes.values_g)} amplitudes"
         )
 
+    @property
+    def histories(self) -> int:
+        """Number of response histories of its sweeps."""
+        motions = len(self.catalogue) * len(self.floors)
+        return motions * len(self.configurations) * len(self.amplitudes.values_g)
+
     def doubts(self) -> list[str]:
         """Warnings about sizes that look as if they were in another unit."""
         return [

@@ -1,0 +1,146 @@
+"""A study on a real SLURM, brought up on this machine from its packages, ends in the same bytes."""
+
+import importlib.util
+import os
+import shutil
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from .test_run import ROOT, tables_of
+
+CONF = Path("/etc/slurm/slurm.conf")
+"""Where jobs look for the configuration: the executor takes SLURM's variables from their environment."""
+
+DAEMONS = ("munged", "slurmctld", "slurmd")
+CONFIGURATION = """
+ClusterName=test
+SlurmctldHost={host}
+SlurmUser=root
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.socket
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd.log
+SlurmctldPort={port}
+SlurmdPort={other_port}
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+ReturnToService=2
+MailProg=/bin/true
+NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=4000 State=UNKNOWN
+PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def _reason() -> str:
+    """Why no SLURM can be brought up here, or an empty text."""
+    if os.geteuid() != 0:
+        return "SLURM's daemons need root"
+    missing = [name for name in DAEMONS if _program(name) is None]
+    if missing:
+        return f"not installed: {', '.join(missing)} (Debian: slurmctld slurmd slurm-client munge)"
+    if CONF.exists():
+        return f"a SLURM is configured here already ({CONF})"
+    if importlib.util.find_spec("snakemake_executor_plugin_slurm") is None:
+        return "not installed: snakemake-executor-plugin-slurm (pip install '.[slurm]')"
+    return ""
+
+
+def _program(name: str) -> str | None:
+    return shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin:/sbin")
+
+
+def _free_port() -> int:
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return int(one.getsockname()[1])
+
+
+@pytest.fixture
+def slurm(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A SLURM of one node, this machine, for as long as a test lasts."""
+    if reason := _reason():
+        pytest.skip(reason)
+    # munge trusts no folder that others may write to, and sockets have short names
+    folder = Path("/var/lib") / f"rockfrag-slurm-{os.getpid()}"
+    for name in ("", "state", "spool"):
+        (folder / name).mkdir(mode=0o755)
+    (folder / "key").write_bytes(os.urandom(1024))
+    (folder / "key").chmod(0o400)
+    host = socket.gethostname().split(".")[0]
+    settings = CONFIGURATION.format(
+        host=host, folder=folder, port=_free_port(), other_port=_free_port()
+    )
+    CONF.parent.mkdir(exist_ok=True)
+    CONF.write_text(settings)
+    monkeypatch.setenv("PATH", f"{os.environ['PATH']}:/usr/sbin:/sbin")
+    munged = [
+        *("munged", "--foreground", f"--key-file={folder}/key", f"--socket={folder}/munge.socket"),
+        *(f"--pid-file={folder}/munge.pid", f"--log-file={folder}/munge.log"),
+        *(f"--seed-file={folder}/munge.seed", "--force"),
+    ]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    daemons = []
+    try:
+        for command in (munged, ["slurmctld", "-D"], ["slurmd", "-D", "-N", host]):
+            daemons.append(subprocess.Popen(command, **quiet))
+            time.sleep(1)
+        _wait_for_node(folder)
+        yield folder
+    finally:
+        for daemon in reversed(daemons):
+            daemon.terminate()
+            try:
+                daemon.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                daemon.kill()
+                daemon.wait()
+        CONF.unlink()
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _wait_for_node(folder: Path) -> None:
+    for _ in range(60):
+        done = subprocess.run(
+            ["sinfo", "--noheader", "--format=%T"], capture_output=True, text=True, check=False
+        )
+        if done.stdout.strip() == "idle":
+            return
+        time.sleep(1)
+    logs = "\n".join(path.read_text()[-500:] for path in folder.glob("*.log"))
+    pytest.fail(f"SLURM did not come up: {done.stdout} {done.stderr}\n{logs}")
+
+
+@pytest.mark.slow
+def test_a_study_on_slurm_ends_in_the_same_bytes(study_folder: Path, slurm: Path):
+    launcher = [sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml"]
+    subprocess.run([*launcher, "--cores", "2"], cwd=study_folder, check=True, capture_output=True)
+    wanted = tables_of(study_folder)
+    shutil.rmtree(study_folder / "results")
+    done = subprocess.run(
+        [
+            *(*launcher, "--profile", str(ROOT / "profiles" / "slurm"), "--slurm-no-account"),
+            *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "2"),
+            *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
+        ],
+        cwd=study_folder,
+        capture_output=True,
+        text=True,
+        timeout=900,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert "SLURM jobid" in done.stderr
+    assert tables_of(study_folder) == wanted
