@@ -79,6 +79,8 @@ def main() -> int:
             ("foreign processors and places", foreign_processors),
         ]
         tallies = []
+        print("| trial | runs | manual steps | differing files | files outside | time |")
+        print("|---|--:|--:|--:|--:|--:|")
         for name, trial in kinds:
             if options.only and options.only not in name:
                 continue
@@ -86,11 +88,8 @@ def main() -> int:
             started = time.monotonic()
             trial(study, tally, rng)
             tallies.append(tally)
-            print(f"{name}: {time.monotonic() - started:.0f} s", file=sys.stderr, flush=True)
-    print("| trial | runs | manual steps | differing files | files outside |")
-    print("|---|--:|--:|--:|--:|")
-    for one in tallies:
-        print(f"| {one.kind} | {one.trials} | {one.steps} | {one.differing} | {one.outside} |")
+            counts = f"{tally.trials} | {tally.steps} | {tally.differing} | {tally.outside}"
+            print(f"| {name} | {counts} | {time.monotonic() - started:.0f} s |", flush=True)
     print(f"\n{time.monotonic() - begin:.0f} s")
     for one in tallies:
         for words in one.noise:
