@@ -45,7 +45,7 @@ def same(one: EnsembleResult, other: EnsembleResult) -> None:
 
 def picked(result: EnsembleResult, *index) -> EnsembleResult:
     """A result with its axes reordered or cut."""
-    parts = {name: values[index] for name, values in vars(result).items() if values.ndim == 3}
+    parts = {name: values[index] for name, values in vars(result).items() if values.ndim >= 3}
     return replace(result, **parts)
 
 
