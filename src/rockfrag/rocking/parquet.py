@@ -160,6 +160,7 @@ def _table(
         "peak_rotation_pedestal": result.peak_rotation_pedestal,
         "peak_velocity_rad_s": result.peak_velocity,
         "impacts": result.impacts,
+        "given_way": result.given_way,
         "closest_approach": result.closest_approach,
     }
     arrays = [
