@@ -1,5 +1,6 @@
 """The workflow itself, on a small study with synthetic motions and without network."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -68,6 +69,15 @@ def test_a_study_runs_from_records_to_report_and_then_has_nothing_to_do(study_fo
 
     again = snakemake(study_folder, "--cores", "2", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
+
+    listed = snakemake(study_folder, "--report", "listed.html")
+    assert listed.returncode == 0, listed.stderr[-3000:]
+    text = (study_folder / "listed.html").read_text(encoding="utf-8")
+    captions = json.loads((results / "figures" / "captions.json").read_text(encoding="utf-8"))
+    assert set(captions) == {path.stem for path in (results / "figures").glob("*.svg")}
+    for name, said in captions.items():
+        assert json.dumps(said["caption"]) in text, name
+        assert json.dumps(said["chapter"]) in text, name
 
 
 @pytest.mark.slow

@@ -98,7 +98,7 @@ def _answer(
     return Answer(
         asked="How often does the simulation say of a test what happened on the table?",
         sentences=found[:3],
-        figure=next((one for one in specs if one.name == "tests"), None),
+        figure=next((one for one in specs if one.name == "tests"), specs[0]),
         rests_on=[
             f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, each "
             "simulated with the motion measured on the table; intervals resample input motions.",
@@ -107,7 +107,7 @@ def _answer(
         could_overturn=[
             f"{sentence(of_all(near, len(tests), 'test'))} {'is' if near == 1 else 'are'} near-critical: "
             "plausible ways to set the object up disagree there by more than one in ten.",
-            *(one.said for one in found[3:]),
+            *(one.headline + "." for one in found[3:]),
         ],
     )
 

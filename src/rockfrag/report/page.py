@@ -191,8 +191,12 @@ class _Chapter:
     tables: Sequence[Markup]
 
 
-def _chapter(section: Section, pictures: Mapping[str, Picture]) -> _Chapter:
-    drawn = [pictures[one.name] for one in section.parts if isinstance(one, FigureSpec)]
+def _chapter(
+    section: Section, pictures: Mapping[str, Picture], shown: FigureSpec | None
+) -> _Chapter:
+    """Part a section's figures, but for the one that the answer shows already, from its tables."""
+    specs = [one for one in section.parts if isinstance(one, FigureSpec) and one is not shown]
+    drawn = [pictures[one.name] for one in specs]
     return _Chapter(
         section, drawn, [one for one in section.parts if isinstance(one, Markup) and one]
     )
@@ -241,7 +245,7 @@ def render(
         lead=lead,
         answer=answer,
         answer_picture=answer.figure and pictures[answer.figure.name],
-        chapters=[_chapter(section, pictures) for section in sections],
+        chapters=[_chapter(section, pictures, answer.figure) for section in sections],
         provenance=provenance,
         basis=basis,
         live=live,
