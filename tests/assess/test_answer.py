@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -209,3 +210,15 @@ def test_the_page_says_it_all_and_loads_nothing(motions, tmp_path):
 )
 def test_estimates_have_as_many_digits_as_they_deserve(found, words):
     assert estimate_words(found) == words
+
+
+@pytest.mark.slow
+def test_with_much_friction_sliding_changes_little_and_on_ice_nothing_topples(motions):
+    few = replace(motions, ground=motions.ground[:8], base=motions.base[:8], pairs=())
+    rough, ice = (
+        assess_with(asked(**FIGURE, pga="0.9 g", friction=friction), few)
+        for friction in (1.5, 0.05)
+    )
+    assert ice.sliding_share == 0
+    assert abs(rough.sliding_share - rough.share.value) <= 0.26
+    assert rough.share.value == ice.share.value > 0

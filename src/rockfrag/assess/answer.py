@@ -31,6 +31,7 @@ from rockfrag.assess.verdicts import (
     Ladder,
     Verdicts,
     make_ladder,
+    share_with_sliding,
     verdicts_of,
 )
 from rockfrag.errors import InputError
@@ -102,6 +103,8 @@ class Assessment:
         What each assumption does to the answer.
     rules
         Engineers' rules held against the verdicts.
+    sliding_share
+        Share of the motions at the level that topple it if it may slide [-]; NaN without friction or level.
     """
 
     request: Request
@@ -120,6 +123,7 @@ class Assessment:
     remedies: tuple[Remedy, ...]
     effects: tuple[Effect, ...]
     rules: tuple[RuleCheck, ...]
+    sliding_share: float
 
     @property
     def measure(self) -> Measure:
@@ -226,6 +230,9 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
             for name, both in spreads.moved.items()
         ),
         rules=() if brief else tuple(check_rules(objects, motions, now)),
+        sliding_share=math.nan
+        if brief or at is None or objects.friction is None
+        else share_with_sliding(objects, motions, measure, at),
     )
 
 

@@ -31,6 +31,7 @@ def as_json(found: Assessment) -> str:
         "years": request.years,
         "interval_level": LEVEL,
         "share_rocking": found.rocking_share,
+        "share_toppling_with_sliding": found.sliding_share,
         "share_toppling": _estimate(found.share),
         "probability": _estimate(found.probability),
         "amplitude_toppling": {f"{p:g}": _estimate(e) for p, e in found.amplitudes.items()},

@@ -40,6 +40,7 @@ def add_assess_commands(commands: Any) -> None:
         "--mesh", metavar="FILE", help="closed mesh of it (OBJ, PLY, STL; z up) instead"
     )
     about.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
+    about.add_argument("--friction", type=float, help="coefficient: it may slide at that level")
     about.add_argument(
         "--pedestal", nargs=3, metavar=("WIDTH", "HEIGHT", "MASS"), help="the block it stands on"
     )
@@ -142,6 +143,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     plain |= {
         "name": options.name,
         "restitution": options.restitution,
+        "friction": options.friction,
         "mesh": {"file": options.mesh} if options.mesh else None,
         "pedestal": dict(zip(("width", "height", "mass"), options.pedestal, strict=True))
         if options.pedestal

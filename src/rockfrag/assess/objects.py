@@ -57,6 +57,8 @@ class Objects:
         Its pedestal; None if it stands on the floor.
     restitution
         Measured ratio of angular velocities at an impact [-]; None conserves momentum.
+    friction
+        Coefficient of friction of all contacts [-]; None if nothing slides.
     tolerances
         Relative standard deviations of width, height of the centre of gravity, restitution and mass.
     plane
@@ -70,6 +72,7 @@ class Objects:
     statue: Block
     pedestal: Block | None
     restitution: float | None
+    friction: float | None
     tolerances: Mapping[str, float]
     plane: str
     assumed: tuple[str, ...] = ()
@@ -198,6 +201,7 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         statue=statue,
         pedestal=pedestal,
         restitution=settings.get("restitution"),
+        friction=settings.get("friction"),
         tolerances=tolerances,
         plane=plane,
         assumed=tuple(assumed),

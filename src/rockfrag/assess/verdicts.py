@@ -160,6 +160,39 @@ def verdicts_of(
     }
 
 
+def share_with_sliding(
+    objects: Objects, motions: MotionSet, measure: Measure, level: float
+) -> float:
+    """Share of the motions at a level that topple the object as it stands if it may slide.
+
+    Simulations with friction take some hundred times as long as those without, so that they are made for
+    one level.
+
+    Parameters
+    ----------
+    objects
+        The object, with its friction.
+    motions
+        The motions.
+    measure
+        Measure of the level.
+    level
+        The level, in the measure's unit.
+    """
+    body = objects.body
+    scales = level / motions.values(measure)
+    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    fallen = overturns(
+        body,
+        [motion.acceleration for motion in motions.base],
+        [motion.dt for motion in motions.base],
+        scales[:, np.newaxis],
+        restitution=[objects.restitution_of(body)],
+        friction=objects.friction,
+    ).overturned[0, :, 0]
+    return float(fallen[allowed].mean())
+
+
 def _rocked(result: EnsembleResult, i: int) -> NDArray[np.bool_]:
     peaks = np.maximum(result.peak_rotation[i], result.peak_rotation_pedestal[i])
     return np.asarray((peaks > 0) | result.overturned[i])

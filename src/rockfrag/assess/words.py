@@ -199,9 +199,15 @@ def assumptions(found: Assessment) -> list[str]:
         lines.append(
             "The building stays elastic; one that cracks passes on less, and that of other frequencies."
         )
-    lines.append(
-        "It rocks in one plane on sharp rigid edges and does not slide; that needs friction, and a rough base."
-    )
+    lines.append("It rocks in one plane on sharp rigid edges.")
+    if math.isfinite(found.sliding_share) and found.share is not None:
+        lines.append(
+            f"With a friction of {request.objects.friction:g} it may slide and topples in "
+            f"{share_words(found.sliding_share)} of the motions at that level instead of "
+            f"{share_words(found.share.value)}; all other numbers are without sliding."
+        )
+    else:
+        lines.append("It does not slide; that needs friction, and a rough base.")
     if found.conversion:
         lines.append(found.conversion.words)
     if found.hazard:
