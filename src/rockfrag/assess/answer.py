@@ -223,7 +223,11 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         },
         curve=None if brief else fragility_of(now.outcomes()),
         conversion=conversion,
-        directions=None if brief else find_directions(objects, motions, ladder, at),
+        directions=None
+        if brief
+        else find_directions(
+            objects, motions, make_ladder(motions, measure, asked, FEW_LEVELS), at
+        ),
         remedies=() if brief else _remedies(request, motions, ladder, target, now),
         effects=tuple(
             Effect(name, spreads.spreads[name], *(target.back(target.on_scale(v)) for v in both))
