@@ -27,6 +27,8 @@ html_theme = "furo"
 html_title = f"rockfrag {release}"
 html_extra_path = ["tutorial.ipynb"]
 html_static_path = ["reference/static"]
+# Sphinx looks for it before anything is generated
+(ROOT / "docs" / "reference" / "static").mkdir(parents=True, exist_ok=True)
 html_copy_source = False
 html_show_sourcelink = False
 myst_enable_extensions = ["dollarmath", "deflist"]
