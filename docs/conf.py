@@ -56,7 +56,7 @@ PAGES = {
 """Documents outside this folder, and the page that shows each."""
 
 LIVE = """```{raw} html
-<iframe src="_static/play.html" title="A figure on a plinth, simulated live" style="width: 100%; height:
+<iframe src="_static/play.html#live" title="A figure on a plinth, simulated live" style="width: 100%; height:
 56rem; border: 0"> </iframe>
 ```"""
 """What stands for ``{{ live }}`` on the front page."""

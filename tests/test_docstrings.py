@@ -14,7 +14,10 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     validate = pytest.importorskip("numpydoc.validate", reason="numpydoc is not installed").validate
 
-ROOMS = ("", ".rocking", ".motions", ".building", ".shaketable", ".fragility", ".pedestal")
+ROOMS = (
+    *("", ".assess", ".rocking", ".motions", ".building", ".shaketable", ".fragility"),
+    ".pedestal",
+)
 FORM = {"GL05", "GL06", "GL07", "GL08", "PR02", "PR03", "YD01"}
 PARAMETERS = "PR01"
 
