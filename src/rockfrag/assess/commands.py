@@ -4,6 +4,7 @@ import argparse
 import shutil
 import sys
 import textwrap
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +43,10 @@ def add_assess_commands(commands: Any) -> None:
     about.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
     about.add_argument("--friction", type=float, help="coefficient: it may slide at that level")
     about.add_argument(
-        "--pedestal", nargs=3, metavar=("WIDTH", "HEIGHT", "MASS"), help="the block it stands on"
+        "--pedestal",
+        nargs="+",
+        metavar="SIZE",
+        help="width, height and, if known, mass of the block it stands on",
     )
     place = parser.add_argument_group("the place")
     place.add_argument(
@@ -145,9 +149,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
         "restitution": options.restitution,
         "friction": options.friction,
         "mesh": {"file": options.mesh} if options.mesh else None,
-        "pedestal": dict(zip(("width", "height", "mass"), options.pedestal, strict=True))
-        if options.pedestal
-        else None,
+        "pedestal": _pedestal(options.pedestal),
         "floor": options.floor,
         "building": options.building,
         "sa": options.sa,
@@ -164,6 +166,17 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
             **({"unit": options.unit} if options.unit else {}),
         }
     return {key: value for key, value in plain.items() if value is not None}
+
+
+def _pedestal(given: Sequence[str] | None) -> dict[str, str] | None:
+    if given is None:
+        return None
+    if len(given) not in (2, 3):
+        raise InputError(
+            "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
+            f"{' '.join(given)}."
+        )
+    return dict(zip(("width", "height", "mass"), given, strict=False))
 
 
 def _inventory(options: argparse.Namespace) -> int:
