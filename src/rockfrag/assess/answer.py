@@ -33,6 +33,7 @@ from rockfrag.assess.verdicts import (
     make_ladder,
     share_with_sliding,
     verdicts_of,
+    verdicts_of_all,
 )
 from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import BETA_MODEL
@@ -291,12 +292,12 @@ def _spreads(
     ladder = make_ladder(motions, measure, asked, FEW_LEVELS)
     moved: dict[str, tuple[Verdicts, Verdicts]] = {}
     spreads: dict[str, float] = {}
-    for variant in request.objects.variants():
-        low, high = (
-            verdicts_of(one, {"": one.body}, motions, ladder)[""]
-            for one in (variant.lower, variant.upper)
-        )
-        moved[variant.name], spreads[variant.name] = (low, high), variant.spread
+    variants = request.objects.variants()
+    sides = [one for variant in variants for one in (variant.lower, variant.upper)]
+    shaken = verdicts_of_all(sides, motions, ladder)
+    for i, variant in enumerate(variants):
+        moved[variant.name] = shaken[2 * i], shaken[2 * i + 1]
+        spreads[variant.name] = variant.spread
     objects = request.objects
     for name, spread, lower, upper in request.place.variants():
         low, high = (

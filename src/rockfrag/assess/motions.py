@@ -51,6 +51,8 @@ class MotionSet:
         Sentences that a reader must know.
     floors
         Motions of floors that were needed before, by :attr:`Place.key`.
+    halves
+        Those of the thinned set.
     """
 
     ground: tuple[Motion, ...]
@@ -59,6 +61,7 @@ class MotionSet:
     words: str
     warnings: tuple[str, ...] = ()
     floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
+    halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
 
     @cached_property
     def events(self) -> NDArray[np.object_]:
@@ -80,11 +83,6 @@ class MotionSet:
         return replace(
             self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=self.halves
         )
-
-    @cached_property
-    def halves(self) -> dict[object, tuple[Motion, ...]]:
-        """Motions of floors of the thinned set that were needed before."""
-        return {}
 
     def at(self, place: Place) -> "MotionSet":
         """The same motions on another floor; known floors are not shaken again.

@@ -11,6 +11,7 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.fragility.observations import Outcomes
 from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 
 Floats = NDArray[np.float64]
@@ -147,17 +148,46 @@ def verdicts_of(
     ladder
         The levels.
     """
+    restitution = [objects.restitution_of(body) for body in bodies.values()]
+    found = _shaken(list(bodies.values()), restitution, motions, ladder)
+    return dict(zip(bodies, found, strict=True))
+
+
+def verdicts_of_all(
+    objects: Sequence[Objects], motions: MotionSet, ladder: Ladder
+) -> list[Verdicts]:
+    """Shake several objects as they stand by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        The objects.
+    motions
+        The motions.
+    ladder
+        The levels.
+    """
+    bodies = [one.body for one in objects]
+    restitution = [one.restitution_of(one.body) for one in objects]
+    return _shaken(bodies, restitution, motions, ladder)
+
+
+def _shaken(
+    bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
+) -> list[Verdicts]:
+    if not bodies:
+        return []
     result = overturns(
-        list(bodies.values()),
+        bodies,
         [motion.acceleration for motion in motions.base],
         [motion.dt for motion in motions.base],
         ladder.scales,
-        restitution=[objects.restitution_of(body) for body in bodies.values()],
+        restitution=restitution,
     )
-    return {
-        name: Verdicts(ladder, result.overturned[i], _rocked(result, i), motions.events)
-        for i, name in enumerate(bodies)
-    }
+    return [
+        Verdicts(ladder, result.overturned[i], _rocked(result, i), motions.events)
+        for i in range(len(bodies))
+    ]
 
 
 def share_with_sliding(
