@@ -105,6 +105,7 @@ WORK = np.dtype(
         ("impacts", INT),
         ("slips", INT),  # times that an interface began to slide
         ("flights", INT),  # times that an interface opened at both ends
+        ("slid", INT, (2,)),  # whether an interface has ever reached its limit, in impacts too
         ("paradoxes", INT),
         ("forced", INT),
         ("fallen", INT),
@@ -123,6 +124,7 @@ OUTCOME = np.dtype(
         ("peak_speed", F, (2,)),
         ("peak_slip", F, (2,)),
         ("slip", F, (2,)),
+        ("slid", INT, (2,)),
     ]
 )
 

@@ -80,6 +80,7 @@ def march_cases(
             out.peak[k] = w.peak[k]
             out.peak_speed[k] = w.peak_speed[k]
             out.peak_slip[k] = w.peak_slip[k]
+            out.slid[k] = w.slid[k]
             look_at(bodies[b], w, w.q)
             out.slip[k] = slip(bodies[b], w, k)
 
@@ -249,6 +250,7 @@ def _begin(p, w, start):
     w.work = w.rubbed = w.struck = 0.0
     for k in range(2):
         w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
+        w.slid[k] = 0
     w.impacts = w.slips = w.flights = w.paradoxes = w.forced = w.fallen = w.resting = 0
 
 

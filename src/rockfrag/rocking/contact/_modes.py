@@ -317,8 +317,16 @@ def settle(p, w, ah, av, exclude):
             w.closed[0, 0], w.closed[0, 1] = now_closed[0], now_closed[1]
             w.closed[1, 0], w.closed[1, 1] = now_closed[2], now_closed[3]
             w.slides[0], w.slides[1] = now_slides[0], now_slides[1]
+    _remember_slides(p, w)
     project(p, w)
     return wrong < 1e-6
+
+
+@kernel
+def _remember_slides(p, w):
+    for k in range(p.count):
+        if w.slides[k] != 0:
+            w.slid[k] = 1
 
 
 @kernel
@@ -349,6 +357,7 @@ def strike(p, w, ah, av, closing, push):
         mass += p.mass[k]
         scale = max(scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2]))
     _search(p, w, ah, av, True, mass * scale, scale, False)
+    _remember_slides(p, w)
     for d in range(3 * p.count):
         w.v[d] = w.out[d]
     while _shut_weak(p, w, ah, av, closing):

@@ -128,7 +128,8 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     if p.count == 1 and not impact:
         return _solve_lone(p, w, q, v, ah, av)
     stands = w.closed[0, 0] == 1 and w.closed[0, 1] == 1 and w.slides[0] == 0
-    if stands and not impact and not (w.closed[1, 0] == 1 and w.closed[1, 1] == 1):
+    flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
+    if stands and not impact and not (flat and w.slides[1] == 0):
         return _solve_statue(p, w, q, v, ah, av)
     m = 0
     for k in range(p.count):
@@ -249,7 +250,22 @@ def _solve_statue(p, w, q, v, ah, av):
     w.normal[1, 1] = 0.0
     w.shear[1] = 0.0
     pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0
-    if w.closed[1, 0] == 1 or w.closed[1, 1] == 1:
+    if w.closed[1, 0] == 1 and w.closed[1, 1] == 1:
+        # it slides flat: what accelerates it apart vanishes, and it does not turn
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, 1, 0, w.kind[1, 0])
+        rx, ry = x - q[3], y - q[4]
+        one, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        x1, y1, _, _, _, _, _ = end_of(p, w, q, 1, 1, w.kind[1, 1])
+        other = -ty * (y1 - q[4]) - tx * (x1 - q[3])
+        push = (ty * fx - tx * fy) / light
+        shear = -w.slides[1] * p.kinetic[1] * push
+        w.normal[1, 1] = (two * shear + one * push) / (one - other)
+        w.normal[1, 0] = push - w.normal[1, 1]
+        w.shear[1] = shear
+        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+        moment += w.normal[1, 1] * (tx * (x1 - x) + ty * (y1 - y))
+    elif w.closed[1, 0] == 1 or w.closed[1, 1] == 1:
         end = 0 if w.closed[1, 0] == 1 else 1
         x, y, tx, ty, _, _, kind = end_of(p, w, q, 1, end, w.kind[1, end])
         rx, ry = x - q[3], y - q[4]

@@ -1,0 +1,222 @@
+"""P/NP where the surfaces are as rough as one likes: over a grid of friction at the ground and at the interface.
+
+A response in which an interface never reaches its limit of friction is the response at every higher
+coefficient of that interface too.  So the smallest coefficients are tried first, and most of the grid follows.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.pedestal.cluster_means import mean_effect
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
+from rockfrag.rocking.contact.friction import interface_frictions
+from rockfrag.rocking.inputs import STEP
+from rockfrag.units import GRAVITY
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+def friction_ratios(
+    stacks: Mapping[str, Stack],
+    motions: Sequence[Motion],
+    ladder_g: Floats,
+    ground: Sequence[float],
+    interface: Sequence[float],
+    threads: int = 1,
+    progress: Callable[[str], None] = lambda name: None,
+) -> pd.DataFrame:
+    """Ratio P/NP of every object and motion at every pair of coefficients of friction.
+
+    Parameters
+    ----------
+    stacks
+        Object on its pedestal, by the object's name; alone the object stands on the ground.
+    motions
+        Motions of the ground or floor.
+    ladder_g
+        Amplitudes that are climbed until the first overturning, rising [g].
+    ground, interface
+        Coefficients between the ground and what stands on it, and between pedestal and object [-]; infinite
+        ones are added.
+    threads
+        Threads to use; the result does not depend on it.
+    progress
+        Called with the name of each object that is done.
+
+    Returns
+    -------
+    One row per object, motion and pair: ``object``, ``event``, ``floor``, ``motion``, ``ground``, ``interface``
+    (coefficients), ``p_g``, ``np_g`` (largest amplitudes survived before the first overturning [g], NaN where
+    nothing or everything was), ``ratio``, and ``resolution`` (half-width to which its logarithm is known).
+    """
+    below = sorted({*map(float, ground), math.inf})
+    between = sorted({*map(float, interface), math.inf})
+    pairs = [(one, two) for one in below for two in between]
+    step = float(np.log(ladder_g[1] / ladder_g[0])) if len(ladder_g) > 1 else 0.0
+    tables = []
+    for name, stack in stacks.items():
+        alone = survived_amplitudes(stack.statue, [(mu,) for mu in below], motions, ladder_g, threads)
+        placed = survived_amplitudes(stack, pairs, motions, ladder_g, threads)
+        for (one, two), with_pedestal in zip(pairs, placed, strict=True):
+            without = alone[below.index(one)]
+            tables.append(
+                pd.DataFrame(
+                    {
+                        "object": name,
+                        "event": [str(m.metadata.get("event") or m.name) for m in motions],
+                        "floor": [str(m.metadata.get("floor") or "ground") for m in motions],
+                        "motion": [m.name for m in motions],
+                        "ground": one,
+                        "interface": two,
+                        "p_g": with_pedestal,
+                        "np_g": without,
+                        "ratio": with_pedestal / without,
+                    }
+                )
+            )
+        progress(name)
+    return pd.concat(tables, ignore_index=True).assign(resolution=step)
+
+
+def friction_effects(ratios: pd.DataFrame) -> pd.DataFrame:
+    """Mean ratio at every pair of coefficients, over all floors and on each, with its interval over events.
+
+    Parameters
+    ----------
+    ratios
+        As of :func:`friction_ratios`.
+
+    Returns
+    -------
+    One row per ``ground``, ``interface``, ``floor`` ("all" or one) and ``object`` ("all" or one): ``ratio``,
+    ``ratio_lower``, ``ratio_upper``, ``pairs``, ``events``, ``left_out`` (pairs that have no ratio, because
+    with or without the pedestal nothing fell), ``p_survives``, ``np_survives`` (pairs in which nothing fell).
+    """
+    rows = []
+    for (ground, interface), here in ratios.groupby(["ground", "interface"]):
+        for floor in ("all", *sorted(here["floor"].unique())):
+            for thing in ("all", *sorted(here["object"].unique())):
+                part = here[(floor == "all") | (here["floor"] == floor)]
+                part = part[(thing == "all") | (part["object"] == thing)]
+                known = part.dropna(subset="ratio").assign(d=lambda t: np.log(t["ratio"]))
+                found = mean_effect(known) if len(known) else None
+                rows.append(
+                    {
+                        "ground": ground,
+                        "interface": interface,
+                        "floor": floor,
+                        "object": thing,
+                        "ratio": found.ratio if found else np.nan,
+                        "ratio_lower": found.ratio_lower if found else np.nan,
+                        "ratio_upper": found.ratio_upper if found else np.nan,
+                        "pairs": len(known),
+                        "events": found.units if found else 0,
+                        "left_out": len(part) - len(known),
+                        "p_survives": int(part["p_g"].isna().sum()),
+                        "np_survives": int(part["np_g"].isna().sum()),
+                    }
+                )
+    return pd.DataFrame(rows)
+
+
+def survived_amplitudes(
+    body: Body,
+    frictions: Sequence[tuple[float, ...]],
+    motions: Sequence[Motion],
+    ladder_g: Floats,
+    threads: int = 1,
+) -> Floats:
+    """Largest amplitude survived before the first overturning, climbing a ladder from rest.
+
+    Parameters
+    ----------
+    body
+        A block or a stack.
+    frictions
+        Coefficients of its interfaces, the ground first.
+    motions, ladder_g, threads
+        As of :func:`friction_ratios`.
+
+    Returns
+    -------
+    Amplitudes [g], shape (frictions, motions); NaN where nothing or everything was survived.
+    """
+    mu = np.array([(*one, math.inf)[:2] for one in frictions])
+    # coefficients [q] at which a response of [p] holds: any higher one, or the same if it slid
+    higher = mu[np.newaxis] >= mu[:, np.newaxis]
+    same = mu[np.newaxis] == mu[:, np.newaxis]
+    scales = np.array([factors_to_pga(motion, ladder_g) for motion in motions])
+    stands = np.array([not _never_turns(body, one) for one in frictions])
+    alive = np.repeat(stands[:, np.newaxis], len(motions), axis=1)
+    first = np.full(alive.shape, len(ladder_g))
+    for level in range(len(ladder_g)):
+        open_ = alive.copy()
+        while open_.any():
+            chosen = _least(open_, higher.all(axis=2))
+            found = _outcomes(body, frictions, motions, scales[:, [level]], chosen, threads)
+            for p, m in np.argwhere(chosen):
+                slid = found[p, m]["slid"] > 0
+                holds = np.where(slid, same[p], higher[p]).all(axis=1) & open_[:, m]
+                if found[p, m]["fallen"]:
+                    first[holds, m] = level
+                    alive[holds, m] = False
+                open_[holds, m] = False
+        if not alive.any():
+            break
+    known = (first > 0) & (first < len(ladder_g))
+    return np.where(known, ladder_g[np.maximum(first - 1, 0)], np.nan)
+
+
+def _least(open_: Flags, higher: Flags) -> Flags:
+    """Open pairs that no other open pair of the same motion is below, shape (pairs, motions)."""
+    below = higher & ~np.eye(len(higher), dtype=bool)
+    return open_ & ~((below.T.astype(int) @ open_.astype(int)) > 0)
+
+
+def _outcomes(
+    body: Body,
+    frictions: Sequence[tuple[float, ...]],
+    motions: Sequence[Motion],
+    scales: Floats,
+    chosen: Flags,
+    threads: int,
+) -> NDArray[np.void]:
+    """Outcomes of the chosen frictions × motions; the others are zero."""
+    rows, columns = np.flatnonzero(chosen.any(axis=1)), np.flatnonzero(chosen.any(axis=0))
+    still = [(0.0,) * len(frictions[0])] * len(rows)
+    lone = isinstance(body, Block)
+    coefficients = [
+        interface_frictions(body, frictions[row][0] if lone else frictions[row]) for row in rows
+    ]
+    standing = Standing([body] * len(rows), coefficients, still, still)
+    moving = Moving(
+        [motions[j].acceleration for j in columns],
+        [],
+        np.array([motions[j].dt for j in columns]),
+        np.ascontiguousarray(scales[columns]),
+    )
+    wanted = chosen[np.ix_(rows, columns)][..., np.newaxis]
+    found = contact_outcomes(standing, moving, wanted, GRAVITY, STEP, threads)[..., 0]
+    outcomes = np.zeros(chosen.shape, found.dtype)
+    outcomes[np.ix_(rows, columns)] = found
+    return outcomes
+
+
+def _never_turns(body: Body, friction: tuple[float, ...]) -> bool:
+    """Whether nothing can rise or slide off from rest, whatever the horizontal motion (docs/contact.md)."""
+
+    def slope(block: Block) -> float:
+        return min(math.tan(block.critical_angle(pole)) for pole in (+1, -1))
+
+    if isinstance(body, Block):
+        return body.lean == 0 and friction[0] < slope(body)
+    upright = body.pedestal.lean == 0 and friction[0] <= friction[1]
+    return upright and friction[0] < min(slope(body.statue), slope(body.rigidly_joined()))
