@@ -23,6 +23,7 @@ EXPLANATION = {
     "pedestal_width_cm": [14],
     "table_mass_kg": [10],
     "step_percent": [8],
+    "friction": {"ground": [0.4], "interface": [0.3, 0.6]},
     "tolerance_percent": 1,
     "tolerance_restitution": 0.02,
     "replicates": 1,
@@ -68,6 +69,10 @@ def full_study(folder: Path) -> Path:
         ({"building_sensitivity": {"floors": [{"F5": 9}]}}, ["floors[0].F5", "up to 6", "9"]),
         ({"building_sensitivity": {"floors": [{"attic": 6}]}}, ["floors[0].attic", "GF, F3, F5"]),
         ({"explanation": {**EXPLANATION, "replicates": 0}}, ["explanation.replicates"]),
+        (
+            {"explanation": {**EXPLANATION, "friction": {"ground": [0.4]}}},
+            ["explanation.friction", "interface"],
+        ),
         ({"building": None}, ["building"]),
         (
             {"bodies": {**study_content()["bodies"], "use": ["T1", "T2"]}},

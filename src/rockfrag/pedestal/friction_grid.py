@@ -63,7 +63,9 @@ def friction_ratios(
     step = float(np.log(ladder_g[1] / ladder_g[0])) if len(ladder_g) > 1 else 0.0
     tables = []
     for name, stack in stacks.items():
-        alone = survived_amplitudes(stack.statue, [(mu,) for mu in below], motions, ladder_g, threads)
+        alone = survived_amplitudes(
+            stack.statue, [(mu,) for mu in below], motions, ladder_g, threads
+        )
         placed = survived_amplitudes(stack, pairs, motions, ladder_g, threads)
         for (one, two), with_pedestal in zip(pairs, placed, strict=True):
             without = alone[below.index(one)]
@@ -86,37 +88,43 @@ def friction_ratios(
     return pd.concat(tables, ignore_index=True).assign(resolution=step)
 
 
-def friction_effects(ratios: pd.DataFrame) -> pd.DataFrame:
-    """Mean ratio at every pair of coefficients, over all floors and on each, with its interval over events.
+def friction_effects(ratios: pd.DataFrame, floors: Mapping[str, int]) -> pd.DataFrame:
+    """Mean ratio at every pair of coefficients with its interval over events, by place and object.
 
     Parameters
     ----------
     ratios
         As of :func:`friction_ratios`.
+    floors
+        Level of each floor by its name; 0 is the ground.
 
     Returns
     -------
-    One row per ``ground``, ``interface``, ``floor`` ("all" or one) and ``object`` ("all" or one): ``ratio``,
-    ``ratio_lower``, ``ratio_upper``, ``pairs``, ``events``, ``left_out`` (pairs that have no ratio, because
+    One row per ``ground``, ``interface``, ``place`` ("ground", "above", or a floor) and ``object`` ("all" or
+    one): ``ratio``, ``lower``, ``upper``, ``pairs``, ``events``, ``left_out`` (pairs that have no ratio, because
     with or without the pedestal nothing fell), ``p_survives``, ``np_survives`` (pairs in which nothing fell).
     """
+    level = ratios["floor"].map(floors).fillna(0)
+    places = {"ground": level == 0, "above": level > 0}
+    places |= {floor: ratios["floor"] == floor for floor in floors if floor not in places}
     rows = []
     for (ground, interface), here in ratios.groupby(["ground", "interface"]):
-        for floor in ("all", *sorted(here["floor"].unique())):
-            for thing in ("all", *sorted(here["object"].unique())):
-                part = here[(floor == "all") | (here["floor"] == floor)]
-                part = part[(thing == "all") | (part["object"] == thing)]
-                known = part.dropna(subset="ratio").assign(d=lambda t: np.log(t["ratio"]))
+        for place, inside in places.items():
+            for thing in ("all", *ratios["object"].unique()):
+                part = here[inside[here.index] & ((thing == "all") | (here["object"] == thing))]
+                if part.empty:
+                    continue
+                known = part.dropna(subset="ratio").assign(d=lambda table: np.log(table["ratio"]))
                 found = mean_effect(known) if len(known) else None
                 rows.append(
                     {
                         "ground": ground,
                         "interface": interface,
-                        "floor": floor,
+                        "place": place,
                         "object": thing,
                         "ratio": found.ratio if found else np.nan,
-                        "ratio_lower": found.ratio_lower if found else np.nan,
-                        "ratio_upper": found.ratio_upper if found else np.nan,
+                        "lower": found.ratio_lower if found else np.nan,
+                        "upper": found.ratio_upper if found else np.nan,
                         "pairs": len(known),
                         "events": found.units if found else 0,
                         "left_out": len(part) - len(known),

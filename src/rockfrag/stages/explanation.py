@@ -30,6 +30,10 @@ def run(job: Job[Study]) -> Results:
     if _asks_for_an_effect(job.study):
         inverted = inversion_table(job.study, ratios, job.motions("motions/floors"), job.threads)
         yield "explanation/inversion", inverted
+    if _tries_friction(job.study):
+        found, means = friction_tables(job.study, job.motions("motions/floors"), job.threads)
+        yield "explanation/friction_ratios", found
+        yield "explanation/friction", means
     levels = effects[["factor", "level"]].drop_duplicates()
     job.log.info(
         "ratios: %d, levels: %d, factors: %d",
@@ -114,6 +118,39 @@ def explanation_tables(
 def _asks_for_an_effect(study: Study) -> bool:
     explanation = study.more.explanation
     return explanation is not None and bool(explanation.wanted_percent)
+
+
+def _tries_friction(study: Study) -> bool:
+    explanation = study.more.explanation
+    return explanation is not None and bool(explanation.friction)
+
+
+def friction_tables(
+    study: Study, motions: Sequence[Motion], threads: int = 1
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Climb the laboratory's ladder on surfaces of every friction that the study asks for.
+
+    Parameters
+    ----------
+    study
+        A study with the key ``explanation.friction``.
+    motions, threads
+        As of :func:`explanation_tables`.
+
+    Returns
+    -------
+    Tables of :func:`rockfrag.pedestal.friction_grid.friction_ratios` and ``friction_effects``.
+    """
+    from rockfrag.pedestal.friction_grid import friction_effects, friction_ratios
+
+    settings = study.more.explanation
+    if settings is None or not settings.friction:
+        raise ValueError("the study asks for no friction")
+    ladder = protocol_of(study).amplitudes()
+    ratios = friction_ratios(
+        tested_stacks(study), motions, ladder, **settings.friction, threads=threads
+    )
+    return ratios, friction_effects(ratios, study.floors)
 
 
 def inversion_table(
@@ -208,6 +245,11 @@ STAGE = Stage(
         "explanation/ratios",
         "explanation/effects",
         *(["explanation/inversion"] if _asks_for_an_effect(study) else []),
+        *(
+            ["explanation/friction_ratios", "explanation/friction"]
+            if _tries_friction(study)
+            else []
+        ),
     ),
     settings=("explanation", "bodies", "amplitudes", "protocol", "seed"),
 )

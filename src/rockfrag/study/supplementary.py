@@ -34,6 +34,9 @@ class Explanation:
         Number of perturbed copies.
     wanted_percent
         Effect that is asked for, changes of P/NP on the ``ground`` and ``above`` it [%]; empty where none is.
+    friction
+        Coefficients of friction at the ``ground`` and at the ``interface``, all pairs of which are tried beside
+        infinite ones [-]; empty where surfaces are taken as rough enough.
     """
 
     statue_restitution: tuple[float, ...]
@@ -49,6 +52,7 @@ class Explanation:
     tolerance_restitution: float
     replicates: int
     wanted_percent: Mapping[str, float] = field(default_factory=dict)
+    friction: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from rockfrag.report.sections.comparisons import COMPARISONS
 from rockfrag.report.sections.explanation import EXPLANATION
 from rockfrag.report.sections.floor_curves import FLOOR_CURVES
 from rockfrag.report.sections.fragility import FRAGILITY
+from rockfrag.report.sections.friction import FRICTION
 from rockfrag.report.sections.inversion import INVERSION
 from rockfrag.report.sections.left_out import LEFT_OUT
 from rockfrag.report.sections.measured import MEASURED
@@ -30,6 +31,7 @@ PARTS: tuple[Part, ...] = (
     VALIDITY,
     EXPLANATION,
     INVERSION,
+    FRICTION,
     MEASURED,
     SHAKER,
     BUILDING,
