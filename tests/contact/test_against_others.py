@@ -1,6 +1,7 @@
 """The fast kernel beside a plain event-driven integrator and beside time stepping with complementarity."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -38,25 +39,47 @@ def compare_with_reference(cases: int, stacks: bool, seed: int) -> tuple[int, in
     return differing, eventful
 
 
-def compare_with_stepping(
-    cases: int, stacks: bool, seed: int, step: float
-) -> tuple[int, int, list[float]]:
-    """Verdicts that differ, falls, and errors of the residual slip of those that stand [m]."""
+class Comparison(NamedTuple):
+    """What differs between the package and time stepping.
+
+    Attributes
+    ----------
+    differing, fallen
+        Verdicts that differ, and falls.
+    slips
+        Differences of the residual slip of those that stand [m].
+    turns
+        Largest differences of rotation up to the fourth event of each case [rad].
+    """
+
+    differing: int
+    fallen: int
+    slips: list[float]
+    turns: list[float]
+
+
+def compare_with_stepping(cases: int, stacks: bool, seed: int, step: float) -> Comparison:
+    """March random cases both ways."""
     rng = np.random.default_rng(seed)
     differing = fallen = 0
-    slips = []
+    slips, turns = [], []
     for _ in range(cases):
         body, mus, motion, up = case(rng, stacks)
         fast = simulate_with_friction(body, motion, DT, friction=as_friction(mus), vertical=up)
         fell, _, _, rows = time_stepping(body, motion, DT, mus, step=step, vertical=up)
         fallen += fast.overturned
+        times = fast.events["time"].tolist()
+        until = np.searchsorted(fast.time, times[3] if len(times) > 3 else math.inf)
+        n = min(int(until), len(rows), len(fast.time))
+        rotation = rows[:n, [3 * k + 2 for k in range(len(mus))]]
+        turns.append(float(np.abs(rotation - fast.theta[:n]).max(initial=0.0)))
         if fell != fast.overturned:
             differing += 1
         elif not fell:
             start = 3 * (len(mus) - 1)
             moved = rows[-1, start] - rows[0, start]
             slips.append(float(moved - fast.slip[-1].sum()))
-    return differing, fallen, slips
+    return Comparison(differing, fallen, slips, turns)
 
 
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
@@ -74,16 +97,30 @@ def test_many_histories_are_those_of_the_reference(stacks: bool) -> None:
 
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
 def test_verdicts_are_those_of_time_stepping(stacks: bool) -> None:
-    differing, fallen, slips = compare_with_stepping(8, stacks, seed=25, step=1e-4)
-    assert differing <= 1
-    assert fallen >= 1
-    assert np.median(np.abs(slips)) < 1e-3
+    found = compare_with_stepping(8, stacks, seed=25, step=1e-4)
+    assert found.differing <= 1
+    assert found.fallen >= 1
+    assert np.median(np.abs(found.slips)) < 1e-3
+    assert np.median(found.turns) < 1e-4
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("stacks", "allowed"), [(False, 6), (True, 10)], ids=["blocks", "stacks"])
-def test_two_hundred_verdicts_are_those_of_time_stepping(stacks: bool, allowed: int) -> None:
-    differing, fallen, slips = compare_with_stepping(200, stacks, seed=23, step=2e-5)
-    assert differing <= allowed
-    assert 20 <= fallen <= 180
-    assert np.median(np.abs(slips)) < 1e-4
+@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
+def test_two_hundred_cases_are_those_of_time_stepping(stacks: bool) -> None:
+    found = compare_with_stepping(200, stacks, seed=23, step=2e-5)
+    assert found.differing <= 6
+    assert 20 <= found.fallen <= 180
+    assert np.median(np.abs(found.slips)) < 1e-5
+    # some graze: there the time of an event hangs on a root, and the stepping's error is as large
+    turns = np.array(found.turns)
+    assert np.median(turns) < 1e-5
+    assert (turns > 1e-3).sum() <= 4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
+def test_histories_of_time_stepping_converge_to_those_of_events(stacks: bool) -> None:
+    coarse, fine = (compare_with_stepping(15, stacks, 29, step).turns for step in (8e-5, 1e-5))
+    moving = np.array(coarse) > 1e-6
+    assert moving.sum() > 5
+    assert np.median(np.array(fine)[moving] / np.array(coarse)[moving]) < 0.25

@@ -202,13 +202,14 @@ def _outcomes(
     still = [(0.0,) * len(frictions[0])] * len(rows)
     lone = isinstance(body, Block)
     coefficients = [
-        interface_frictions(body, frictions[row][0] if lone else frictions[row]) for row in rows
+        interface_frictions(body, frictions[row][0] if lone else frictions[row])
+        for row in rows.tolist()
     ]
     standing = Standing([body] * len(rows), coefficients, still, still)
     moving = Moving(
-        [motions[j].acceleration for j in columns],
+        [motions[j].acceleration for j in columns.tolist()],
         [],
-        np.array([motions[j].dt for j in columns]),
+        np.array([motions[j].dt for j in columns.tolist()]),
         np.ascontiguousarray(scales[columns]),
     )
     wanted = chosen[np.ix_(rows, columns)][..., np.newaxis]

@@ -238,11 +238,6 @@ def overturns(
     if friction is not None:
         check_impacts_follow(restitution, checked_switch("linear", linear))
         frictions = listed_frictions(body_list, friction)
-        if result.overturned.size:
-            angles = _starts(body_list, theta0, "theta0")
-            standing = Standing(body_list, frictions, angles, _starts(body_list, omega0, "omega0"))
-            _fill_with_friction(result, setting, standing)
-        return result
     if not result.overturned.size:
         return result
     alone = checked_switch("linear", linear) or checked_switch("forces", forces)
@@ -258,15 +253,24 @@ def overturns(
         ]
         found, marched = _one_by_one(setting, given, starts, linear)
         _fill(result, np.arange(len(body_list)), found)
-        if forces:
+        if forces and friction is None:
             _fill_forces(result, body_list, marched)
-        return result
+    else:
+        _fill_by_lanes(result, setting, given)
+    if friction is not None:
+        angles = _starts(body_list, theta0, "theta0")
+        speeds = _starts(body_list, omega0, "omega0")
+        _fill_with_friction(result, setting, Standing(body_list, frictions, angles, speeds))
+    return result
+
+
+def _fill_by_lanes(result: EnsembleResult, setting: _Setting, given: _Bodies) -> None:
+    """Write what becomes of bodies that rock from rest into the result."""
     for kind, march in ((Block, _blocks), (Stack, _stacks)):
-        rows = [i for i, body in enumerate(body_list) if isinstance(body, kind)]
+        rows = [i for i, body in enumerate(given.bodies) if isinstance(body, kind)]
         if rows:
             chosen = _Bodies([given.bodies[i] for i in rows], [given.restitution[i] for i in rows])
             _fill(result, np.array(rows), march(setting, chosen))
-    return result
 
 
 def _empty_result(factors: Array, n_bodies: int) -> EnsembleResult:
@@ -301,29 +305,37 @@ def _starts(
 
 
 def _fill_with_friction(result: EnsembleResult, setting: _Setting, standing: Standing) -> None:
-    """Write what becomes of bodies that may slide and fly into the result."""
-    wanted = np.ones(result.overturned.shape, dtype=bool)
+    """Write what becomes of bodies that may slide and fly over what pure rocking has found.
+
+    Where nothing slides nor flies, pure rocking is the solution, and what it has found stays.
+    """
     moving = Moving(setting.motions, setting.vertical, setting.dts, setting.factors)
+    wanted = np.ones(result.overturned.shape, dtype=bool)
     found = contact_outcomes(standing, moving, wanted, setting.g, setting.step, setting.threads)
-    lone = np.array([isinstance(body, Block) for body in standing.bodies])[:, None, None]
+    other = (found["slid"].max(axis=-1) > 0) | (found["flights"] > 0) | (found["paradoxes"] > 0)
+    for i, body in enumerate(standing.bodies):
+        _fill_contact(result, (i, *np.nonzero(other[i])), found[i][other[i]], body)
+
+
+def _fill_contact(
+    result: EnsembleResult, place: tuple[Any, ...], found: NDArray[np.void], body: Body
+) -> None:
+    """Write outcomes of one body in contact into the result."""
+    lone = isinstance(body, Block)
+    top = 0 if lone else 1
     fell = np.where(lone & (found["fallen"] > 0), 2, found["fallen"])
-    upper = np.where(lone, 0, 1)[..., None]
-
-    def of_upper(name: str) -> Array:
-        return np.take_along_axis(found[name], upper, axis=-1)[..., 0]
-
-    result.overturned[:] = fell > 0
-    result.overturned_body[:] = fell
-    result.overturning_time[:] = np.where(fell > 0, found["time"], np.nan)
-    result.peak_rotation[:] = np.where(fell == 2, np.inf, of_upper("peak"))
-    below = np.where(lone, 0.0, found["peak"][..., 0])
-    result.peak_rotation_pedestal[:] = np.where(fell == 1, np.inf, below)
-    result.peak_velocity[:] = of_upper("peak_speed")
-    result.impacts[:] = found["impacts"]
-    result.closest_approach[:] = np.nan
-    for k, place in enumerate(("ground", "interface")):
-        getattr(result, f"slip_{place}")[:] = found["slip"][..., k]
-        getattr(result, f"peak_slip_{place}")[:] = found["peak_slip"][..., k]
+    result.overturned[place] = fell > 0
+    result.overturned_body[place] = fell
+    result.overturning_time[place] = np.where(fell > 0, found["time"], np.nan)
+    result.peak_rotation[place] = np.where(fell == 2, np.inf, found["peak"][:, top])
+    below = 0.0 if lone else found["peak"][:, 0]
+    result.peak_rotation_pedestal[place] = np.where(fell == 1, np.inf, below)
+    result.peak_velocity[place] = found["peak_speed"][:, top]
+    result.impacts[place] = found["impacts"]
+    result.closest_approach[place] = np.nan
+    for k, name in enumerate(("ground", "interface")):
+        getattr(result, f"slip_{name}")[place] = found["slip"][:, k]
+        getattr(result, f"peak_slip_{name}")[place] = found["peak_slip"][:, k]
 
 
 def _one_by_one(

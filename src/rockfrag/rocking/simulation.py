@@ -1,6 +1,7 @@
 """One body, one motion, everything about the response."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -9,7 +10,11 @@ from numpy.typing import NDArray
 from rockfrag.errors import InputError
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.contact.friction import FrictionInput, check_impacts_follow
+from rockfrag.rocking.contact.friction import (
+    FrictionInput,
+    check_impacts_follow,
+    interface_frictions,
+)
 from rockfrag.rocking.contact.simulation import simulate_with_friction
 from rockfrag.rocking.forces import centres, contact_forces
 from rockfrag.rocking.inputs import (
@@ -38,7 +43,7 @@ from rockfrag.rocking.kernels.record import (
 )
 from rockfrag.rocking.kernels.single import Shaking, march, scratch
 from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.response import PATTERNS, Response
+from rockfrag.rocking.response import PATTERNS, Response, mode_name
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -121,10 +126,7 @@ def simulate(
     up = checked_vertical(vertical, values, interval)
     if friction is not None:
         check_impacts_follow(restitution, linear)
-        return simulate_with_friction(
-            body, values, interval, friction=friction, vertical=vertical, theta0=theta0, omega0=omega0,
-            g=g,
-        )  # fmt: skip
+        limits = [one.static for one in interface_frictions(body, friction)]
     initial = initial_state(body, theta0, omega0)
     shaking = shaking_of(body, (values, up), interval, 1.0, g, STEP)
     most = values.size + shaking.free_samples
@@ -140,7 +142,37 @@ def simulate(
         if summary["events"] <= capacity:
             break
         capacity = int(summary["events"])
-    return _response(body, record, shaking, history[:done], events[: summary["events"]], summary)
+    response = _response(
+        body, record, shaking, history[:done], events[: summary["events"]], summary
+    )
+    if friction is None:
+        return response
+    if (response.friction_demand < limits).all() and (response.least_normal_force > 0).all():
+        # pure rocking neither slides nor lifts off: it is the solution
+        return _without_slip(response)
+    return simulate_with_friction(
+        body,
+        values,
+        interval,
+        friction=friction,
+        vertical=vertical,
+        theta0=theta0,
+        omega0=omega0,
+        g=g,
+    )
+
+
+def _without_slip(response: Response) -> Response:
+    """Give a response of pure rocking the columns of one with friction."""
+    blocks = response.slip.shape[1]
+    states = {name: pair[2 - blocks :] for pair, name in PATTERNS.items()}
+    modes = [tuple(mode_name(state, 0) for state in states[name]) for name in response.events["to"]]
+    events = response.events.copy()
+    events["modes"] = pd.Series(modes, dtype=object)
+    events["slip"] = pd.Series([(0.0,) * blocks] * len(modes), dtype=object)
+    energy = response.energy.copy()
+    energy.insert(energy.shape[1] - 1, "lost_friction", 0.0)
+    return replace(response, events=events, energy=energy)
 
 
 def shaking_of(

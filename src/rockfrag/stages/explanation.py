@@ -147,8 +147,9 @@ def friction_tables(
     if settings is None or not settings.friction:
         raise ValueError("the study asks for no friction")
     ladder = protocol_of(study).amplitudes()
+    tried = settings.friction
     ratios = friction_ratios(
-        tested_stacks(study), motions, ladder, **settings.friction, threads=threads
+        tested_stacks(study), motions, ladder, tried["ground"], tried["interface"], threads
     )
     return ratios, friction_effects(ratios, study.floors)
 

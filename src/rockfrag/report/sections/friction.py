@@ -1,8 +1,8 @@
 """What friction does to the effect of a pedestal."""
 
 import math
+from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from rockfrag.report.findings import ratio_text
@@ -13,6 +13,9 @@ from rockfrag.study.study import Study
 
 ORDINARY = (0.3, 0.7)
 """Friction of dry wood, stone and mortar on each other, as handbooks of engineering give it [-]."""
+
+Means = dict[tuple[float, float], dict[str, Any]]
+"""Mean ratios with their intervals, by the coefficients at the ground and at the interface."""
 
 _COLUMNS = (
     Column("ground_text", "Friction at the ground", numeric=True),
@@ -31,30 +34,29 @@ def asks_friction(study: Study) -> bool:
 
 def _section(results: Results) -> Section | None:
     effects = results.table("explanation/friction")
-    whole = effects[effects["object"] == "all"]
-    ground = whole[whole["place"] == "ground"].set_index(["ground", "interface"])
-    above = whole[whole["place"] == "above"].set_index(["ground", "interface"])
-    if ground.empty:
+    ground, above = _by_pair(effects, "ground"), _by_pair(effects, "above")
+    if not ground:
         return None
     shown = pd.DataFrame(
         [
             {
-                "ground_text": _coefficient(one),
-                "interface_text": _coefficient(two),
-                "here": _ratio(ground, (one, two)),
-                "above": _ratio(above, (one, two)),
-                "left_out": int(ground.loc[(one, two), "left_out"])
-                + (int(above.loc[(one, two), "left_out"]) if (one, two) in above.index else 0),
+                "ground_text": _coefficient(pair[0]),
+                "interface_text": _coefficient(pair[1]),
+                "here": _ratio(ground.get(pair)),
+                "above": _ratio(above.get(pair)),
+                "left_out": sum(
+                    table[pair]["left_out"] for table in (ground, above) if pair in table
+                ),
             }
-            for one, two in ground.index
+            for pair in ground
         ]
     )
     explanation = results.study.more.explanation
-    wanted = {} if explanation is None else explanation.wanted_percent
+    wanted = {} if explanation is None else dict(explanation.wanted_percent)
     return Section(
         "friction",
         "What friction does to the effect of the pedestal",
-        " ".join([*_ordinary(ground, above), *_wished(ground, above, dict(wanted))]),
+        " ".join([*_ordinary(ground, above), *_wished(ground, above, wanted)]),
         [
             "Bodies slide, rock and fly on surfaces with these coefficients of friction, on the ladder of the "
             "protocol. Alone, an object stands on the ground. A pair has no ratio where nothing falls with or "
@@ -65,25 +67,32 @@ def _section(results: Results) -> Section | None:
     )
 
 
+def _by_pair(effects: pd.DataFrame, place: str) -> Means:
+    rows = effects[(effects["object"] == "all") & (effects["place"] == place)]
+    return {
+        (float(row["ground"]), float(row["interface"])): {str(key): row[key] for key in row}
+        for row in rows.to_dict("records")
+    }
+
+
 def _coefficient(value: float) -> str:
     return "∞" if math.isinf(value) else f"{value:g}"
 
 
-def _ratio(table: pd.DataFrame, pair: tuple[float, float]) -> str:
-    if pair not in table.index or not math.isfinite(table.loc[pair, "ratio"]):
-        return "–"
-    return ratio_text(table.loc[pair].to_dict())
+def _ratio(row: dict[str, Any] | None) -> str:
+    return ratio_text(row) if row is not None and math.isfinite(row["ratio"]) else "–"
 
 
-def _ordinary(ground: pd.DataFrame, above: pd.DataFrame) -> list[str]:
-    """How far P/NP goes with ordinary friction everywhere."""
+def _is_ordinary(pair: tuple[float, float]) -> bool:
+    return all(ORDINARY[0] <= mu <= ORDINARY[1] for mu in pair)
+
+
+def _ordinary(ground: Means, above: Means) -> list[str]:
+    """Say how far P/NP goes with ordinary friction everywhere."""
     words = []
     for place, table in (("on the ground", ground), ("above it", above)):
-        inside = [
-            ratio
-            for (one, two), ratio in table["ratio"].items()
-            if all(ORDINARY[0] <= mu <= ORDINARY[1] for mu in (one, two)) and math.isfinite(ratio)
-        ]
+        inside = [row["ratio"] for pair, row in table.items() if _is_ordinary(pair)]
+        inside = [ratio for ratio in inside if math.isfinite(ratio)]
         if inside:
             words.append(f"from {min(inside):.2f} to {max(inside):.2f} {place}")
     if not words:
@@ -92,30 +101,34 @@ def _ordinary(ground: pd.DataFrame, above: pd.DataFrame) -> list[str]:
     return [f"With ordinary friction, {low} to {high} everywhere, mean P/NP goes {listed(words)}."]
 
 
-def _wished(ground: pd.DataFrame, above: pd.DataFrame, wanted: dict[str, float]) -> list[str]:
-    """With which friction the mean ratios have the signs that are asked for."""
-    asked = [(t, wanted[n]) for n, t in (("ground", ground), ("above", above)) if n in wanted]
-    if not asked or any(table.empty for table, _ in asked):
+def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
+    """Say with which friction the mean ratios have the signs that are asked for."""
+    asked = [
+        (table, wanted[n]) for n, table in (("ground", ground), ("above", above)) if n in wanted
+    ]
+    if not asked or not all(table for table, _ in asked):
         return []
-    signs, clear = [], []
-    for pair in ground.index:
-        rows = [(table.loc[pair], np.sign(percent)) for table, percent in asked]
-        if all(sign * np.log(row["ratio"]) > 0 for row, sign in rows):
-            signs.append(pair)
-            if all(sign * np.log(row["lower" if sign > 0 else "upper"]) > 0 for row, sign in rows):
-                clear.append(pair)
-    goal = " and ".join(f"{percent:+g} % {name}" for name, percent in wanted.items())
-    goal = (
-        goal.replace("-", "−").replace(" ground", " on the ground").replace(" above", " above it")
+
+    def has_signs(pair: tuple[float, float], rising: str, falling: str) -> bool:
+        ends = [(table[pair][rising if goal > 0 else falling], goal) for table, goal in asked]
+        return all(goal * math.log(end) > 0 for end, goal in ends if math.isfinite(end)) and all(
+            math.isfinite(end) for end, _ in ends
+        )
+
+    signs = [pair for pair in ground if has_signs(pair, "ratio", "ratio")]
+    clear = [pair for pair in signs if has_signs(pair, "lower", "upper")]
+    places = {"ground": "on the ground", "above": "above it"}
+    goal = " and ".join(
+        f"{percent:+g} % {places[name]}".replace("-", "−") for name, percent in wanted.items()
     )
     if not signs:
         return [f"No pair of coefficients gives the signs asked for ({goal})."]
     words = [f"{_coefficient(one)} and {_coefficient(two)}" for one, two in signs]
-    usual = [p for p in signs if all(ORDINARY[0] <= mu <= ORDINARY[1] for mu in p)]
+    usual = sum(map(_is_ordinary, signs))
     return [
         f"The signs asked for ({goal}) come with {len(signs)} of {len(ground)} pairs of coefficients, ground and "
         f"interface: {listed(words[:6])}{' among them' if len(words) > 6 else ''}; their intervals leave no doubt "
-        f"in {len(clear)}, and {len(usual)} are of ordinary surfaces."
+        f"in {len(clear)}, and {usual} are of ordinary surfaces."
     ]
 
 

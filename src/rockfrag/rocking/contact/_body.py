@@ -125,6 +125,7 @@ OUTCOME = np.dtype(
         ("peak_slip", F, (2,)),
         ("slip", F, (2,)),
         ("slid", INT, (2,)),
+        ("flights", INT),
     ]
 )
 

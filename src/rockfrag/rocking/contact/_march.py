@@ -76,6 +76,7 @@ def march_cases(
         out.impacts = w.impacts
         out.paradoxes = w.paradoxes
         out.forced = w.forced
+        out.flights = w.flights
         for k in range(bodies[b].count):
             out.peak[k] = w.peak[k]
             out.peak_speed[k] = w.peak_speed[k]
