@@ -161,6 +161,7 @@ def survived_amplitudes(
     # coefficients [q] at which a response of [p] holds: any higher one, or the same if it slid
     higher = mu[np.newaxis] >= mu[:, np.newaxis]
     same = mu[np.newaxis] == mu[:, np.newaxis]
+    dominates: Flags = np.all(higher, axis=2)
     scales = np.array([factors_to_pga(motion, ladder_g) for motion in motions])
     stands = np.array([not _never_turns(body, one) for one in frictions])
     alive = np.repeat(stands[:, np.newaxis], len(motions), axis=1)
@@ -168,7 +169,7 @@ def survived_amplitudes(
     for level in range(len(ladder_g)):
         open_ = alive.copy()
         while open_.any():
-            chosen = _least(open_, higher.all(axis=2))
+            chosen = _least(open_, dominates)
             found = _outcomes(body, frictions, motions, scales[:, [level]], chosen, threads)
             for p, m in np.argwhere(chosen):
                 slid = found[p, m]["slid"] > 0
@@ -186,7 +187,8 @@ def survived_amplitudes(
 def _least(open_: Flags, higher: Flags) -> Flags:
     """Open pairs that no other open pair of the same motion is below, shape (pairs, motions)."""
     below = higher & ~np.eye(len(higher), dtype=bool)
-    return open_ & ~((below.T.astype(int) @ open_.astype(int)) > 0)
+    chosen: Flags = open_ & ~((below.T.astype(int) @ open_.astype(int)) > 0)
+    return chosen
 
 
 def _outcomes(
