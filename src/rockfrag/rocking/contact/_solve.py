@@ -131,6 +131,12 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
     if stands and not impact and not (flat and w.slides[1] == 0):
         return _solve_statue(p, w, q, v, ah, av)
+    return solve_generally(p, w, q, v, ah, av, impact, rough)
+
+
+@kernel
+def solve_generally(p, w, q, v, ah, av, impact, rough):
+    """Solve any mode by elimination, as :func:`solve` does those that it has no formulas for."""
     m = 0
     for k in range(p.count):
         friction = w.slides[k] * p.kinetic[k] if rough else 0.0
