@@ -174,7 +174,9 @@ class Study:
             return
         found = self.bytes()
         names = set(found) | set(self.wanted)
-        tally.differing += sum(found.get(name) != self.wanted.get(name) for name in names)
+        differing = sorted(name for name in names if found.get(name) != self.wanted.get(name))
+        tally.differing += len(differing)
+        tally.noise += [f"differs: {', '.join(differing[:5])}"] if differing else []
         tally.outside += len(self.others() - self.inputs)
 
     def refused(self, tally: Tally, said: subprocess.CompletedProcess[str]) -> None:

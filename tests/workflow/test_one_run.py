@@ -77,6 +77,16 @@ def test_what_a_killed_run_left_running_or_half_written_goes(here: Path):
     assert json.loads((RUNS / "tiny.json").read_text()) == {}
 
 
+def test_what_a_killed_job_left_half_written_goes_with_the_next_run(here: Path):
+    with only_run("tiny", here / "results"):
+        pass
+    (here / "results" / "tiny" / "figures").mkdir(parents=True)
+    part = here / "results" / "tiny" / "figures" / ".one.svg.abc.part"
+    part.write_text("half")
+    with only_run("tiny", here / "results"):
+        assert not part.exists()
+
+
 def _children(process: int) -> list[int]:
     deadline = time.monotonic() + 10
     listed: list[int] = []

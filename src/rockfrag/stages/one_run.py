@@ -57,7 +57,8 @@ def only_run(study: str, results: Path) -> Iterator[None]:
             ) from None
         if owner.get("token"):
             _end_all(str(owner["token"]))
-            _remove_parts(results)
+        # a job that was killed alone leaves some too, though its run has ended as it should
+        _remove_parts(results)
         token = uuid.uuid4().hex
         _write(file, {"process": os.getpid(), "started": time.time(), "token": token})
         os.environ[TOKEN] = token
