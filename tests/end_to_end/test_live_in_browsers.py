@@ -63,6 +63,14 @@ def random_body(rng: np.random.Generator) -> Block | Stack:
     return Stack(pedestal, statue, offset=rng.uniform(-0.05, 0.05) * width)
 
 
+def measured(rng: np.random.Generator, body: Block | Stack) -> float | list[float] | None:
+    """A measured restitution of some bodies; momentum is conserved in the others."""
+    if rng.random() < 0.6:
+        return None
+    ratio = float(rng.uniform(0.5, 0.8))
+    return ratio if isinstance(body, Block) else [ratio, ratio]
+
+
 def as_given(body: Block | Stack) -> dict[str, object]:
     """Dimensions as the script takes them."""
 
@@ -91,8 +99,10 @@ def test_histories_have_the_bits_of_simulate(browser: Browser, play_page: Path):
             for _ in range(8)
         )
         samples *= rng.uniform(2, 9) / np.abs(samples).max()
-        responses.append(simulate(body, samples, DT, g=9.81))
-        cases.append({"body": as_given(body), "samples": samples.tolist(), "gravity": 9.81})
+        restitution = measured(rng, body)
+        responses.append(simulate(body, samples, DT, restitution=restitution, g=9.81))
+        given = {**as_given(body), "restitution": restitution}
+        cases.append({"body": given, "samples": samples.tolist(), "gravity": 9.81})
     browser.open(play_page)
     assert browser.run(READY)
     found = browser.run(RUN.replace("CASES", json.dumps(cases)).replace("DT", repr(DT)))
