@@ -191,7 +191,13 @@ def kills(study: Study, tally: Tally, rng: random.Random, count: int) -> None:
     """Kill the run, one of its jobs, or all of its processes, at moments spread over its time."""
     for number in range(count):
         study.forget(
-            *rng.choice([("measures.*",), ("tests.*", "fragility.*"), ("report.html", "sweep/*")])
+            *rng.choice(
+                [
+                    ("measures.*", "report.html"),
+                    ("tests.*", "fragility.*", "report.html"),
+                    ("report.html", "sweep/*"),
+                ]
+            )
         )
         process = study.start()
         time.sleep(rng.uniform(0.2, 0.5 * study.seconds))
