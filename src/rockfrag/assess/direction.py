@@ -6,7 +6,7 @@ import numpy as np
 
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
-from rockfrag.assess.verdicts import Ladder
+from rockfrag.assess.verdicts import Ladder, believable_scales
 from rockfrag.motions.rotation import rotate
 from rockfrag.rocking.bodies import Body, Stack
 from rockfrag.rocking.ensemble import overturns
@@ -75,7 +75,7 @@ def find_directions(
         body,
         [motion.acceleration for motion in shaking],
         [motion.dt for motion in shaking],
-        np.array(scales),
+        np.minimum(np.array(scales), believable_scales(shaking)),
         restitution=[objects.restitution_of(body)],
     ).overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)

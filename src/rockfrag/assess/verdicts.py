@@ -10,9 +10,11 @@ from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.fragility.observations import Outcomes
+from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Body
-from rockfrag.rocking.body_record import Restitution
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
+from rockfrag.rocking.measured_restitution import Restitution
 
 Floats = NDArray[np.float64]
 
@@ -42,13 +44,19 @@ class Ladder:
     scales
         Factors on the motions, shape (motions, levels).
     allowed
-        Whether a factor is within ``LARGEST_FACTOR``, shape (motions, levels).
+        Whether a factor is within ``LARGEST_FACTOR`` and the motion at the base one that a floor may feel, shape
+        (motions, levels).
     """
 
     measure: Measure
     levels: Floats
     scales: Floats
     allowed: NDArray[np.bool_]
+
+
+def believable_scales(base: Sequence[Motion]) -> Floats:
+    """Largest factor on each motion at which it is still one that a floor may feel, shape (motions, 1)."""
+    return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
 
 
 def make_ladder(
@@ -73,6 +81,7 @@ def make_ladder(
     levels = np.unique(np.append(levels, list(asked)))
     scales = levels / values[:, np.newaxis]
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    allowed &= scales <= believable_scales(motions.base)
     return Ladder(measure, levels, scales, allowed)
 
 
@@ -181,7 +190,8 @@ def _shaken(
         bodies,
         [motion.acceleration for motion in motions.base],
         [motion.dt for motion in motions.base],
-        ladder.scales,
+        # what is beyond is not counted, and need not be simulated as it is
+        np.minimum(ladder.scales, believable_scales(motions.base)),
         restitution=restitution,
     )
     return [
@@ -216,7 +226,7 @@ def share_with_sliding(
         body,
         [motion.acceleration for motion in motions.base],
         [motion.dt for motion in motions.base],
-        scales[:, np.newaxis],
+        np.minimum(scales[:, np.newaxis], believable_scales(motions.base)),
         restitution=[objects.restitution_of(body)],
         friction=objects.friction,
     ).overturned[0, :, 0]
