@@ -8,8 +8,13 @@ from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.plausibility import check_density
 from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.measured_restitution import Law, Measured, MeasuredRestitution, Restitution
+from rockfrag.rocking.measured_restitution import (
+    Law,
+    Measured,
+    MeasuredRestitution,
+    Restitution,
+    stack_restitution,
+)
 from rockfrag.tabular import Row, read_rows
 
 
@@ -162,5 +167,5 @@ def with_restitution(
         return configuration
     value = (of_pedestal, of_object) if configuration.pedestal else of_object
     restitution = MeasuredRestitution(value, law)  # type: ignore[arg-type]
-    body_record(configuration.body, restitution)
+    stack_restitution(configuration.body, restitution)
     return replace(configuration, restitution=restitution)

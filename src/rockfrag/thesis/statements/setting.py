@@ -10,13 +10,13 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
 from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.thesis.specimens import THESIS_BODIES
 from rockfrag.thesis.statements.motion_spectra import MotionSpectra
 from rockfrag.thesis.statements.statement import Undecidable
-from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
 FreeRocking = Mapping[str, tuple[ArrayLike, ArrayLike]]
@@ -139,7 +139,7 @@ class Setting:
             name: bisect(
                 lambda a, stack=stack: bool(np.any(jump(stack, a).state[:3, 0] != 0)),  # type: ignore[misc]
                 0.5 * self.pattern_4[name],
-                10 * GRAVITY,
+                LARGEST_PEAK,
                 1e-4,
             )
             for name, stack in self.assemblies.items()
