@@ -33,7 +33,7 @@ NEGLIGIBLE_SPEED = 1e-13
 
 
 def _sign(value: float) -> int:
-    return (value > 0) - (value < 0)
+    return int(value > 0) - int(value < 0)
 
 
 def _rates(omega: Pair) -> Pair:
@@ -535,6 +535,11 @@ def _laws_of(where: str, block: Block, value: object, name: str) -> Laws:
             laws[corner] = Law("ratio", float(number))
         elif name == "position" and number >= by_momentum:
             laws[corner] = Law("position", impulse_place(block, -corner, float(number)))
+        elif by_momentum <= 0:
+            raise InputError(
+                f"{where}: momentum leaves this block nothing to rock on with, so the law {name} has "
+                "nothing to multiply; choose the law position or ratio."
+            )
         else:
             laws[corner] = Law("couple", float(number) / by_momentum)
     return laws
