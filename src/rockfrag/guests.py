@@ -85,7 +85,17 @@ def _report_stage(stages: Sequence[Stage[Study]]) -> Stage[Study]:
         ],
         files=lambda study: study.body_files,
         outputs=("figures/", "report.html"),
-        settings=("title", "bodies", "amplitudes", "protocol", "fragility", "seed", "compare_with"),
+        settings=(
+            "title",
+            "bodies",
+            "amplitudes",
+            "protocol",
+            "fragility",
+            "seed",
+            "compare_with",
+            "friction",
+            "vertical",
+        ),
         parallel=True,
     )
 

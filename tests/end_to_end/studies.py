@@ -13,9 +13,7 @@ from rockfrag.guests import study_stages
 from rockfrag.stages.stage import Job
 from rockfrag.study.loading import load_study
 
-CATALOGUE = (
-    "name,event,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
-)
+CATALOGUE = "name,event,date,station,component,magnitude,distance_km,source,file,vertical,sha256,unit,licence\n"
 STEP, SAMPLES = 0.02, 250
 
 
@@ -65,8 +63,10 @@ def write(study: Foreign, folder: Path) -> Path:
     )
     rows = []
     for number, (name, event) in enumerate(study.records.items()):
-        _record(folder / f"record{number}.txt", number)
-        rows.append((name, event, *[""] * 5, "folder", f"record{number}.txt", "", "g", "own"))
+        names = f"record{number}.txt", f"record{number}-up.txt"
+        for seed, one in zip((number, 100 + number), names, strict=True):
+            _record(folder / one, seed)
+        rows.append((name, event, *[""] * 5, "folder", *names, "", "g", "own"))
     _table(folder / "motions.csv", CATALOGUE.strip(), rows)
     content: dict[str, Any] = {
         "study": "own",

@@ -1,6 +1,7 @@
 """Motions of the floors of a building: what stands on them feels these."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from rockfrag.building.drift import judge_drift
 from rockfrag.building.inelastic import respond_hysteretically
@@ -38,6 +39,32 @@ def floor_motions(
     for label in labels:
         building.level(label)
     return response_motions(building, motion, respond(building, motion), labels)
+
+
+def vertical_motions(building: ShearBuilding, vertical: Motion) -> list[Motion]:
+    """Vertical accelerations of all labelled floors: that of the ground times the building's factors.
+
+    Parameters
+    ----------
+    building
+        Building; storeys are taken as stiff in the vertical where it gives no factor.
+    vertical
+        Vertical acceleration of the ground.
+
+    Returns
+    -------
+    One motion a floor, named as those of :func:`floor_motions` where ``vertical`` has the name of the motion.
+    """
+    moved = []
+    for label in building.floors:
+        factor = float(building.vertical_factors.get(label, 1.0))
+        level = building.level(label)
+        felt = vertical.after(
+            "floor_motion", factor * vertical.acceleration, floor=label, level=level, factor=factor
+        )
+        metadata = {**vertical.metadata, "floor": label, "level": level}
+        moved.append(replace(felt, name=f"{vertical.name}_{label}", metadata=metadata))
+    return moved
 
 
 def response_motions(

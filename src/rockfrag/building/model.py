@@ -90,6 +90,9 @@ class ShearBuilding:
         Law of the storeys: what the hysteretic model does, and by what the elastic one is judged.
     name
         Short name for messages and provenance.
+    vertical_factors
+        Factor on the vertical motion of the ground by label of floor [-]; floors that are not named move up
+        and down as the ground does.
 
     Raises
     ------
@@ -106,6 +109,7 @@ class ShearBuilding:
     model: Literal["elastic", "hysteretic"] = "elastic"
     masonry: MasonryLaw = field(default_factory=MasonryLaw)
     name: str = "building"
+    vertical_factors: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for what, unit in (("masses", "kg"), ("heights", "m"), ("stiffnesses", "N/m")):
@@ -121,7 +125,7 @@ class ShearBuilding:
             raise InputError(
                 f"{self.name}: model must be elastic or hysteretic, got {self.model!r}."
             )
-        for label in self.floors:
+        for label in (*self.floors, *self.vertical_factors):
             self.level(label)
         if isinstance(self.damping, RayleighDamping) and self.damping.modes[1] > max(
             self.storeys, 2

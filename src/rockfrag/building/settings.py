@@ -41,7 +41,8 @@ def make_building(settings: Any, source: str = "building") -> ShearBuilding:
     settings
         ``storey_heights_m``, ``masses_kg`` (or these in other units), one of ``first_period_s`` and
         ``storey_stiffnesses_N_m``, and optionally ``name``, ``damping``, ``floors``, ``model``
-        (``elastic`` or ``hysteretic``) and ``masonry``; the schema ``building`` says what each holds.
+        (``elastic`` or ``hysteretic``), ``masonry`` and ``vertical_factors``; the schema ``building`` says
+        what each holds.
     source
         Where the mapping comes from, for messages.
 
@@ -80,6 +81,7 @@ def _building(settings: Mapping[str, Any]) -> ShearBuilding:
         model=settings.get("model", "elastic"),
         masonry=MasonryLaw(**settings.get("masonry", {})),
         name=settings.get("name", "building"),
+        vertical_factors=settings.get("vertical_factors", {}),
     )
 
 

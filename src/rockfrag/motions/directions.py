@@ -53,11 +53,48 @@ def motion_of_row(row: dict[str, Any], folder: Path, records: Path) -> Motion:
     direction = str(row.get("direction") or "")
     if not direction:
         return motion
-    second = load_component(row, row["second"], folder, records)
-    factor = row.get("scale_factor", math.nan)
-    if not math.isnan(factor) and factor != 1:
-        second = second.after("scale", second.acceleration * factor, factor=factor)
+    second = _scaled(load_component(row, row["second"], folder, records), row)
     return replace(turned(motion, second, direction), name=motion.name)
+
+
+def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
+    """Read the motion of a row and the vertical one of the same record, at the same times.
+
+    Parameters
+    ----------
+    row, folder, records
+        As of :func:`motion_of_row`; the column ``vertical`` names the vertical component.
+
+    Returns
+    -------
+    The motion as :func:`motion_of_row` returns it, and the vertical one with its name and its factor, both over
+    the time that they have in common.
+
+    Raises
+    ------
+    InputError
+        As :func:`motion_of_row`, if the row names no vertical component, or they have no time in common.
+    """
+    if not row.get("vertical"):
+        raise InputError(f"{row['name']}: the catalogue names no vertical component of it.")
+    direction = str(row.get("direction") or "")
+    others = [row["vertical"], *([row["second"]] if direction else [])]
+    components = [
+        load_motion(row, folder, records),
+        *(_scaled(load_component(row, one, folder, records), row) for one in others),
+    ]
+    motion, vertical, *second = common_time(components)
+    if second:
+        motion = replace(turned(motion, second[0], direction), name=motion.name)
+    return motion, replace(vertical, name=motion.name)
+
+
+def _scaled(motion: Motion, row: dict[str, Any]) -> Motion:
+    """Return a component with the factor of its row."""
+    factor = row.get("scale_factor", math.nan)
+    if math.isnan(factor) or factor == 1:
+        return motion
+    return motion.after("scale", motion.acceleration * factor, factor=factor)
 
 
 def turned(first: Motion, second: Motion, direction: str) -> Motion:

@@ -1,6 +1,7 @@
 """Components of one record brought to the same times, so that they can be turned and added."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from obspy import UTCDateTime
@@ -68,6 +69,11 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
         samples = np.interp(begin + np.arange(count) * dt, motion.time, motion.acceleration)
     if same and round(shift) == 0 and samples.size == motion.acceleration.size:
         return motion
+    start = motion.metadata.get("start_time")
+    if start and begin > 0:
+        # who brings it to a common time once more would leave out its beginning twice
+        later = {**motion.metadata, "start_time": str(UTCDateTime(str(start)) + begin)}
+        motion = replace(motion, metadata=later)
     return motion.after(
         "common time", samples, dt, left_out_at_beginning_s=begin, interpolated=not same
     )

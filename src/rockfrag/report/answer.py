@@ -40,7 +40,9 @@ def study_answer(results: Results) -> Answer:
 
 def questions(results: Results) -> list[tuple[str, str]]:
     """Questions that a study's page answers."""
-    return [one for one in QUESTIONS if one[1] != "pedestal" or results.study.has_pairs]
+    study = results.study
+    answered = {"pedestal": study.has_pairs, "live": study.simulated_in_page}
+    return [one for one in QUESTIONS if answered.get(one[1], True)]
 
 
 def _asked(results: Results) -> str:
@@ -95,9 +97,16 @@ def rests_on(results: Results) -> list[str]:
     """What the numbers rest on: model, motions, building, steps."""
     study = results.study
     motions, events = len(study.catalogue), study.catalogue["event"].nunique()
+    moves = (
+        "Rigid blocks that rock, slide and fly in the plane of the motion; impacts follow Coulomb's law."
+        if study.slides
+        else "Rigid blocks that rock in the plane of the motion and neither slide nor jump; impacts conserve "
+        "angular momentum."
+    )
+    if study.vertical:
+        moves += " The vertical components of the records shake them too."
     words = [
-        "Rigid blocks that rock in the plane of the motion and neither slide nor jump; impacts conserve angular "
-        "momentum.",
+        moves,
         f"{counted(motions, 'record')} of {counted(events, 'earthquake')}, each scaled to "
         f"{counted(len(study.amplitudes.values_g), 'amplitude')} from {study.amplitudes.lowest_g:g} to "
         f"{study.amplitudes.highest_g:g} g.",
@@ -114,7 +123,17 @@ def could_overturn(results: Results) -> list[str]:
     """What would make the answer wrong, each with the numbers that say how likely that is."""
     words = []
     validity = results.table("validity")
-    if len(validity):
+    if results.study.slides:
+        sliding = results.table("sliding")
+        other, cases = (
+            int(sliding[["saved", "felled"]].to_numpy().sum()),
+            int(sliding["cases"].sum()),
+        )
+        words.append(
+            f"Another friction: that of this study decides {of_all(other, cases, 'case')}, which nobody measured "
+            "on these surfaces."
+        )
+    elif len(validity):
         demand = validity["friction_demand"].to_numpy(dtype=float)
         slides = int((~(demand <= FRICTION)).sum())
         words.append(

@@ -390,3 +390,35 @@ def model_allowed(validity: pd.DataFrame) -> list[Finding]:
         else f"In {of_all(lifted, tests, 'test')} a block would have lifted off."
     )
     return [Finding(headline, " ".join(words))]
+
+
+def sliding_found(sliding: pd.DataFrame) -> Finding:
+    """Say in how many cases bodies slid and flew, how far, and how many verdicts that changed.
+
+    Parameters
+    ----------
+    sliding
+        As :func:`rockfrag.stages.validity.sliding_table` returns it.
+    """
+    cases, slid, flew, saved, felled = (
+        int(sliding[name].sum()) for name in ("cases", "slid", "flew", "saved", "felled")
+    )
+    if slid == flew == 0:
+        return Finding(
+            "Nothing slides or flies",
+            f"In none of {counted(cases, 'case')} friction is asked for more than there is, so everything rocks "
+            "as on surfaces that hold.",
+        )
+    where = max(sliding.to_dict("records"), key=lambda one: float(one["largest_slip_m"]))
+    words = [
+        f"The largest slip is {number(100 * where['largest_slip_m'], 1)} cm ({where['configuration']}); "
+        + ("nothing flies." if flew == 0 else f"bodies fly in {of_all(flew, cases, 'case')}.")
+    ]
+    if saved == felled == 0:
+        words.append("No verdict is another than that of surfaces that hold.")
+    else:
+        words.append(
+            "Sliding and flight save what would overturn on surfaces that hold in "
+            f"{of_all(saved, cases, 'case')}, and overturn what would stand in {of_all(felled, cases, 'case')}."
+        )
+    return Finding(f"Bodies slide in {of_all(slid, cases, 'case')}", " ".join(words))

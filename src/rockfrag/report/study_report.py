@@ -4,6 +4,8 @@ import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from markupsafe import Markup
+
 from rockfrag.figure_style import save_figure
 from rockfrag.files import write_text
 from rockfrag.processes import in_processes
@@ -102,12 +104,17 @@ def study_page(
         sections=sections,
         pictures=pictures,
         provenance=provenance(results),
-        live=live_kernel(
-            {one.name: one.body for one in study.configurations},
-            results.floors,
-            results.verdicts,
-        ),
+        live=_live(results),
     )
+
+
+def _live(results: Results) -> Markup:
+    """Return the simulation in the page; nothing where it could not give the verdicts of the study."""
+    study = results.study
+    if not study.simulated_in_page:
+        return Markup()
+    bodies = {one.name: one.body for one in study.configurations}
+    return live_kernel(bodies, results.floors, results.verdicts)
 
 
 def _lead(results: Results) -> str:

@@ -76,6 +76,8 @@ class EnsembleResult:
         without friction.
     peak_slip_ground, peak_slip_interface
         Largest displacement either way [m].
+    flights
+        Number of times that a body left what it stood on with all of its base; zero without friction.
     lost_contact
         With ``forces``, as in :class:`Response` [s]; NaN otherwise.
     friction_demand, least_normal_force
@@ -98,6 +100,7 @@ class EnsembleResult:
     slip_interface: Array
     peak_slip_ground: Array
     peak_slip_interface: Array
+    flights: NDArray[np.int64]
     lost_contact: Array
     friction_demand: Array
     least_normal_force: Array
@@ -289,6 +292,7 @@ def _empty_result(factors: Array, n_bodies: int) -> EnsembleResult:
         slip_interface=np.zeros(shape),
         peak_slip_ground=np.zeros(shape),
         peak_slip_interface=np.zeros(shape),
+        flights=np.zeros(shape, dtype=np.int64),
         lost_contact=np.full(shape, np.nan),
         friction_demand=np.full((*shape, 2), np.nan),
         least_normal_force=np.full((*shape, 2), np.nan),
@@ -332,6 +336,7 @@ def _fill_contact(
     result.peak_rotation_pedestal[place] = np.where(fell == 1, np.inf, below)
     result.peak_velocity[place] = found["peak_speed"][:, top]
     result.impacts[place] = found["impacts"]
+    result.flights[place] = found["flights"]
     result.closest_approach[place] = np.nan
     for k, name in enumerate(("ground", "interface")):
         getattr(result, f"slip_{name}")[place] = found["slip"][:, k]

@@ -20,6 +20,7 @@ from rockfrag.motions.scaling import factors_to_pga, scale
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.contact.friction import FrictionInput
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
@@ -60,13 +61,14 @@ class Variant:
 
 @dataclass(frozen=True)
 class Specimen:
-    """One configuration on the table: names of object and configuration, ``P`` or ``NP``, body, restitution."""
+    """One configuration on the table: names of object and configuration, ``P`` or ``NP``, body, impacts."""
 
     configuration: str
     object: str
     pedestal: str
     body: Body
     restitution: Restitution = None
+    friction: FrictionInput | None = None
 
 
 def building_variants(
@@ -193,6 +195,7 @@ class _Ground:
             motion.dt,
             factors_to_pga(motion, self.amplitudes_g),
             restitution=[specimen.restitution for specimen in self.specimens],
+            friction=_frictions(self.specimens),
             threads=self.threads,
         )
         bodies = np.array(["", "pedestal", "statue"])
@@ -215,6 +218,12 @@ class _Ground:
             ],
             ignore_index=True,
         )
+
+
+def _frictions(specimens: Sequence[Specimen]) -> list[FrictionInput] | None:
+    """Friction of each specimen; None where nothing slides, which holds for all or for none."""
+    known = [one.friction for one in specimens if one.friction is not None]
+    return known or None
 
 
 def _sweep(

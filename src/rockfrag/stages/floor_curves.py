@@ -33,6 +33,7 @@ def floor_curves(
     bodies: Mapping[str, Body],
     record_set: str,
     level: float,
+    rocks_at_once: bool = True,
 ) -> pd.DataFrame:
     """Fragility of every configuration on every floor; motions of different floors are never mixed.
 
@@ -50,6 +51,9 @@ def floor_curves(
         Digest of the motions, which goes into the table.
     level
         Confidence level of the limits.
+    rocks_at_once
+        Whether bodies rock as soon as the peak of a motion exceeds their threshold, as they do where nothing
+        slides and nothing moves vertically; the state ``rocks`` is left out where they may not.
 
     Returns
     -------
@@ -73,11 +77,11 @@ def floor_curves(
         for column in columns:
             labels = {"configuration": name, "floor": floor, "floor_level": height}
             outcomes = outcomes_from_table(measured, column, event="event", source="sweep")
-            rocks = fit_uplift(at_uplift, column, level=level)
-            for state, found in (
-                ("rocks", rocks),
-                ("overturned", fragility_of(outcomes, level=level)),
-            ):
+            states = {"overturned": fragility_of(outcomes, level=level)}
+            if rocks_at_once:
+                rocks = fit_uplift(at_uplift, column, level=level)
+                states = {"rocks": rocks, **states}
+            for state, found in states.items():
                 about = {**labels, "measure": column, "state": state}
                 estimator = "exact_threshold" if state == "rocks" else "mean_probability"
                 row = fragility_row(found, about, estimator, record_set)

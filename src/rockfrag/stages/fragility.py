@@ -29,7 +29,15 @@ def run(job: Job[Study]) -> Results:
     yield "measure_choice", choice
     bodies = {one.name: one.body for one in job.study.configurations}
     floors = job.study.floors
-    by_floor = floor_curves(sweep, measures, floors, bodies, record_set, settings.confidence)
+    by_floor = floor_curves(
+        sweep,
+        measures,
+        floors,
+        bodies,
+        record_set,
+        settings.confidence,
+        rocks_at_once=not (job.study.slides or job.study.vertical),
+    )
     yield "fragility_floors", by_floor
     exports = job.folder / "exports"
     exports.mkdir(parents=True, exist_ok=True)
@@ -60,5 +68,5 @@ STAGE = Stage(
         "fragility_floors",
         "exports/",
     ),
-    settings=("fragility", "seed", "bodies", "building"),
+    settings=("fragility", "seed", "bodies", "building", "friction", "vertical"),
 )

@@ -30,6 +30,8 @@ def run(job: Job[Study]) -> Results:
     yield "motions/ground", [one.ground for one in felt]
     floors = [floor for one in felt for floor in one.floors]
     yield "motions/floors", floors
+    if study.vertical:
+        yield "motions/vertical", [floor for one in felt for floor in one.vertical]
     if study.keep_going:
         yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
     if study.write_motions is not None:
@@ -52,16 +54,17 @@ def run(job: Job[Study]) -> Results:
 
 @dataclass(frozen=True)
 class _Felt:
-    """A record as read, as it shakes the ground, and as every floor feels it."""
+    """A record as read, as it shakes the ground, and as every floor feels it, up and down too if asked for."""
 
     record: Motion
     ground: Motion
     floors: list[Motion]
+    vertical: list[Motion]
 
 
 def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict[str, str]]]:
     """Rows of the catalogue, what became of each, and which were left out and why."""
-    from rockfrag.motions.directions import motion_of_row
+    from rockfrag.motions.directions import motion_and_vertical, motion_of_row
     from rockfrag.motions.processing import process
 
     study = job.study
@@ -69,11 +72,16 @@ def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict
     for row in study.catalogue.to_dict("records"):
         named = {str(key): value for key, value in row.items()}
         try:
-            record = motion_of_row(named, *_place(study))
+            ups: list[Motion] = []
+            if study.vertical:
+                record, up = motion_and_vertical(named, *_place(study))
+                ups = _vertical_floors(study, process(up, study.processing))
+            else:
+                record = motion_of_row(named, *_place(study))
             if record.pga == 0:
                 raise InputError(f"{record.name}: the record is zero throughout; leave it out.")
             ground = process(record, study.processing)
-            felt.append(_Felt(record, ground, _floors(study, ground)))
+            felt.append(_Felt(record, ground, _floors(study, ground), ups))
             rows.append(named)
         except InputError as error:
             if not study.keep_going:
@@ -97,6 +105,14 @@ def _floors(study: Study, ground: Motion) -> list[Motion]:
     return floor_motions(study.building, ground)
 
 
+def _vertical_floors(study: Study, up: Motion) -> list[Motion]:
+    if study.building is None:
+        return [on_the_ground(up)]
+    from rockfrag.building.floors import vertical_motions
+
+    return vertical_motions(study.building, up)
+
+
 def on_the_ground(motion: Motion) -> Motion:
     """Return a ground motion labelled as the floors of a building are: ``<name>_ground``."""
     from dataclasses import replace
@@ -116,11 +132,11 @@ STAGE = Stage(
     outputs=lambda study: (
         "motions/records.parquet",
         "motions/ground.parquet",
-        "motions/floors.parquet",
+        *study.motion_sets,
         "measures",
         *([LEFT_OUT] if study.keep_going else []),
         *([] if study.write_motions is None else [f"{WRITTEN}/"]),
     ),
-    settings=("motions", "building", "write_motions", "keep_going"),
+    settings=("motions", "building", "write_motions", "keep_going", "vertical"),
     parallel=True,
 )

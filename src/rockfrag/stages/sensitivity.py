@@ -18,7 +18,7 @@ def run(job: Job[Study]) -> Results:
     settings = read_yaml(study.building_file)
     variants = building_variants(settings, study.more.sensitivity, str(study.building_file))
     specimens = [
-        Specimen(one.name, one.object, one.label, one.body, one.restitution)
+        Specimen(one.name, one.object, one.label, one.body, one.restitution, one.friction)
         for one in study.configurations
     ]
     tests = building_sensitivity(
@@ -44,6 +44,6 @@ STAGE = Stage(
     inputs=("motions/ground.parquet",),
     files=lambda study: [str(study.building_file), *study.body_files],
     outputs=("building_sensitivity/tests", "building_sensitivity/means"),
-    settings=("building_sensitivity", "building", "bodies", "amplitudes", "protocol"),
+    settings=("building_sensitivity", "building", "bodies", "amplitudes", "protocol", "friction"),
     parallel=True,
 )

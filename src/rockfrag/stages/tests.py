@@ -4,7 +4,7 @@ import pandas as pd
 
 from rockfrag.stages.shaker import limited_tests, limits_table
 from rockfrag.stages.stage import Job, Results, Stage
-from rockfrag.stages.validity import validity_table
+from rockfrag.stages.validity import sliding_table, validity_table
 from rockfrag.study.study import Study
 
 
@@ -29,7 +29,14 @@ def run(job: Job[Study]) -> Results:
     yield "mean_amplitudes", mean_amplitudes(laboratory)
     yield "bodies", bodies_table(study.configurations)
     by_name = {motion.name: motion for motion in motions}
-    yield "validity", validity_table(laboratory, study.configurations, by_name)
+    ups = (
+        {motion.name: motion for motion in job.motions("motions/vertical")}
+        if study.vertical
+        else None
+    )
+    yield "validity", validity_table(laboratory, study.configurations, by_name, ups)
+    if study.slides:
+        yield "sliding", sliding_table(sweeps)
     censored = int((laboratory["censored"] != "none").sum())
     job.log.info("tests: %d, not overturned: %d", len(laboratory), censored)
 
@@ -37,7 +44,7 @@ def run(job: Job[Study]) -> Results:
 STAGE = Stage(
     name="tests",
     run=run,
-    inputs=lambda study: ("motions/floors.parquet", *study.sweep_tables),
+    inputs=lambda study: (*study.motion_sets, *study.sweep_tables),
     files=lambda study: [
         *study.body_files,
         *([] if study.more.shaker is None else [str(study.more.shaker_file)]),
@@ -47,7 +54,8 @@ STAGE = Stage(
         "mean_amplitudes",
         "bodies",
         "validity",
+        *(["sliding"] if study.slides else []),
         *([] if study.more.shaker is None else ["shaker"]),
     ),
-    settings=("bodies", "amplitudes", "protocol", "shaker"),
+    settings=("bodies", "amplitudes", "protocol", "shaker", "friction", "vertical"),
 )

@@ -3,11 +3,13 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.plausibility import check_density
 from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.measured_restitution import (
     Law,
     Measured,
@@ -32,6 +34,8 @@ class Configuration:
         What the mechanics see.
     restitution
         What was measured of its impacts, as :func:`rockfrag.rocking.simulate` takes it; None conserves momentum.
+    friction
+        Coefficients of friction, as :func:`rockfrag.rocking.simulate` takes them; None where nothing slides.
     """
 
     name: str
@@ -39,6 +43,7 @@ class Configuration:
     pedestal: str
     body: Body
     restitution: Restitution = None
+    friction: FrictionInput | None = None
 
     @property
     def label(self) -> str:
@@ -169,3 +174,30 @@ def with_restitution(
     restitution = MeasuredRestitution(value, law)  # type: ignore[arg-type]
     stack_restitution(configuration.body, restitution)
     return replace(configuration, restitution=restitution)
+
+
+def with_friction(
+    configuration: Configuration, content: float | Mapping[str, Any]
+) -> Configuration:
+    """Return a configuration whose contacts have the friction that a study states.
+
+    Parameters
+    ----------
+    content
+        A coefficient [-] of all contacts, or a mapping with ``ground`` and ``interface``, each a coefficient or
+        a mapping with ``static`` and ``kinetic``; a lone object has the friction of the ground.
+
+    Raises
+    ------
+    InputError
+        If a static coefficient is less than the kinetic one.
+    """
+    each = (
+        [content["ground"], content["interface"]] if isinstance(content, Mapping) else [content] * 2
+    )
+    ground, interface = (
+        (one["static"], one["kinetic"]) if isinstance(one, Mapping) else one for one in each
+    )
+    friction = (ground, interface) if configuration.pedestal else ground
+    interface_frictions(configuration.body, friction)
+    return replace(configuration, friction=friction)

@@ -16,6 +16,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.rocking.bodies import Block
+from rockfrag.rocking.contact.friction import check_impacts_follow
 from rockfrag.rocking.measured_restitution import LAWS
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
@@ -25,6 +26,7 @@ from rockfrag.study.configurations import (
     each_alone,
     read_configurations,
     read_specimens,
+    with_friction,
     with_restitution,
 )
 from rockfrag.study.measured_table import (
@@ -37,6 +39,16 @@ from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
 from rockfrag.yaml_file import read_yaml
+
+OF_ONE_COMPONENT = (
+    "strong_part",
+    "bracketed_part",
+    "scale_to_pga",
+    "scale_to_pgv",
+    "scale_to_sa",
+    "scale_to_arias",
+)
+"""Steps that choose a part or a factor by the component itself."""
 
 AnyStudy = Study | MeasuredTable | CampaignStudy
 
@@ -99,6 +111,9 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     building = content.get("building")
     building_file = None if building is None else existing_file(source, "building", building)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
+    configurations = _measured(
+        source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
+    )
     study = Study(
         name=content["study"],
         title=content["title"],
@@ -112,9 +127,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         specimens_file=specimens_file,
         configurations_file=configurations_file,
         specimens=specimens,
-        configurations=_measured(
-            source, _chosen(source, known, bodies.get("use")), specimens, bodies.get("restitution")
-        ),
+        configurations=_on_surfaces(source, configurations, content.get("friction")),
         amplitudes=_amplitudes(source, content["amplitudes"]),
         protocol_step_percent=float(content["protocol"]["step_percent"]),
         fragility=FragilitySettings(
@@ -123,12 +136,15 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         ),
         compare_with=content.get("compare_with"),
         keep_going=content.get("keep_going", False),
+        slides="friction" in content,
+        vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
     )
     _check_names(study)
     _check_records_exist(study)
     _check_optional_parts(study)
+    _check_mechanics(study)
     return study
 
 
@@ -189,6 +205,20 @@ def _measured(
         raise InputError(f"{key}: {error}") from error
 
 
+def _on_surfaces(
+    source: Path, configurations: tuple[Configuration, ...], content: Any
+) -> tuple[Configuration, ...]:
+    """Return the configurations with what the study says of friction."""
+    if content is None:
+        return configurations
+    try:
+        for one in configurations:
+            check_impacts_follow(one.restitution, linear=False)
+        return tuple(with_friction(one, content) for one in configurations)
+    except InputError as error:
+        raise InputError(f"{source}: key friction: {error}") from error
+
+
 def _check_names(study: Study) -> None:
     """Refuse names of motions and floors that could not stand in tables and file names."""
     motions, floors = list(study.catalogue["name"]), list(study.floors)
@@ -228,6 +258,40 @@ def _check_optional_parts(study: Study) -> None:
         _check_varied_building(study)
     if study.more.measured_tests is not None:
         _check_measured_tests(study, study.more.measured_tests)
+
+
+def _check_mechanics(study: Study) -> None:
+    """Refuse what is not simulated with friction or with vertical motion."""
+    where = f"{study.source}: key {'friction' if study.slides else 'vertical'}"
+    if (study.slides or study.vertical) and study.more.explanation is not None:
+        raise InputError(
+            f"{where}: the departures of the key explanation rock without sliding under horizontal motion; "
+            "leave one of the two out (explanation.friction tries coefficients)."
+        )
+    if (study.slides or study.vertical) and study.compare_with is not None:
+        raise InputError(
+            f"{where}: what the key compare_with compares with rocks without sliding under horizontal motion; "
+            "leave one of the two out."
+        )
+    if not study.vertical:
+        return
+    if study.more.sensitivity is not None:
+        raise InputError(
+            f"{study.source}: key vertical: the buildings of the key building_sensitivity are shaken "
+            "horizontally; leave one of the two out."
+        )
+    for row in study.catalogue.to_dict("records"):
+        if not row["vertical"]:
+            raise InputError(
+                f"{study.source}: key vertical: {study.catalogue_file} names no vertical component of "
+                f"{row['name']}; give it in the column vertical."
+            )
+    for i, step in enumerate(study.processing):
+        if step["step"] in OF_ONE_COMPONENT:
+            raise InputError(
+                f"{study.source}: key motions.processing[{i}]: {step['step']} looks at one component, and the "
+                "vertical one would no longer belong to it; leave it out or use trim and scale."
+            )
 
 
 def _check_varied_building(study: Study) -> None:

@@ -20,16 +20,18 @@ def check_records(study: Study) -> list[str]:
     """
     from pathlib import Path
 
-    from rockfrag.motions.directions import motion_of_row
+    from rockfrag.motions.directions import motion_and_vertical, motion_of_row
 
     warnings = []
     folder = study.catalogue_file.parent
     for row in study.catalogue[study.catalogue["source"] == "folder"].to_dict("records"):
         where = f"{study.catalogue_file}, motion {row['name']}"
         try:
-            motion = motion_of_row(
-                {str(k): v for k, v in row.items()}, folder, Path(RECORDS_FOLDER)
-            )
+            named = {str(k): v for k, v in row.items()}
+            if study.vertical:
+                motion, _ = motion_and_vertical(named, folder, Path(RECORDS_FOLDER))
+            else:
+                motion = motion_of_row(named, folder, Path(RECORDS_FOLDER))
             if motion.pga == 0:
                 raise InputError("the record is zero throughout; leave it out.")
         except InputError as error:

@@ -62,6 +62,10 @@ class Study:
         ``thesis`` if the study is compared with the thesis that these tests come from, or None.
     keep_going
         Whether records that cannot be used are left out, and said to be, instead of ending the study.
+    slides
+        Whether friction is limited, so that bodies slide and fly.
+    vertical
+        Whether the vertical components of the records shake too.
     write_motions
         Format in which the motions of all floors are written too, or None.
     more
@@ -86,6 +90,8 @@ class Study:
     fragility: FragilitySettings
     compare_with: str | None
     keep_going: bool
+    slides: bool
+    vertical: bool
     write_motions: str | None
     more: Supplementary
 
@@ -121,9 +127,19 @@ class Study:
         return bool(sides["P"] & sides["NP"])
 
     @property
+    def simulated_in_page(self) -> bool:
+        """Whether its verdicts are those of the simulation in a page, which knows horizontal rocking alone."""
+        return not (self.slides or self.vertical)
+
+    @property
     def floors(self) -> dict[str, int]:
         """Level of each floor that is shaken, by its label; 0 is the ground."""
         return {GROUND: 0} if self.building is None else dict(self.building.floors)
+
+    @property
+    def motion_sets(self) -> list[str]:
+        """Paths of the motions that shake the bodies."""
+        return ["motions/floors.parquet", *(["motions/vertical.parquet"] if self.vertical else [])]
 
     @property
     def body_files(self) -> list[str]:

@@ -45,7 +45,13 @@ def _wide(recorded: pd.DataFrame) -> pd.DataFrame:
     rows: dict[str, dict[str, object]] = {}
     for row in recorded.to_dict("records"):
         words = (
-            "overturns" if row["overturned"] else "rocks" if row["peak_rotation"] > 0 else "stays"
+            "overturns"
+            if row["overturned"]
+            else "rocks"
+            if row["peak_rotation"] > 0
+            else "slides"
+            if row.get("peak_slip_m", 0.0) > 0
+            else "stays"
         )
         if 0 < row["share_near"] < 1:
             words += ", near"

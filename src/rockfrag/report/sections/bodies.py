@@ -31,7 +31,7 @@ def _section(results: Results) -> Section:
     return Section(
         "bodies",
         "Bodies",
-        _message(shown),
+        _message(shown, results.study.slides or results.study.vertical),
         [
             "Rigid blocks with two edges to rock on, in the plane of the motion. The critical angle is "
             "that between the diagonal and the upright; a block starts to rock where the acceleration "
@@ -41,10 +41,11 @@ def _section(results: Results) -> Section:
     )
 
 
-def _message(bodies: pd.DataFrame) -> str:
+def _message(bodies: pd.DataFrame, may_differ: bool) -> str:
     low, high = (number(value, 2) for value in (bodies["uplift_g"].min(), bodies["uplift_g"].max()))
     span = f"at {low} g" if low == high else f"between {low} and {high} g"
-    return f"{sentence(counted(len(bodies), 'configuration'))}; rocking starts {span} at the base."
+    where = " on surfaces that hold and do not move vertically" if may_differ else ""
+    return f"{sentence(counted(len(bodies), 'configuration'))}; rocking starts {span} at the base{where}."
 
 
 BODIES = Part(("bodies",), _section)

@@ -1,9 +1,9 @@
-"""What the model assumes: that nothing slides and nothing jumps."""
+"""What the model assumes, that nothing slides and nothing jumps, or what friction did where it is limited."""
 
 import numpy as np
 import pandas as pd
 
-from rockfrag.report.findings import model_allowed
+from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 
@@ -18,7 +18,20 @@ _COLUMNS = (
 )
 
 
+_SLIDING = (
+    Column("configuration", "Configuration"),
+    Column("cases", "Cases", 0),
+    Column("slid", "Slides", 0),
+    Column("flew", "Flies", 0),
+    Column("largest_slip_cm", "Largest slip [cm]", 1),
+    Column("saved", "Saved by sliding", 0),
+    Column("felled", "Overturned by it", 0),
+)
+
+
 def _section(results: Results) -> Section | None:
+    if results.study.slides:
+        return _what_friction_did(results.table("sliding"))
     validity = results.table("validity")
     if validity.empty:
         return None
@@ -41,6 +54,21 @@ def _section(results: Results) -> Section | None:
                 "Coefficient of friction needed, and tests with lift-off.",
             )
         ],
+    )
+
+
+def _what_friction_did(sliding: pd.DataFrame) -> Section:
+    shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
+    return Section(
+        "validity",
+        "What friction did",
+        sliding_found(sliding).said,
+        [
+            "Bodies stick, slide, rock and fly with the friction of this study, at every amplitude of every "
+            "motion. Each case is simulated once more on surfaces that hold: “saved” overturns there only, and "
+            "“overturned by it” overturns with sliding and flight only."
+        ],
+        [table_html(shown, _SLIDING, "Sliding and flight in all cases.")],
     )
 
 

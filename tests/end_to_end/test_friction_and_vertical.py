@@ -1,0 +1,102 @@
+"""Studies whose bodies slide and fly, or are shaken vertically too, from configuration to report."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.records.motion import read_motion_set
+from rockfrag.report.part import Results
+from rockfrag.rocking import Block, simulate
+from rockfrag.study.loading import load_study
+from rockfrag.units import GRAVITY
+
+from .checked_report import Page, check_first_page, check_report
+from .studies import Foreign, run
+
+SLENDER = {
+    "figure": (30.0, 60.0, 60.0),
+    "column": (30.0, 120.0, 110.0),
+    "plinth": (50.0, 60.0, 350.0),
+}
+STANDING = {
+    "figure": ("figure", None),
+    "column": ("column", None),
+    "column on plinth": ("column", "plinth"),
+}
+RECORDS = {"a": "one", "b": "two", "c": "two"}
+
+
+def run_and_check(study: Foreign, folder: Path) -> tuple[Path, Page]:
+    results = run(study, folder)
+    page = check_report(results, study.names)
+    check_first_page(Results(load_study(folder / "study.yaml"), results))
+    return results, page
+
+
+def table(results: Path, name: str) -> pd.DataFrame:
+    return pd.read_parquet(results / f"{name}.parquet")
+
+
+def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(tmp_path: Path):
+    content = {
+        "friction": 0.3,
+        "amplitudes": {"lowest_g": 0.2, "highest_g": 1.2, "step_percent": 20},
+    }
+    study = Foreign(SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content=content)
+    results, page = run_and_check(study, tmp_path)
+    # b/h of the figure is 0.5: it slides before it could rock, and never overturns
+    figure = table(results, "sweep/figure")
+    strong = figure["amplitude_g"] > 0.5
+    assert not figure["overturned"].any()
+    assert (figure["peak_rotation_statue"] == 0).all()
+    assert (figure.loc[strong, "peak_slip_ground_m"] > 0).all()
+    assert figure.loc[strong, "overturned_without_sliding"].any()
+    # b/h of the column is 0.25: it rocks as on surfaces that hold until it slides
+    column = table(results, "sweep/column")
+    weak = column["amplitude_g"] < 0.29
+    assert (
+        column.loc[weak & (column["peak_slip_ground_m"] == 0), "overturned"]
+        == column.loc[weak & (column["peak_slip_ground_m"] == 0), "overturned_without_sliding"]
+    ).all()
+    found = table(results, "sliding").set_index("configuration")
+    assert found.loc["figure", "saved"] == figure["overturned_without_sliding"].sum()
+    assert found.loc["figure", "felled"] == 0
+    assert (table(results, "sweep/column%20on%20plinth")["peak_slip_interface_m"] > 0).any()
+    validity = table(results, "validity")
+    assert (validity["friction_demand"] <= 0.3 * (1 + 1e-9)).all()
+    assert {"peak_slip_m", "flights"} <= set(validity.columns)
+    words = " ".join(page.words)
+    assert "What friction did" in words and "Bodies slide in" in words
+    assert "neither slide nor jump" not in words
+    assert "rocks" not in set(table(results, "fragility_floors")["state"])
+
+
+def test_vertical_components_shake_too_and_floors_take_them_as_they_are(tmp_path: Path):
+    study = Foreign(
+        SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content={"vertical": True}
+    )
+    results, page = run_and_check(study, tmp_path)
+    assert "vertical components" in " ".join(page.words)
+    floors, ups = (
+        read_motion_set(results / "motions" / f"{name}.parquet") for name in ("floors", "vertical")
+    )
+    assert [one.name for one in floors] == [one.name for one in ups]
+    by_name = {one.name: one for one in ups}
+    np.testing.assert_array_equal(by_name["a_hall"].acceleration, by_name["a_loft"].acceleration)
+    # a row of the sweep is what simulate says of the two components
+    sweep = table(results, "sweep/column")
+    row = sweep[(sweep["motion"] == "a_loft") & ~sweep["overturned"]].iloc[-1]
+    motion = next(one for one in floors if one.name == "a_loft")
+    factor = row["amplitude_g"] * GRAVITY / motion.pga
+    block = Block(0.3, 1.2, 110.0)
+    response = simulate(
+        block,
+        factor * motion.acceleration,
+        motion.dt,
+        vertical=factor * by_name["a_loft"].acceleration,
+    )
+    peak = np.abs(response.theta).max() / block.alpha
+    assert row["peak_rotation_statue"] > 0
+    np.testing.assert_allclose(row["peak_rotation_statue"], peak, rtol=0.02)
+    assert "peak_slip_ground_m" not in sweep.columns
