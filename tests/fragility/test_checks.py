@@ -39,6 +39,22 @@ def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offe
     assert first["beta_isotonic"] == pytest.approx(0.5 * np.log(10), rel=0.1)
 
 
+@pytest.mark.parametrize(
+    ("never", "said"),
+    [(20, "and which do not go from 16 to 84 %"), (60, "do not go through a half")],
+)
+def test_shares_of_motions_that_mostly_overturn_nothing_are_offered_without_numbers_that_are_not(
+    never: int, said: str
+):
+    rng = np.random.default_rng(1)
+    capacities = [*0.1 * np.exp(0.02 * rng.normal(size=30)), *np.full(6, 1.5), *np.full(never, 9.0)]
+    table = fragility_table(sweep(capacities, np.geomspace(0.05, 2.0, 40)))
+    first = table.set_index("estimator").loc["mean_probability"]
+    assert first["p_fit"] < 0.05
+    assert said in first["warnings"]
+    assert "nan" not in first["warnings"]
+
+
 def test_lognormal_capacities_pass_and_agree_with_the_shares():
     rng = np.random.default_rng(2)
     table = fragility_table(

@@ -140,7 +140,7 @@ def _checks(
     if p_fit < REJECTED:
         notes.append(
             f"The lognormal curve does not describe the data (p = {p_fit:.3f}): where it matters use the "
-            f"empirical shares, whose median is {points[0]:.3g} {fit.unit} and β {points[1]:.2f}."
+            f"empirical shares{_known_points(points, fit.unit)}."
         )
     if interval.method == "jackknife" and np.isfinite(interval.beta).all():
         notes.append(TAILS)
@@ -151,6 +151,15 @@ def _checks(
         )
     name, influence = _influence(interval, groups)
     return Checks(p_fit, test, residual, name, influence, *points, tuple(notes))
+
+
+def _known_points(points: tuple[float, float], unit: str) -> str:
+    """Say the median and β of the shares as far as these go from 16 to 84 %."""
+    median, beta = points
+    if not np.isfinite(median):
+        return ", which do not go through a half"
+    spread = f" and β {beta:.2f}" if np.isfinite(beta) else ", and which do not go from 16 to 84 %"
+    return f", whose median is {median:.3g} {unit}{spread}"
 
 
 def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:
