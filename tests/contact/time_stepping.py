@@ -46,7 +46,7 @@ def body_table(body: Body) -> np.ndarray:
     return np.array(rows)
 
 
-@numba.njit
+@numba.njit(cache=True)
 def _candidates(table, q, points, axes, gaps, below):
     """Contact points, axis angles (of the face), gaps and the body above; number of them."""
     n = 0
@@ -85,7 +85,7 @@ def _candidates(table, q, points, axes, gaps, below):
     return n
 
 
-@numba.njit
+@numba.njit(cache=True)
 def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q, v, rows):
     """March; fills rows (samples, 6 bodies) with q, v at samples.
 
@@ -179,7 +179,7 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
     return 0, math.nan, last + tail
 
 
-@numba.njit
+@numba.njit(cache=True)
 def _apart(table, q):
     """Whether the statue's base no longer lies over the pedestal's top."""
     tl = q[2] + table[0, 11]
