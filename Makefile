@@ -32,6 +32,9 @@ smoke: run
 report-pdf: .venv/installed
 	@$(RUN) rockfrag.report.pdf "$(STUDY)"
 
+# each of pytest's workers has a processor to itself, so threads of its linear algebra would only wait for each other
+test coverage: export OPENBLAS_NUM_THREADS = 1
+
 test: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow"
 
