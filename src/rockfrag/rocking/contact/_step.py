@@ -190,10 +190,13 @@ def least_margin(p, w, q, v):
 
 @kernel
 def off_the_edge(p, w, q, k):
-    """Whether the base above interface k no longer reaches over the face below."""
+    """Whether the base above interface k no longer reaches over the face below.
+
+    At the far edge a corner meets the edge against its own base, which must not pass for a closed face.
+    """
     for end in range(2):
         _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, 1)
-        if beyond < -2.0 * p.half[k]:
+        if beyond < AT_EDGE * p.size - 2.0 * p.half[k]:
             return True
     return False
 

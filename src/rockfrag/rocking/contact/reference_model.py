@@ -173,7 +173,8 @@ class Model:
     def off_the_edge(self, q: Array, k: int) -> bool:
         """Whether the base above interface k no longer reaches over the face below."""
         return any(
-            self.contact(q, k, side).beyond < -2 * self.face[k][1] for side in FULL
+            self.contact(q, k, side).beyond < AT_EDGE * self.size - 2 * self.face[k][1]
+            for side in FULL
         ) and math.isfinite(self.face[k][1])
 
     def slip(self, q: Array, k: int) -> float:
