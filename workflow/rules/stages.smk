@@ -13,6 +13,7 @@ for stage in STAGES:
             [flagged(path) for path in stage.output_files(STUDY)],
         log:
             f"{RESULTS}/logs/{stage.name}.log",
+        localrule: stage.small
         conda:
             "../envs/rockfrag.yaml"
         # a cluster's profile says how many threads a job may have at most
@@ -20,7 +21,6 @@ for stage in STAGES:
         resources:
             mem_mb=stage.memory_mb(STUDY),
             runtime=stage.minutes,
-        localrule: stage.small
         params:
             study=STUDY_FILE,
             triggers=stage.triggers(config),
