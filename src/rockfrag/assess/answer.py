@@ -258,10 +258,9 @@ def _governing(request: Request, motions: MotionSet) -> HazardCurve | None:
 
     def scatter(curve: HazardCurve) -> float:
         ladder = make_ladder(motions, curve.measure)
-        verdicts = verdicts_of(objects, {name: body}, motions, ladder)[name]
-        fell = verdicts.overturned
-        first = np.log(ladder.levels[fell.argmax(axis=1)])[fell.any(axis=1)]
-        return float(first.std()) if first.size > 1 else math.inf
+        first = verdicts_of(objects, {name: body}, motions, ladder)[name].first_levels()
+        known = np.log(first[np.isfinite(first)])
+        return float(known.std()) if known.size > 1 else math.inf
 
     return min(request.hazard, key=scatter)
 

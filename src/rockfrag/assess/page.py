@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from markupsafe import Markup
-from numpy.typing import NDArray
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.as_json import as_json
@@ -79,7 +78,7 @@ def page_of(found: Assessment) -> str:
 
 def _live(found: Assessment) -> Markup:
     """The object under some motions, live: two components, those that topple it first and a middling one."""
-    order = np.argsort(_first_levels(found), kind="stable")
+    order = np.argsort(found.verdicts.first_levels(), kind="stable")
     chosen = [found.motions.base[i] for i in (order[0], order[len(order) // 2])]
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
@@ -304,15 +303,8 @@ def _levels(found: Assessment) -> Section:
     )
 
 
-def _first_levels(found: Assessment) -> NDArray[np.float64]:
-    """Least level at which each motion topples the object, infinite where none does, shape (motions,)."""
-    fell = found.verdicts.overturned
-    levels = found.verdicts.ladder.levels[fell.argmax(axis=1)]
-    return np.where(fell.any(axis=1), levels, np.inf)
-
-
 def _motions(found: Assessment) -> Section:
-    first = _first_levels(found)
+    first = found.verdicts.first_levels()
     order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
     table = pd.DataFrame(
         {

@@ -68,10 +68,8 @@ def check_rules(objects: Objects, motions: MotionSet, verdicts: Verdicts) -> lis
 
 def first_scales(verdicts: Verdicts) -> np.ndarray:
     """Least factor on each motion that topples the object; NaN where none does, shape (motions,)."""
-    fell = verdicts.overturned & verdicts.ladder.allowed
-    first = fell.argmax(axis=1)
-    scales = verdicts.ladder.scales[np.arange(len(fell)), first]
-    return np.where(fell.any(axis=1), scales, np.nan)
+    first = verdicts.first()
+    return np.where(first >= 0, verdicts.ladder.scales[np.arange(first.size), first], np.nan)
 
 
 def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:

@@ -127,6 +127,19 @@ class Verdicts:
         share = np.divide(fell, total, out=np.zeros(total.size), where=known)
         return np.asarray(share[at])
 
+    def first(self) -> NDArray[np.intp]:
+        """Place of the least level at which each motion topples the body, -1 where none does, shape (motions,).
+
+        Levels to which a motion cannot be scaled do not count.
+        """
+        fell = self.overturned & self.ladder.allowed
+        return np.where(fell.any(axis=1), fell.argmax(axis=1), -1)
+
+    def first_levels(self) -> Floats:
+        """Least level at which each motion topples the body, infinite where none does, shape (motions,)."""
+        first = self.first()
+        return np.where(first >= 0, self.ladder.levels[first], np.inf)
+
     def outcomes(self) -> Outcomes:
         """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
         motion, level = np.nonzero(self.ladder.allowed)
