@@ -56,8 +56,13 @@ PAGES = {
 """Documents outside this folder, and the page that shows each."""
 
 LIVE = """```{raw} html
-<iframe src="_static/play.html#live" title="A figure on a plinth, simulated live" style="width: 100%; height:
+<iframe id="live" src="_static/play.html" title="A figure on a plinth, simulated live" style="width: 100%; height:
 56rem; border: 0"> </iframe>
+<script>addEventListener("message", (event) => {
+  const frame = document.getElementById("live");
+  const height = Number(event.data.rockfragHeight);
+  if (event.source === frame.contentWindow && height > 0) frame.style.height = `${Math.ceil(height) + 4}px`;
+});</script>
 ```"""
 """What stands for ``{{ live }}`` on the front page."""
 

@@ -50,7 +50,7 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
     verdicts = swept({name: body}, [motion])
     page = render(
         title=f"{name} under {motion.name}",
-        lead=f"{counted(samples, 'sample')} of {motion.dt:g} s, as recorded with a peak of "
+        lead=f"{counted(samples, 'sample')} of {motion.dt:.4g} s, as recorded with a peak of "
         f"{number(motion.pga / GRAVITY, 3)} g.",
         answer=Answer(
             asked="At what strength of this motion does it overturn?",

@@ -528,11 +528,18 @@ async function begin() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); redraw(); });
   if (still.matches) find("play").hidden = true;
   addEventListener("resize", redraw);
+  tellHeight();
   find("app").hidden = false;
   find("frames").classList.add("still");
   refresh();
   root.dataset.ready = "1";
 }
 function redraw() { drawScene(); drawHistory(); drawBar(); }
+// A page that shows this one in a frame learns how high the frame has to be; it cannot look for itself.
+function tellHeight() {
+  if (parent === window) return;
+  const tell = () => parent.postMessage({ rockfragHeight: document.documentElement.offsetHeight }, "*");
+  new ResizeObserver(tell).observe(document.documentElement);
+}
 begin();
 })();
