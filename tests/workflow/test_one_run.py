@@ -6,13 +6,16 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
+import psutil
 import pytest
 
 from rockfrag.errors import InputError
+from rockfrag.stages import one_run
 from rockfrag.stages.log import in_words, logged
-from rockfrag.stages.one_run import RUNS, only_run
+from rockfrag.stages.one_run import RUNS, TOKEN, only_run
 from rockfrag.stages.same_numbers import same_numbers
 
 from .test_run import ROOT
@@ -75,6 +78,50 @@ def test_what_a_killed_run_left_running_or_half_written_goes(here: Path):
         assert not any(_alive(one) for one in orphans)
         assert not part.exists()
     assert json.loads((RUNS / "tiny.json").read_text()) == {}
+
+
+def test_a_job_that_has_only_just_been_started_is_found_too(
+    here: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """Between its new memory and its new environment the kernel shows neither arguments nor environment."""
+    RUNS.mkdir(parents=True)
+    (RUNS / "tiny.json").write_text('{"process": 1, "started": 0, "token": "of the dead run"}')
+    program = "print('there', flush=True); import time; time.sleep(60)"
+    environment = {**os.environ, TOKEN: "of the dead run"}
+    with subprocess.Popen(
+        [sys.executable, "-c", program], env=environment, stdout=subprocess.PIPE
+    ) as job:
+        assert job.stdout is not None
+        job.stdout.readline()
+        looks = {"environ": 0, "cmdline": 0}
+
+        def hidden_at_first(what: str) -> Callable[[psutil.Process], object]:
+            shown = getattr(psutil.Process, what)
+
+            def look(process: psutil.Process) -> object:
+                if process.pid != job.pid:
+                    return shown(process)
+                looks[what] += 1
+                return shown(process) if looks[what] > 3 else type(shown(process))()
+
+            return look
+
+        for what in looks:
+            monkeypatch.setattr(psutil.Process, what, hidden_at_first(what))
+        try:
+            with only_run("tiny", here / "results"):
+                assert job.poll() is not None
+        finally:
+            job.kill()
+
+
+def test_a_process_that_never_has_arguments_or_environment_keeps_nobody_waiting(
+    monkeypatch: pytest.MonkeyPatch,
+):
+    monkeypatch.setattr(psutil.Process, "environ", lambda process: {})
+    monkeypatch.setattr(psutil.Process, "cmdline", lambda process: [])
+    monkeypatch.setattr(one_run, "_PATIENCE", 0.05)
+    assert one_run._processes_of("of the dead run") == []
 
 
 def test_what_a_killed_job_left_half_written_goes_with_the_next_run(here: Path):

@@ -87,21 +87,45 @@ def _write(file: IO[str], owner: dict[str, object]) -> None:
 
 
 def _end_all(token: str) -> None:
-    """End the other processes of a run, gently first."""
-    left = [process for process in psutil.process_iter() if _is_of(process, token)]
-    for end in (psutil.Process.terminate, psutil.Process.kill):
-        for process in left:
-            with suppress(psutil.NoSuchProcess):
-                end(process)
-        left = psutil.wait_procs(left, timeout=_PATIENCE)[1]
+    """End the other processes of a run, gently first, and those that they started meanwhile."""
+    while left := _processes_of(token):
+        for end in (psutil.Process.terminate, psutil.Process.kill):
+            for process in left:
+                with suppress(psutil.NoSuchProcess):
+                    end(process)
+            left = psutil.wait_procs(left, timeout=_PATIENCE)[1]
+        if left:
+            # the kernel holds them, and ends them when it lets go
+            return
 
 
-def _is_of(process: psutil.Process, token: str) -> bool:
+def _processes_of(token: str) -> list[psutil.Process]:
+    """Other processes with this token; those just being started are looked at until they show theirs."""
+    found, unknown = [], list(psutil.process_iter())
+    deadline = time.monotonic() + _PATIENCE
+    while unknown:
+        seen = [(process, _token(process)) for process in unknown]
+        found += [process for process, its in seen if its == token and process.pid != os.getpid()]
+        unknown = [process for process, its in seen if its is None]
+        if time.monotonic() > deadline:
+            break
+        if unknown:
+            time.sleep(0.01)
+    return found
+
+
+def _token(process: psutil.Process) -> str | None:
+    """Token in the environment of a process, empty if it has none, None if that cannot be told yet."""
     try:
-        return process.pid != os.getpid() and bool(process.environ().get(TOKEN) == token)
+        environment = process.environ()
+        # the kernel gives a program its memory before its arguments and environment; a process that has
+        # ended, and a thread of the kernel, has no memory
+        if not environment and not process.cmdline() and process.memory_info().vms:
+            return None
+        return str(environment.get(TOKEN, ""))
     except (psutil.Error, OSError):
         # gone meanwhile, or somebody else's
-        return False
+        return ""
 
 
 def _remove_parts(folder: Path) -> None:
