@@ -115,6 +115,19 @@ def test_a_job_that_has_only_just_been_started_is_found_too(
             job.kill()
 
 
+def test_a_job_that_has_ended_but_is_still_listed_keeps_nobody_waiting(here: Path):
+    environment = {**os.environ, TOKEN: "of the dead run"}
+    command = [sys.executable, "-c", "print('there', flush=True); import time; time.sleep(60)"]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE) as job:
+        assert job.stdout is not None
+        job.stdout.readline()
+        # nobody asks how it ended before the block does
+        started = time.monotonic()
+        one_run._end_all("of the dead run")
+        assert time.monotonic() - started < one_run._PATIENCE / 2
+        assert psutil.Process(job.pid).status() == psutil.STATUS_ZOMBIE
+
+
 def test_a_process_that_never_has_arguments_or_environment_keeps_nobody_waiting(
     monkeypatch: pytest.MonkeyPatch,
 ):

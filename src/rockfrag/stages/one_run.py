@@ -93,10 +93,19 @@ def _end_all(token: str) -> None:
             for process in left:
                 with suppress(psutil.NoSuchProcess):
                     end(process)
-            left = psutil.wait_procs(left, timeout=_PATIENCE)[1]
+            deadline = time.monotonic() + _PATIENCE
+            while (left := [one for one in left if _works(one)]) and time.monotonic() < deadline:
+                time.sleep(0.01)
         if left:
             # the kernel holds them, and ends them when it lets go
             return
+
+
+def _works(process: psutil.Process) -> bool:
+    # one that has ended and whose parent does not ask how does nothing more
+    with suppress(psutil.NoSuchProcess):
+        return bool(process.is_running() and process.status() != psutil.STATUS_ZOMBIE)
+    return False
 
 
 def _processes_of(token: str) -> list[psutil.Process]:
