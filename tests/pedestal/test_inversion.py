@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.pedestal.inversion import hotelling, inversion_words, invert
+from rockfrag.pedestal.inversion import friction_departures, hotelling, inversion_words, invert
 
 FLOORS = {"hall": 0, "loft": 2}
 WANTED = {"ground": 1.10, "above": 0.95}
@@ -61,6 +61,7 @@ def test_no_factor_alone_makes_it_and_the_words_say_so():
     words = inversion_words(table, WANTED)
     assert "No departure alone gives +10 % on the ground and -5 % above it" in words
     assert "lowers_loft with raises_ground" in words
+    assert "None can that acts on the ground alone or above it alone." in words
 
 
 def test_factor_that_acts_on_the_ground_alone_is_a_mechanism_of_its_own():
@@ -68,6 +69,8 @@ def test_factor_that_acts_on_the_ground_alone_is_a_mechanism_of_its_own():
     rows = table[(table["factor_1"] == "raises_both") & (table["factor_2"] == "")]
     reaches = rows.set_index("acts_on")["reaches"]
     assert reaches["ground"] and not reaches["all floors"] and not reaches["above"]
+    words = inversion_words(table, {"ground": 1.10, "above": 1.0})
+    assert "Acting at one place only," in words and "raises_both on the ground alone" in words
 
 
 def test_scatter_between_earthquakes_and_the_ladder_widen_what_is_plausible():
@@ -96,3 +99,51 @@ def test_study_without_floors_above_asks_about_the_ground_only():
     reached = table.loc[table["reaches"] & (table["factor_2"] == ""), "factor_1"]
     assert set(reached) == {"raises_ground", "raises_both"}
     assert set(table["acts_on"]) == {"all floors"}
+
+
+def tried_friction():
+    """P/NP over friction of both interfaces; on a ground of 0.3 the stout one never falls."""
+    rows = []
+    for event in "ABCDEF":
+        for floor in FLOORS:
+            for thing, ideal in (("stout", 0.2), ("slender", -0.1)):
+                for ground in (0.3, np.inf):
+                    for interface in (0.4, np.inf):
+                        d = ideal + 0.05 * (interface < np.inf) - 0.03 * (ground < np.inf)
+                        d = np.nan if thing == "stout" and ground < np.inf else d
+                        rows.append(
+                            {
+                                "object": thing,
+                                "event": event,
+                                "floor": floor,
+                                "motion": f"{event}-{floor}",
+                                "ground": ground,
+                                "interface": interface,
+                                "ratio": np.exp(d),
+                            }
+                        )
+    return pd.DataFrame(rows)
+
+
+def test_friction_of_either_interface_is_a_departure_like_others():
+    everything = pd.concat([ratios(), friction_departures(tried_friction())], ignore_index=True)
+    table = invert(everything, WANTED, FLOORS, NEUTRAL)
+    everywhere = table[table["acts_on"] == "all floors"]
+    found = {
+        frozenset(name for name in one if name)
+        for one in everywhere[["factor_1", "factor_2"]].itertuples(index=False)
+    }
+    for other in ("raises_ground", "lowers_loft", "raises_both", "idle"):
+        assert {
+            frozenset({name, other}) for name in ("ground_friction", "interface_friction")
+        } <= found
+    assert frozenset({"ground_friction", "interface_friction"}) in found
+
+
+def test_an_object_that_no_longer_falls_is_not_taken_for_an_effect():
+    """The stout one has a higher ratio: without it the plain mean would fall by 0.18."""
+    table = invert(friction_departures(tried_friction()), {"ground": 1.10}, FLOORS)
+    alone = table[(table["factor_2"] == "")].set_index("factor_1")
+    ideal = np.exp(0.05)
+    assert alone.loc["ground_friction", "ground"] == pytest.approx(ideal * np.exp(-0.03))
+    assert alone.loc["interface_friction", "ground"] == pytest.approx(ideal * np.exp(0.05))

@@ -84,6 +84,38 @@ def test_every_number_of_the_words_stands_in_the_tables(ground):
     assert unexplained(words, facts) == []
 
 
+def inverted(reaches: bool = False) -> pd.DataFrame:
+    """One departure, two together, and one that acts on the ground alone, with what they give."""
+    nothing = {"factor_2": "", "level_2": float("nan"), "acts_on": "all floors"}
+    rows = [
+        {"factor_1": "pedestal_width_cm", "level_1": 16.0, "ground": 1.021, "above": 1.002},
+        {"factor_1": "pedestal_lean_deg", "level_1": 2.0, "ground": 1.053, "above": 0.994},
+        {"factor_1": "interface_friction", "level_1": 0.35, "ground": 1.125, "above": 0.987},
+    ]
+    rows = [nothing | row | {"reaches": False, "plausible": True} for row in rows]
+    rows[1] |= {"factor_2": "pedestal_not_counted", "level_2": 20.0, "reaches": reaches}
+    rows[2] |= {"acts_on": "ground"}
+    return pd.DataFrame(rows)
+
+
+@pytest.mark.parametrize(
+    ("reaches", "who"), [(False, "None of 3 mechanisms"), (True, "1 of 3 mechanisms")]
+)
+def test_what_was_asked_the_other_way_round_is_one_sentence_of_its_table(reaches, who):
+    tests = build(noise=0.03)
+    wanted = {"ground": 10.0, "above": -5.0}
+    table, explanation = inverted(reaches), departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
+    plain = first_page(effects_of(tests), claims_of(tests), explanation)
+    whole = first_page(effects_of(tests), claims_of(tests), explanation, None, table, wanted)
+    assert [one.headline for one in whole] == [one.headline for one in plain]
+    words = said(whole).removeprefix(said(plain)).strip()
+    assert words.count(". ") == 0 and words.startswith(who)
+    facts = [who, "+10 % on the ground and −5 % above it", "16 cm", "2°", "20 kg", "object 0.35"]
+    facts += [f"{row['ground']:.3f} and {row['above']:.3f}" for _, row in table.iterrows()]
+    assert all(fact in words for fact in facts)
+    assert unexplained(words, facts) == []
+
+
 def test_a_number_that_is_not_in_the_tables_is_found():
     tests = build(noise=0.03)
     words = said(first_page(effects_of(tests), claims_of(tests)))

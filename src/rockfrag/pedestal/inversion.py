@@ -30,6 +30,9 @@ REACH = 0.02
 POINTS = 25
 """Levels tried along each factor."""
 
+FRICTION = ("ground_friction", "interface_friction")
+"""Coefficient of friction of the ground alone, and of the interface alone, as factors."""
+
 NEUTRAL: Mapping[str, float] = {
     "statue_restitution": 1.0,
     "interface_restitution": 1.0,
@@ -48,6 +51,29 @@ COLUMNS = [
     *("factor_2", "level_2", "level_2_low", "level_2_high"),
     *("acts_on", "ground", "above", "p", "plausible", "reaches"),
 ]
+
+
+def friction_departures(tried: pd.DataFrame) -> pd.DataFrame:
+    """Friction of the ground alone and of the interface alone as two factors beside the others.
+
+    Parameters
+    ----------
+    tried
+        As `rockfrag.pedestal.friction_grid.friction_ratios` returns it; infinite coefficients are the ideal model.
+
+    Returns
+    -------
+    Rows as `invert` takes them.
+    """
+    rough = {
+        name: np.isinf(tried[name].to_numpy(dtype=np.float64)) for name in ("ground", "interface")
+    }
+    parts: list[pd.DataFrame] = []
+    for factor, varied, other in zip(FRICTION, rough, reversed(rough), strict=True):
+        level = [f"{value:g}" for value in tried[varied]]
+        rows = tried.assign(factor=factor, level=level, reference=rough[varied])
+        parts.append(rows[rough[other]])
+    return pd.concat(parts, ignore_index=True)
 
 
 @dataclass(frozen=True)
@@ -119,20 +145,34 @@ def invert(
 def _by_event(
     ratios: pd.DataFrame, floors: Mapping[str, int], places: Sequence[str]
 ) -> dict[tuple[str, str], pd.DataFrame]:
-    """Mean of ln P/NP, events by places, of each factor and level; the ideal model under empty names."""
+    """Mean of ln P/NP of the ideal model, under empty names, and its mean change by factor and level.
+
+    Shape (events, places). A change is that of each pair of tests, and then a mean over those that are known at
+    the level and in the ideal model, so that an object that no longer falls is not mistaken for an effect.
+    """
     work = ratios.assign(
         d=np.log(ratios["ratio"].astype(float)),
         place=["ground" if floors.get(str(one), 1) == 0 else "above" for one in ratios["floor"]],
-        factor=ratios["factor"].where(~ratios["reference"].astype(bool), ""),
-        level=ratios["level"].astype(str).where(~ratios["reference"].astype(bool), ""),
+        level=ratios["level"].astype(str),
+        reference=ratios["reference"].astype(bool),
     )
-    work = work[work["place"].isin(places) & work["d"].notna()]
-    cells = work.groupby(["factor", "level", "event", "place", "motion"])["d"].mean().reset_index()
-    found: dict[tuple[str, str], pd.DataFrame] = {}
-    for (factor, level), rows in cells.groupby(["factor", "level"], sort=False):
-        wide = rows.pivot_table(index="event", columns="place", values="d", aggfunc="mean")
-        found[str(factor), str(level)] = wide.reindex(columns=list(places)).dropna()
-    return found
+    work = work[work["place"].isin(places)]
+    pair = ["factor", "object", "event", "place", "motion"]
+    each = work.groupby([*pair, "level", "reference"])["d"].mean().reset_index()
+    ideal = each[each["reference"]].drop(columns=["level", "reference"])
+    departed = each[~each["reference"]].merge(ideal, on=pair, suffixes=("", "_ideal"))
+    departed["d"] -= departed["d_ideal"]
+    tables = [ideal.assign(factor="", level=""), departed]
+    known = pd.concat(tables, ignore_index=True).dropna(subset="d")
+    by_motion = known.groupby(["factor", "level", "event", "place", "motion"])["d"].mean()
+    means = by_motion.reset_index().pivot_table(
+        index=["factor", "level", "event"], columns="place", values="d"
+    )
+    wide = means.reindex(columns=list(places)).dropna()
+    return {
+        (str(factor), str(level)): rows.droplevel(["factor", "level"])
+        for (factor, level), rows in wide.groupby(level=["factor", "level"])
+    }
 
 
 def _lines(
@@ -148,7 +188,7 @@ def _lines(
         known = []
         for (factor, level), rows in cells.items():
             if factor == name and set(ideal.index) <= set(rows.index):
-                known.append((float(level), (rows.loc[ideal.index] - ideal).to_numpy()))
+                known.append((float(level), rows.loc[ideal.index].to_numpy()))
         if not known:
             continue
         x = np.array([1.0 / level if name in BY_INVERSE else level for level, _ in known])
@@ -249,10 +289,28 @@ def inversion_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> str:
         if two
     ]
     first = (
-        f"No departure alone gives {asked} within the levels tried"
+        f"No departure alone gives {asked} on all floors within the levels tried"
         if not alone
         else f"{', '.join(alone)} alone can give {asked}"
     )
     second = f"two together can: {'; '.join(pairs[:3])}" if pairs else "nor do any two together"
+    words = f"{first}; {second}."
+    if len(wanted) > 1:
+        words += f" {_one_place(table)}"
     excluded = int((~table["plausible"]).sum())
-    return f"{first}; {second}. {excluded} of {len(table)} mechanisms are excluded by the model's own scatter."
+    return f"{words} {excluded} of {len(table)} mechanisms are excluded by the model's own scatter."
+
+
+def _one_place(table: pd.DataFrame) -> str:
+    """Say what a departure could do that acts on the ground alone, or above it alone."""
+    local = table[table["acts_on"] != "all floors"]
+    names = [
+        f"{row['factor_1']} {_PLACES[row['acts_on']]}"
+        for row in local[local["reaches"]].to_dict("records")
+    ]
+    if names:
+        return f"Acting at one place only, {', '.join(names[:3])} can."
+    return "None can that acts on the ground alone or above it alone."
+
+
+_PLACES = {"ground": "on the ground alone", "above": "above it alone"}

@@ -1,6 +1,6 @@
 """The explanation study: which departures from the ideal model could produce a pedestal effect."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -27,13 +27,17 @@ def run(job: Job[Study]) -> Results:
     )
     yield "explanation/ratios", ratios
     yield "explanation/effects", effects
-    if _asks_for_an_effect(job.study):
-        inverted = inversion_table(job.study, ratios, job.motions("motions/floors"), job.threads)
-        yield "explanation/inversion", inverted
+    found = None
     if _tries_friction(job.study):
         found, means = friction_tables(job.study, job.motions("motions/floors"), job.threads)
         yield "explanation/friction_ratios", found
         yield "explanation/friction", means
+    if _asks_for_an_effect(job.study):
+        motions = job.motions("motions/floors")
+        yield (
+            "explanation/inversion",
+            inversion_table(job.study, ratios, motions, job.threads, found),
+        )
     levels = effects[["factor", "level"]].drop_duplicates()
     job.log.info(
         "ratios: %d, levels: %d, factors: %d",
@@ -155,7 +159,11 @@ def friction_tables(
 
 
 def inversion_table(
-    study: Study, ratios: pd.DataFrame, motions: Sequence[Motion], threads: int = 1
+    study: Study,
+    ratios: pd.DataFrame,
+    motions: Sequence[Motion],
+    threads: int = 1,
+    friction: pd.DataFrame | None = None,
 ) -> pd.DataFrame:
     """Find what would give the wanted effect, and simulate the closest pairs of departures together.
 
@@ -167,14 +175,16 @@ def inversion_table(
         As of :func:`explanation_tables`.
     motions, threads
         Likewise.
+    friction
+        As :func:`rockfrag.pedestal.friction_grid.friction_ratios` returns it, where friction was tried.
 
     Returns
     -------
     Table of :func:`rockfrag.pedestal.inversion.invert` with ``simulated_ground`` and ``simulated_above``,
-    the ratios when the two departures act together in one simulation, for the closest pairs; the others
-    have none.
+    the ratios when the two departures act together in one simulation, for the closest pairs and for friction of
+    both interfaces; the others have none.
     """
-    from rockfrag.pedestal.inversion import NEUTRAL, invert
+    from rockfrag.pedestal.inversion import FRICTION, NEUTRAL, friction_departures, invert
     from rockfrag.pedestal.simulated_explanation import (
         DEPARTURES,
         LAW_OF,
@@ -196,6 +206,8 @@ def inversion_table(
     # restitution by the first law; what it finds is judged beside the others
     other_laws = [factor for factor, (_, law) in LAW_OF.items() if law != LAWS[0]]
     ratios = ratios[~ratios["factor"].isin(other_laws)]
+    if friction is not None:
+        ratios = pd.concat([ratios, friction_departures(friction)], ignore_index=True)
     table = invert(ratios, wanted, study.floors, neutral, step)
     together = table[table["factor_1"].isin(DEPARTURES) & table["factor_2"].isin(DEPARTURES)]
     ladder = protocol_of(study).amplitudes()
@@ -209,11 +221,27 @@ def inversion_table(
             # two departures, each possible, may leave no body that stands
             continue
         found = case_ratios(cases, motions, ladder, threads)
-        ground = found["floor"].map(study.floors).fillna(0) == 0
-        for place, here in (("ground", ground), ("above", ~ground)):
-            mean = np.log(found.loc[here, "ratio"]).groupby(found["event"]).mean().mean()
-            table.loc[row, f"simulated_{place}"] = np.exp(mean)
+        _set_simulated(table, row, found, study.floors)
+    if friction is not None:
+        both = table["factor_1"].isin(FRICTION) & table["factor_2"].isin(FRICTION)
+        for row in table.index[both]:
+            level = {table.loc[row, f"factor_{k}"]: table.loc[row, f"level_{k}"] for k in (1, 2)}
+            here = [
+                friction[n] == level[f]
+                for f, n in zip(FRICTION, ("ground", "interface"), strict=True)
+            ]
+            _set_simulated(table, row, friction[here[0] & here[1]], study.floors)
     return table
+
+
+def _set_simulated(
+    table: pd.DataFrame, row: int, found: pd.DataFrame, floors: Mapping[str, int]
+) -> None:
+    """Enter the mean ratios of simulated pairs of tests, over events, into a row of the inversion."""
+    ground = found["floor"].map(floors).fillna(0) == 0
+    for place, here in (("ground", ground), ("above", ~ground)):
+        mean = np.log(found.loc[here, "ratio"]).groupby(found["event"]).mean().mean()
+        table.loc[row, f"simulated_{place}"] = np.exp(mean)
 
 
 def tested_stacks(study: Study) -> dict[str, Stack]:

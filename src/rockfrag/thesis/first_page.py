@@ -10,7 +10,8 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.report.part import Finding
-from rockfrag.report.wording import counted, estimate, listed, of_all
+from rockfrag.report.sections.inversion import mechanism_name
+from rockfrag.report.wording import counted, estimate, listed, of_all, sentence
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.pattern import departures_by_floor
 from rockfrag.thesis.statements.floors import FIFTH, FLOORS, GROUND, THIRD
@@ -42,6 +43,8 @@ def first_page(
     claims: pd.DataFrame,
     explanation: pd.DataFrame | None = None,
     wide: pd.DataFrame | None = None,
+    inversion: pd.DataFrame | None = None,
+    wanted_percent: Mapping[str, float] | None = None,
 ) -> list[Finding]:
     """Say what the thesis reports, what the simulations of a study give, and what would give an effect.
 
@@ -56,11 +59,20 @@ def first_page(
         Effects of departures from the ideal model, see `rockfrag.pedestal.explanation.explain`.
     wide
         Effects in a study of many more earthquakes, to be set beside.
+    inversion
+        Departures that come closest to an effect that was asked for, see `rockfrag.pedestal.inversion.invert`.
+    wanted_percent
+        That effect, change of P/NP on the ``ground`` and ``above`` it [%].
     """
     here = effects[effects["reading"] == READING]
     found = [_reported(here, claims.set_index("number"))]
     if explanation is not None and len(explanation):
         found.append(_what_would(explanation))
+        if inversion is not None and len(inversion) and wanted_percent:
+            last = found[-1]
+            found[-1] = Finding(
+                last.headline, f"{last.text} {_inverted(inversion, wanted_percent)}"
+            )
     if wide is not None and len(wide):
         found.append(_beside(wide[wide["reading"] == READING]))
     return found
@@ -121,6 +133,42 @@ def _what_would(explanation: pd.DataFrame) -> Finding:
             ". None has intervals above one on the ground floor and below one on both floors above."
         )
     return Finding(headline, text)
+
+
+def _inverted(inversion: pd.DataFrame, wanted_percent: Mapping[str, float]) -> str:
+    """Say which departure, or which two, come closest to the effect asked for, and how close."""
+    places = {"ground": "on the ground", "above": "above it"}
+    goal = listed(
+        [
+            f"{percent:+g} % {places[name]}".replace("-", "−")
+            for name, percent in wanted_percent.items()
+        ]
+    )
+    everywhere = inversion[inversion["acts_on"] == "all floors"]
+    pairs = everywhere["factor_2"] != ""
+    local = inversion[inversion["acts_on"] != "all floors"]
+    closest = [
+        f"{_both(row, wanted_percent)} ({_lower(mechanism_name(row))}{_ACTING[row['acts_on']]})"
+        for rows in (everywhere[~pairs], everywhere[pairs], local)
+        for row in rows.head(1).to_dict("records")
+    ]
+    reached = int(inversion["reaches"].sum())
+    who = sentence(of_all(reached, len(inversion), "mechanism"))
+    return (
+        f"{who}, one departure or two together, {'gives' if reached < 2 else 'give'} {goal}; the closest one, the "
+        f"closest two, and the closest that acts at one place only give {listed(closest)}."
+    )
+
+
+_ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}
+
+
+def _lower(name: str) -> str:
+    return name[:1].lower() + name[1:]
+
+
+def _both(row: Mapping[Any, Any], wanted: Mapping[str, float]) -> str:
+    return listed([f"{row[name]:.3f}" for name in wanted])
 
 
 def _beside(wide: pd.DataFrame) -> Finding:

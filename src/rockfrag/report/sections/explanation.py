@@ -40,6 +40,8 @@ FACTORS = {
     "pedestal_width_cm": ("Width of the pedestal", "{} cm"),
     "pedestal_not_counted": ("Pedestal's mass not counted, table of", "{} kg"),
     "table_not_counted": ("Table's mass not counted, table of", "{} kg"),
+    "ground_friction": ("Friction of the ground", "{}"),
+    "interface_friction": ("Friction between pedestal and object", "{}"),
     "step_percent": ("Step of the protocol", "{} %"),
     "tolerances": ("Tolerances of lengths and restitution", "{} %"),
 }

@@ -23,7 +23,8 @@ _COLUMNS = (
 )
 
 
-def _asked(study: Study) -> bool:
+def asks_inversion(study: Study) -> bool:
+    """Whether a study asks what would give an effect, and has pairs that could show it."""
     settings = study.more.explanation
     return asks_explanation(study) and settings is not None and bool(settings.wanted_percent)
 
@@ -39,10 +40,7 @@ def _section(results: Results) -> Section | None:
     )
     rows = table.head(SHOWN).to_dict("records")
     shown = table.head(SHOWN).assign(
-        name=[
-            " with ".join(_departure(row, number) for number in (1, 2) if row[f"factor_{number}"])
-            for row in rows
-        ],
+        name=[mechanism_name(row) for row in rows],
         together=[_together(row) for row in rows],
         excluded=["no" if row["plausible"] else "yes" for row in rows],
     )
@@ -54,7 +52,8 @@ def _section(results: Results) -> Section | None:
         inversion_words(readable, wanted),
         [
             "Between the levels tried, changes of ln P/NP are taken as straight; beyond them nothing is said. "
-            "Changes of two departures are added; the closest pairs were also simulated together. "
+            "Changes of two departures are added; the closest pairs, and friction of both interfaces, were also "
+            "simulated together. "
             "“Excluded” are departures that no level brings within the scatter between earthquakes "
             "(Hotelling’s T² at 5 %, all departures counted): few earthquakes exclude little."
         ],
@@ -64,6 +63,11 @@ def _section(results: Results) -> Section | None:
 
 def _title(factor: str) -> str:
     return FACTORS[factor][0].lower() if factor else ""
+
+
+def mechanism_name(row: Mapping[Hashable, Any]) -> str:
+    """Name of one departure or of two, with their levels, of a row of the inversion."""
+    return " with ".join(_departure(row, number) for number in (1, 2) if row[f"factor_{number}"])
 
 
 def _departure(row: Mapping[Hashable, Any], number: int) -> str:
@@ -78,4 +82,4 @@ def _together(row: Mapping[Hashable, Any]) -> str:
     return ", ".join(f"{one:.3f}" for one in known) if known else "–"
 
 
-INVERSION = Part(("explanation/inversion",), _section, asked=_asked)
+INVERSION = Part(("explanation/inversion",), _section, asked=asks_inversion)

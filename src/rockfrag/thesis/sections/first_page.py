@@ -5,6 +5,7 @@ import pandas as pd
 from rockfrag.report.answer import could_overturn, questions, rests_on, study_answer
 from rockfrag.report.part import Answer, FigureSpec, Results
 from rockfrag.report.sections.explanation import asks_explanation
+from rockfrag.report.sections.inversion import asks_inversion
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.figures.answer import ratios_figure
 from rockfrag.thesis.first_page import first_page
@@ -21,7 +22,10 @@ def thesis_answer(results: Results) -> Answer:
     effects = results.table("pedestal/effects")
     explanation = results.table("explanation/effects") if asks_explanation(study) else None
     wide = _wide(results)
-    found = first_page(effects, results.table("claims"), explanation, wide)
+    inversion = results.table("explanation/inversion") if asks_inversion(study) else None
+    settings = study.more.explanation
+    wanted = {} if settings is None else settings.wanted_percent
+    found = first_page(effects, results.table("claims"), explanation, wide, inversion, wanted)
     here = effects[effects["reading"] == READING]
     return Answer(
         asked="Does a pedestal make a statue overturn later on the ground and earlier on upper floors, as the "
