@@ -24,6 +24,12 @@ def test_a_motion_shows_acceleration_velocity_and_displacement() -> None:
     assert last == pytest.approx([2.0 / GRAVITY, 400.0, 400.0])
 
 
+def test_a_motion_is_drawn_as_it_is_between_its_samples() -> None:
+    # t³/6 of an acceleration t, which a velocity taken for linear between samples would miss by an eighth
+    drawn = Motion(np.array([0.0, 1.0, 2.0]), 1.0).plot().axes[2].lines[1].get_ydata()
+    assert drawn == pytest.approx([0.0, 100 / 6, 800 / 6])
+
+
 def test_a_response_shows_rotations_over_the_critical_angle_and_every_impact() -> None:
     response = simulate(STACK, MOTION.acceleration, MOTION.dt)
     ground, rotation, _ = response.plot().axes

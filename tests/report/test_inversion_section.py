@@ -31,9 +31,11 @@ def test_what_gives_the_effect_is_named_for_a_reader():
         [pair | {"simulated_ground": 1.104, "simulated_above": 0.951}, row("pedestal_lean_deg")],
         {"ground": 10, "above": -5},
     )
-    assert "two together can: object's restitution everywhere with object off" in found.message
+    assert (
+        "two together can: the object's restitution everywhere with the object off" in found.message
+    )
     assert "1.104, 0.951" in found.parts[0]
-    assert "Pedestal leans −2°" in found.parts[0]
+    assert "A pedestal that leans by −2°" in found.parts[0]
 
 
 @pytest.mark.parametrize("wanted", [{"ground": 10}, {"above": -5}])

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.motions.integration import integrate
+from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.shaker import Shaker, produced_motion, required_corner, shaker_table
 

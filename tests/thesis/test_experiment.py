@@ -21,6 +21,12 @@ def finding(number, tests, basis="simulated", **extra):
     return result(number, tests, basis, **extra).finding
 
 
+def findings(numbers, tests, basis="simulated"):
+    """Findings of several statements about the same tests, whose pairs are then made once."""
+    evidence = Evidence(tests, basis)
+    return {number: STATEMENTS[number].test(evidence).finding for number in numbers}
+
+
 def on_floor(**effects):
     return lambda object_name, event, floor: effects.get(floor, 0.0)
 
@@ -81,7 +87,8 @@ def test_effect_decides_the_finding(made, number, true, false, basis):
 def test_c29_and_c49_say_the_same_of_every_table(made, effect, noise):
     for seed in range(4):
         tests = made(everywhere(effect), noise=noise, seed=seed)
-        assert finding(29, tests) is finding(49, tests)
+        found = findings((29, 49), tests)
+        assert found[29] is found[49]
 
 
 def test_c29_and_c49_agree_when_most_pairs_rise_and_one_event_falls(made):
@@ -151,15 +158,12 @@ def test_exceptions_on_the_upper_floors_are_counted_beyond_their_steps(made):
 
 def test_noise_alone_leaves_directions_and_ranks_open(made):
     seeds = range(6)
-    found = {
-        (seed, number): finding(number, made(noise=0.3, seed=seed), "measured")
-        for seed in seeds
-        for number in (32, 33, 35, 36, 37, 39, 40, 46, 47, 48, 49)
-    }
-    for number in {number for _, number in found}:
-        findings = [found[seed, number] for seed in seeds]
-        assert findings.count(FOR) <= 1, number
-        assert OPEN in findings, number
+    numbers = (32, 33, 35, 36, 37, 39, 40, 46, 47, 48, 49)
+    found = [findings(numbers, made(noise=0.3, seed=seed), "measured") for seed in seeds]
+    for number in numbers:
+        of_seeds = [one[number] for one in found]
+        assert of_seeds.count(FOR) <= 1, number
+        assert OPEN in of_seeds, number
 
 
 def test_signs_of_the_nine_cells(made):
@@ -176,11 +180,9 @@ def test_level_of_floors_decides_where_the_mean_is_largest(made):
     # NP: GF 1.2, F3 1.0, F5 1.1; P on the 5th raised above all
     level = on_floor(GF=np.log(1.2), F5=np.log(1.1))
     tests = made(on_floor(F5=0.3, GF=0.1), level)
-    for number in (42, 43, 44):
-        assert finding(number, tests) is FOR
+    assert set(findings((42, 43, 44), tests).values()) == {FOR}
     upside_down = made(level=on_floor(F3=0.3))
-    for number in (42, 43, 44):
-        assert finding(number, upside_down) is AGAINST
+    assert set(findings((42, 43, 44), upside_down).values()) == {AGAINST}
 
 
 def test_a_fall_is_almost_linear_unless_it_bends(made):
@@ -190,13 +192,11 @@ def test_a_fall_is_almost_linear_unless_it_bends(made):
     assert inverse.estimate == pytest.approx(0.9375, abs=0.01)
     assert finding(25, made(objects={"T1": 0.5, "T2": 0.3, "T3": 0.29})) is AGAINST
     rising = made(objects={"T1": 0.3, "T2": 0.4, "T3": 0.5})
-    for number in (25, 26, 53):
-        assert finding(number, rising) is AGAINST
+    assert set(findings((25, 26, 53), rising).values()) == {AGAINST}
 
 
 def test_falling_towers_overturn_in_order_with_and_without_pedestal(made):
-    for number in (26, 53):
-        assert finding(number, made()) is FOR
+    assert set(findings((26, 53), made()).values()) == {FOR}
 
 
 def test_slopes_that_differ_by_floor_are_seen(made):

@@ -14,6 +14,7 @@ from rockfrag.assess.direction import Directions, find_directions
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.hazard.measure import PGA, Measure
 from rockfrag.assess.motions import MotionSet, motion_set
+from rockfrag.assess.moved import Moved
 from rockfrag.assess.remedies import Remedy, compare, remedies_of
 from rockfrag.assess.request import Level, Request
 from rockfrag.assess.risk import (
@@ -43,26 +44,6 @@ RECORDS = "resources/records"
 """Folder of fetched records."""
 
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Effect:
-    """What an assumption does to the answer.
-
-    Attributes
-    ----------
-    name
-        The property.
-    spread
-        Its relative standard deviation [-].
-    lower, upper
-        What is estimated with it smaller and larger by that.
-    """
-
-    name: str
-    spread: float
-    lower: float
-    upper: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +82,7 @@ class Assessment:
     remedies
         What helps, most helpful first.
     effects
-        What each assumption does to the answer.
+        What each assumption does to the answer: what is estimated with it smaller and larger.
     rules
         Engineers' rules held against the verdicts.
     sliding_share
@@ -122,7 +103,7 @@ class Assessment:
     conversion: Conversion | None
     directions: Directions | None
     remedies: tuple[Remedy, ...]
-    effects: tuple[Effect, ...]
+    effects: tuple[Moved[float], ...]
     rules: tuple[RuleCheck, ...]
     sliding_share: float
 
@@ -140,14 +121,6 @@ class Assessment:
     def main(self) -> Estimate:
         """What is asked for first: the probability, else the share, else the amplitude that topples half."""
         return self.probability or self.share or self.amplitudes[0.5]
-
-
-@dataclass(frozen=True)
-class _Spreads:
-    """Verdicts of all that is not known to the digit."""
-
-    moved: Mapping[str, tuple[Verdicts, Verdicts]]
-    spreads: Mapping[str, float]
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
@@ -197,11 +170,12 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     now = next(iter(arrangements.values()))
     target = _target(level, hazard, request.years)
     conversion = find_conversion(now, motions) if level else None
-    spreads = _spreads(request, motions.thinned() if brief else motions, measure, asked)
+    moved = _moved(request, motions.thinned() if brief else motions, measure, asked)
+    both_sides = {one.name: one.sides for one in moved}
     shifts = {"model": BETA_MODEL} | ({"conversion": conversion.shift} if conversion else {})
 
     def estimated(one: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
-        return estimate(one, now, spreads.moved, fixed or {}, shifts)
+        return estimate(one, now, both_sides, fixed or {}, shifts)
 
     probability = None
     if hazard:
@@ -230,10 +204,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
             objects, motions, make_ladder(motions, measure, asked, FEW_LEVELS), at
         ),
         remedies=() if brief else _remedies(request, motions, ladder, target, now),
-        effects=tuple(
-            Effect(name, spreads.spreads[name], *(target.back(target.on_scale(v)) for v in both))
-            for name, both in spreads.moved.items()
-        ),
+        effects=tuple(one.turned(lambda v: target.back(target.on_scale(v))) for one in moved),
         rules=() if brief else tuple(check_rules(objects, motions, now)),
         sliding_share=math.nan
         if brief or at is None or objects.friction is None
@@ -284,27 +255,24 @@ def _rocking_share(now: Verdicts, level: Level | None) -> float:
     return float(np.interp(math.log(level.value), np.log(now.ladder.levels), shares))
 
 
-def _spreads(
+def _moved(
     request: Request, motions: MotionSet, measure: Measure, asked: Sequence[float]
-) -> _Spreads:
+) -> list[Moved[Verdicts]]:
     """Verdicts with every property of body and floor moved by its standard deviation."""
     ladder = make_ladder(motions, measure, asked, FEW_LEVELS)
-    moved: dict[str, tuple[Verdicts, Verdicts]] = {}
-    spreads: dict[str, float] = {}
-    variants = request.objects.variants()
-    sides = [one for variant in variants for one in (variant.lower, variant.upper)]
-    shaken = verdicts_of_all(sides, motions, ladder)
-    for i, variant in enumerate(variants):
-        moved[variant.name] = shaken[2 * i], shaken[2 * i + 1]
-        spreads[variant.name] = variant.spread
     objects = request.objects
-    for name, spread, lower, upper in request.place.variants():
-        low, high = (
-            verdicts_of(objects, {"": objects.body}, motions.at(place), ladder)[""]
-            for place in (lower, upper)
-        )
-        moved[name], spreads[name] = (low, high), spread
-    return _Spreads(moved, spreads)
+    variants = objects.variants()
+    # all objects under the same motions are simulated at once
+    shaken = verdicts_of_all([side for one in variants for side in one.sides], motions, ladder)
+    of_object = [
+        Moved(one.name, one.spread, lower, upper)
+        for one, lower, upper in zip(variants, shaken[::2], shaken[1::2], strict=True)
+    ]
+    of_place = [
+        one.turned(lambda place: verdicts_of_all([objects], motions.at(place), ladder)[0])
+        for one in request.place.variants()
+    ]
+    return of_object + of_place
 
 
 def _of_quantiles(now: Verdicts, hazard: HazardCurve) -> dict[str, float]:

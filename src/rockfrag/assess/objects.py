@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
 from rockfrag.rocking.bodies import Block, Body, Stack
@@ -23,26 +24,6 @@ TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2
 
 ALONE, ON_PEDESTAL, JOINED = "on the floor", "on its pedestal", "fixed to its pedestal"
 """Ways in which an object can stand."""
-
-
-@dataclass(frozen=True)
-class Variant:
-    """The object with one property moved by its standard deviation.
-
-    Attributes
-    ----------
-    name
-        The property.
-    spread
-        Its relative standard deviation [-].
-    lower, upper
-        The object with the property smaller and larger by that.
-    """
-
-    name: str
-    spread: float
-    lower: "Objects"
-    upper: "Objects"
 
 
 @dataclass(frozen=True)
@@ -96,7 +77,7 @@ class Objects:
         e = self.restitution
         return (e, e) if e is not None and isinstance(body, Stack) else e
 
-    def variants(self) -> list[Variant]:
+    def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
         moves: dict[str, Callable[[float], Objects]] = {
             "width": partial(_wider, self),
@@ -105,12 +86,7 @@ class Objects:
         }
         if self.pedestal is not None:
             moves["mass"] = partial(_heavier, self)
-        found = []
-        for name, move in moves.items():
-            spread = self.tolerances[name]
-            if spread > 0:
-                found.append(Variant(name, spread, move(1 - spread), move(1 + spread)))
-        return found
+        return moved_to_both_sides(moves, self.tolerances)
 
 
 def _wider(objects: Objects, factor: float) -> Objects:

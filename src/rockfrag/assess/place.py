@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import read_building
@@ -75,28 +76,21 @@ class Place:
             return motion
         return floor_motions(self.building, motion, [self.floor])[0]
 
-    def variants(self) -> list[tuple[str, float, "Place", "Place"]]:
-        """Name and spread of each property of the building, and the place with it smaller and larger by that."""
+    def variants(self) -> list[Moved["Place"]]:
+        """The place with each property of the building smaller and larger by its standard deviation."""
         building = self.building
         if building is None or building.level(self.floor) == 0:
             return []
-        ratio = building.damping.ratio
-        found = []
-        for name, spread in (self.tolerances or {}).items():
-            if spread == 0:
-                continue
-            sides = []
-            for factor in (1 - spread, 1 + spread):
-                if name == "period":
-                    stiffnesses = tuple(k / factor**2 for k in building.stiffnesses)
-                    changed = replace(building, stiffnesses=stiffnesses)
-                else:
-                    changed = replace(
-                        building, damping=replace(building.damping, ratio=ratio * factor)
-                    )
-                sides.append(replace(self, building=changed))
-            found.append((name, spread, sides[0], sides[1]))
-        return found
+
+        def slower(factor: float) -> Place:
+            stiffnesses = tuple(k / factor**2 for k in building.stiffnesses)
+            return replace(self, building=replace(building, stiffnesses=stiffnesses))
+
+        def damped(factor: float) -> Place:
+            damping = replace(building.damping, ratio=building.damping.ratio * factor)
+            return replace(self, building=replace(building, damping=damping))
+
+        return moved_to_both_sides({"period": slower, "damping": damped}, self.tolerances or {})
 
 
 def make_place(settings: Mapping[str, Any], folder: Path) -> Place:

@@ -62,8 +62,7 @@ def vertical_motions(building: ShearBuilding, vertical: Motion) -> list[Motion]:
         felt = vertical.after(
             "floor_motion", factor * vertical.acceleration, floor=label, level=level, factor=factor
         )
-        metadata = {**vertical.metadata, "floor": label, "level": level}
-        moved.append(replace(felt, name=f"{vertical.name}_{label}", metadata=metadata))
+        moved.append(_named(felt, label, level))
     return moved
 
 
@@ -136,7 +135,10 @@ def _floor_motion(
         largest_drift=float(response.peak_drift.max()),
         verdict=judge_drift(building, response).statement,
     )
-    metadata = {**motion.metadata, "floor": label, "level": level, "ground_motion": motion.name}
-    return Motion(
-        moved.acceleration, moved.dt, f"{motion.name}_{label}", metadata, moved.provenance
-    )
+    return _named(moved, label, level, ground_motion=motion.name)
+
+
+def _named(moved: Motion, label: str, level: int, **more: str) -> Motion:
+    """Return a motion, still named as that of the ground, as that of a floor."""
+    metadata = {**moved.metadata, "floor": label, "level": level, **more}
+    return replace(moved, name=f"{moved.name}_{label}", metadata=metadata)

@@ -7,7 +7,6 @@ from rockfrag._lazy import loader
 if TYPE_CHECKING:
     from rockfrag.motions.conditioning import baseline, demean, displacement_baseline, pad, taper
     from rockfrag.motions.filtering import bandpass, highpass, interpolate, lowpass, resample
-    from rockfrag.motions.integration import integrate, peak_displacement, peak_velocity
     from rockfrag.motions.intensity import (
         arias,
         arias_times,
@@ -76,6 +75,7 @@ if TYPE_CHECKING:
     )
     from rockfrag.motions.synthetic import evolutionary, spectrum_compatible
     from rockfrag.motions.time_base import common_time
+    from rockfrag.records.integration import integrate, peak_displacement, peak_velocity
 
 __all__ = [
     "STEPS",
@@ -172,11 +172,6 @@ _HOMES = {
         "lowpass",
         "resample",
     ),
-    "integration": (
-        "integrate",
-        "peak_displacement",
-        "peak_velocity",
-    ),
     "intensity": (
         "arias",
         "arias_times",
@@ -263,7 +258,11 @@ _HOMES = {
 
 __getattr__ = loader(
     __name__,
-    {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names},
+    {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
+    # what a record is between its samples
+    | dict.fromkeys(
+        ("integrate", "peak_displacement", "peak_velocity"), "rockfrag.records.integration"
+    ),
 )
 
 

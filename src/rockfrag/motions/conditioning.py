@@ -12,7 +12,7 @@ from numpy.polynomial import Polynomial
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import MOST_SAMPLES, not_negative, positive, whole
-from rockfrag.motions.integration import integrate
+from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.motions.checks import not_negative, positive
-from rockfrag.motions.integration import peak_displacement, peak_velocity
+from rockfrag.records.integration import peak_displacement, peak_velocity
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from rockfrag.motions.integration import integrate
 from rockfrag.motions.pulses import mavroeidis_papageorgiou
 from rockfrag.motions.sliding_pulse import best_place, half_length
+from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]

@@ -19,7 +19,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from rockfrag.motions.integration import peak_velocity
 from rockfrag.motions.spectra import (
     checked_damping,
     oscillator_matrix,
@@ -27,6 +26,7 @@ from rockfrag.motions.spectra import (
     steps_within,
     turning_time,
 )
+from rockfrag.records.integration import peak_velocity
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]

@@ -15,8 +15,8 @@ from scipy.stats import gamma
 
 from rockfrag.errors import InputError
 from rockfrag.motions.checks import number, plain, positive, whole
-from rockfrag.motions.integration import integrate
 from rockfrag.motions.spectra import oscillator_response, response_spectrum
+from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 

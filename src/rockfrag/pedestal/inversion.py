@@ -294,7 +294,7 @@ def inversion_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> str:
         else f"{', '.join(alone)} alone can give {asked}"
     )
     second = f"two together can: {'; '.join(pairs[:3])}" if pairs else "nor do any two together"
-    words = f"{first}; {second}."
+    words = f"{first[:1].upper()}{first[1:]}; {second}."
     if len(wanted) > 1:
         words += f" {_one_place(table)}"
     excluded = int((~table["plausible"]).sum())

@@ -3,9 +3,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
+from rockfrag.records.integration import integrate
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -14,11 +14,9 @@ Floats = NDArray[np.float64]
 def motion_figure(acceleration: Floats, dt: float, title: str) -> Figure:
     """Draw acceleration [g], velocity [cm/s] and displacement [cm]; a dot marks the largest sample of each.
 
-    The ground starts at rest.  The displacement takes the velocity as linear between samples, which no eye can
-    tell from the truth.
+    The ground starts at rest.
     """
-    velocity = cumulative_trapezoid(acceleration, dx=dt, initial=0)
-    displacement = cumulative_trapezoid(velocity, dx=dt, initial=0)
+    velocity, displacement = integrate(acceleration, dt)
     drawn = (
         ("Acceleration [g]", acceleration / GRAVITY),
         ("Velocity [cm/s]", 100 * velocity),

@@ -27,10 +27,10 @@ from rockfrag.figure_style import (
     save_figure,
 )
 from rockfrag.files import file_name
-from rockfrag.motions.integration import integrate
 from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
 from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
 from rockfrag.records.doubts import doubts
+from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import Record, motion_of, read_record

@@ -16,6 +16,7 @@ from rockfrag.motions.intensity import pgv
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.rocking.closed_forms import housner_velocity
 from rockfrag.units import GRAVITY
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 25)
@@ -53,8 +54,8 @@ def housner(block: Block, motion: Motion) -> float:
     motion
         The motion.
     """
-    wanted = GRAVITY * block.alpha / block.frequency()
-    return float(wanted / response_spectrum(motion, HOUSNER_PERIODS, 0.0).pseudo_velocity.mean())
+    spectrum = response_spectrum(motion, HOUSNER_PERIODS, 0.0).pseudo_velocity
+    return float(housner_velocity(block.alpha, block.frequency()) / spectrum.mean())
 
 
 def peak_velocity(block: Block, motion: Motion) -> float:
@@ -67,7 +68,7 @@ def peak_velocity(block: Block, motion: Motion) -> float:
     motion
         The motion.
     """
-    return float(GRAVITY * block.alpha / block.frequency() / pgv(motion))
+    return float(housner_velocity(block.alpha, block.frequency()) / pgv(motion))
 
 
 def asce_43(block: Block, motion: Motion) -> float:

@@ -16,8 +16,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.motions.conditioning import pad
 from rockfrag.motions.filtering import highpass
-from rockfrag.motions.integration import integrate
 from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 

@@ -114,12 +114,12 @@ def _what_would(explanation: pd.DataFrame) -> Finding:
     patterned = list(whole.loc[whole["beyond_chance"], "name"])
     text = (
         f"Tried one at a time, {of_all(len(changing), len(whole), 'departure')} "
-        f"{'changes' if len(changing) == 1 else 'change'} P/NP over all floors beyond chance"
+        f"{'changes' if 1 in (len(changing), len(whole)) else 'change'} P/NP over all floors beyond chance"
     )
     if len(changing):
         size = np.log(changing["ratio"]).abs()
         largest = changing.loc[size.nlargest(MOST_NAMED).index].to_dict("records")
-        strong = [f"{row['name']} {_ratio(row)}" for row in largest]
+        strong = [f"{row['name']} ({_ratio(row)})" for row in largest]
         text += f"{', most of all' if len(changing) > MOST_NAMED else ':'} {listed(strong)}"
     if patterned:
         headline = "Some departures from the ideal model have the thesis’s pattern"
@@ -148,7 +148,7 @@ def _inverted(inversion: pd.DataFrame, wanted_percent: Mapping[str, float]) -> s
     pairs = everywhere["factor_2"] != ""
     local = inversion[inversion["acts_on"] != "all floors"]
     closest = [
-        f"{_both(row, wanted_percent)} ({_lower(mechanism_name(row))}{_ACTING[row['acts_on']]})"
+        f"{_both(row, wanted_percent)} ({mechanism_name(row)}{_ACTING[row['acts_on']]})"
         for rows in (everywhere[~pairs], everywhere[pairs], local)
         for row in rows.head(1).to_dict("records")
     ]
@@ -161,10 +161,6 @@ def _inverted(inversion: pd.DataFrame, wanted_percent: Mapping[str, float]) -> s
 
 
 _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}
-
-
-def _lower(name: str) -> str:
-    return name[:1].lower() + name[1:]
 
 
 def _both(row: Mapping[Any, Any], wanted: Mapping[str, float]) -> str:

@@ -6,7 +6,7 @@ Levels are in g.
 """
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rockfrag.assess.hazard.curve import make_curve, rates_of
 from rockfrag.assess.hazard.found import Found, read_numbers, read_statistic
@@ -43,30 +43,33 @@ def _old(field: ET.Element, processing: ET.Element | None, path: str) -> Found:
     levels = next(_named(field, "IML"), None)
     if levels is None:
         raise InputError(f"{path}: a hazardCurveField has no IML, the levels of the curve.")
-    imt = levels.get("IMT", "")
-    if imt.upper() == "SA":
-        imt = f"SA({about.get('saPeriod', '')})"
-    kind = field.get("statistics", "")
-    if kind == "quantile":
-        kind = f"quantile-{field.get('quantileValue', '')}"
     poes = list(_named(field, "poE"))
-    return _found(levels.text, poes, imt, about.get("investigationTimeSpan"), kind, path)
+    imt, years = _imt(levels, about), about.get("investigationTimeSpan")
+    return _found(levels.text, poes, imt, years, _kind(field), path)
 
 
 def _new(curves: ET.Element, path: str) -> Found:
-    imt = curves.get("IMT", "")
-    if imt.upper() == "SA":
-        imt = f"SA({curves.get('saPeriod', '')})"
-    kind = curves.get("statistics", "")
-    if kind == "quantile":
-        kind = f"quantile-{curves.get('quantileValue', '')}"
+    kind = _kind(curves)
     if not kind and curves.get("sourceModelTreePath"):
         kind = "branch of a logic tree"
     levels = next(_named(curves, "IMLs"), None)
     if levels is None:
         raise InputError(f"{path}: the hazardCurves have no IMLs, the levels.")
     years = curves.get("investigationTime")
-    return _found(levels.text, list(_named(curves, "poEs")), imt, years, kind, path)
+    poes, imt = list(_named(curves, "poEs")), _imt(curves, curves.attrib)
+    return _found(levels.text, poes, imt, years, kind, path)
+
+
+def _imt(stated: ET.Element, about: Mapping[str, str]) -> str:
+    """Return the measure that an element states, with the period of SA, which may stand elsewhere."""
+    imt = stated.get("IMT", "")
+    return f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt
+
+
+def _kind(curves: ET.Element) -> str:
+    """Return which statistic of the hazard model the curves are, with the value of a quantile."""
+    kind = curves.get("statistics", "")
+    return f"quantile-{curves.get('quantileValue', '')}" if kind == "quantile" else kind
 
 
 def _found(

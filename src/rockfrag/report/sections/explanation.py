@@ -1,7 +1,6 @@
 """What could produce an effect of the pedestal: one factor at a time departs from the ideal model."""
 
-from collections.abc import Hashable, Mapping
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -24,28 +23,85 @@ from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import has_interval, listed, of_all, probability, sentence, shortened
 from rockfrag.study.study import Study
 
+
+class Factor(NamedTuple):
+    """What departs from the ideal model, in words that stand in a sentence as they are.
+
+    Attributes
+    ----------
+    title
+        The factor, whatever its level.
+    level
+        How a level is written, its value at ``{}``.
+    phrase
+        The factor at a level, which stands at ``{}``.
+    """
+
+    title: str
+    level: str
+    phrase: str
+
+    def at(self, level: str) -> str:
+        """The factor at a level, as a phrase."""
+        return self.phrase.format(self.written(level))
+
+    def written(self, level: str) -> str:
+        """A level with its unit."""
+        return self.level.format(level.replace("-", "−"))
+
+
+def _restitution(title: str) -> Factor:
+    return Factor(title, "× {}", f"{title} {{}}")
+
+
 FACTORS = {
-    "statue_restitution": ("Object's restitution everywhere", "× {}"),
-    "interface_restitution": ("Object's restitution on the pedestal", "× {}"),
-    "ground_restitution": ("Pedestal's restitution", "× {}"),
-    "statue_restitution_couple": ("Object's restitution everywhere, by a couple", "× {}"),
-    "interface_restitution_couple": ("Object's restitution on the pedestal, by a couple", "× {}"),
-    "ground_restitution_couple": ("Pedestal's restitution, by a couple", "× {}"),
-    "statue_restitution_ratio": ("Object's restitution everywhere, as a ratio", "× {}"),
-    "interface_restitution_ratio": ("Object's restitution on the pedestal, as a ratio", "× {}"),
-    "ground_restitution_ratio": ("Pedestal's restitution, as a ratio", "× {}"),
-    "pedestal_lean_deg": ("Pedestal leans", "{}°"),
-    "statue_offset_mm": ("Object off the pedestal's middle", "{} mm"),
-    "statue_cg_offset_mm": ("Object's centre of gravity off its middle", "{} mm"),
-    "pedestal_width_cm": ("Width of the pedestal", "{} cm"),
-    "pedestal_not_counted": ("Pedestal's mass not counted, table of", "{} kg"),
-    "table_not_counted": ("Table's mass not counted, table of", "{} kg"),
-    "ground_friction": ("Friction of the ground", "{}"),
-    "interface_friction": ("Friction between pedestal and object", "{}"),
-    "step_percent": ("Step of the protocol", "{} %"),
-    "tolerances": ("Tolerances of lengths and restitution", "{} %"),
+    "statue_restitution": _restitution("the object's restitution everywhere"),
+    "interface_restitution": _restitution("the object's restitution on the pedestal"),
+    "ground_restitution": _restitution("the pedestal's restitution"),
+    "statue_restitution_couple": _restitution("the object's restitution everywhere (by a couple)"),
+    "interface_restitution_couple": _restitution(
+        "the object's restitution on the pedestal (by a couple)"
+    ),
+    "ground_restitution_couple": _restitution("the pedestal's restitution (by a couple)"),
+    "statue_restitution_ratio": _restitution("the object's restitution everywhere (as a ratio)"),
+    "interface_restitution_ratio": _restitution(
+        "the object's restitution on the pedestal (as a ratio)"
+    ),
+    "ground_restitution_ratio": _restitution("the pedestal's restitution (as a ratio)"),
+    "pedestal_lean_deg": Factor("a pedestal that leans", "{}°", "a pedestal that leans by {}"),
+    "statue_offset_mm": Factor(
+        "the object off the pedestal's middle", "{} mm", "the object {} off the pedestal's middle"
+    ),
+    "statue_cg_offset_mm": Factor(
+        "the object's centre of gravity off its middle",
+        "{} mm",
+        "the object's centre of gravity {} off its middle",
+    ),
+    "pedestal_width_cm": Factor("the width of the pedestal", "{} cm", "a pedestal {} wide"),
+    "pedestal_not_counted": Factor(
+        "the pedestal's mass not counted",
+        "table of {} kg",
+        "the mass of a pedestal on a {} not counted",
+    ),
+    "table_not_counted": Factor(
+        "the table's mass not counted", "table of {} kg", "the mass of a {} not counted"
+    ),
+    "ground_friction": Factor(
+        "the friction of the ground", "{}", "a friction coefficient of {} on the ground"
+    ),
+    "interface_friction": Factor(
+        "the friction between pedestal and object",
+        "{}",
+        "a friction coefficient of {} between pedestal and object",
+    ),
+    "step_percent": Factor("the step of the protocol", "{} %", "a protocol with steps of {}"),
+    "tolerances": Factor(
+        "tolerances of lengths and restitution",
+        "{} %",
+        "tolerances of {} in lengths and restitution",
+    ),
 }
-"""Names of the factors and of their levels for a reader, in the order of the figure."""
+"""Words for the factors and for their levels, in the order of the figure."""
 
 _COLUMNS = (
     Column("name", "Departure from the ideal model"),
@@ -62,14 +118,17 @@ def asks_explanation(study: Study) -> bool:
 
 
 def departures(effects: pd.DataFrame) -> pd.DataFrame:
-    """Every departure over all floors, in the order of ``FACTORS``, with its ``name`` for a reader."""
+    """Every departure over all floors, in the order of ``FACTORS``, with its ``name`` for a sentence."""
     whole = effects[(effects["floor"] == "all") & (effects["level"] != REFERENCE)]
     order = list(FACTORS)
     whole = whole.sort_values(
         "factor", key=lambda names: names.map(order.index), kind="stable", ignore_index=True
     )
     return whole.assign(
-        name=[_name(row) for row in whole.to_dict("records")],
+        name=[
+            FACTORS[factor].at(str(level))
+            for factor, level in zip(whole["factor"], whole["level"], strict=True)
+        ],
         lower=whole["ratio_lower"],
         upper=whole["ratio_upper"],
     )
@@ -84,21 +143,20 @@ def _section(results: Results) -> Section | None:
     differ = _laws_differ(whole, beyond)
     clear = whole[(beyond != 0) & ~differ]
     small = int((beyond == 0).sum())
-    words = (
-        f"{sentence(of_all(small, len(whole), 'departure'))} {'leaves' if small == 1 else 'leave'} the "
-        "mean ratio P/NP within ±10 %."
-    )
+    leaves = "leaves" if 1 in (small, len(whole)) else "leave"
+    words = f"{sentence(of_all(small, len(whole), 'departure'))} {leaves} the mean ratio P/NP within ±10 %."
     if len(clear):
-        strong = [f"{row['name']} {ratio_text(row)}" for row in clear.to_dict("records")]
+        strong = [f"{row['name']} ({ratio_text(row)})" for row in clear.to_dict("records")]
         words += f" Beyond: {listed(strong)}."
     if differ.any():
-        unclear = [f"{row['name']} {ratio_text(row)}" for row in whole[differ].to_dict("records")]
+        unclear = [f"{row['name']} ({ratio_text(row)})" for row in whole[differ].to_dict("records")]
         words += (
             " No conclusion where the laws of impact, which a measured restitution leaves open, differ: "
             f"{listed(unclear)}."
         )
     rows = whole.to_dict("records")
     shown = whole.assign(
+        name=whole["name"].map(sentence),
         ratio_text=[ratio_text(row) for row in rows],
         p_text=[
             probability(row["p_holm"]) if has_interval(row["lower"], row["upper"], 3) else "–"
@@ -130,15 +188,6 @@ def _laws_differ(whole: pd.DataFrame, beyond: pd.Series) -> pd.Series:
     return beyond.groupby([base, whole["level"]]).transform("nunique") > 1
 
 
-def _name(row: Mapping[Hashable, Any]) -> str:
-    factor, unit = FACTORS[str(row["factor"])]
-    return f"{factor} {_level(unit, str(row['level']))}"
-
-
-def _level(unit: str, level: str) -> str:
-    return "as in the study" if level == REFERENCE else unit.format(level.replace("-", "−"))
-
-
 def explanation_figure(effects: pd.DataFrame) -> Figure:
     """Draw the ratio P/NP at every level of every factor.
 
@@ -168,11 +217,9 @@ def explanation_figure(effects: pd.DataFrame) -> Figure:
         labels, drawn = [], []
         for y, (factor, level) in enumerate(rows):
             if not level:
-                labels.append(FACTORS[factor][0])
+                labels.append(sentence(FACTORS[factor].title))
                 continue
-            labels.append(
-                "ideal model" if level == REFERENCE else _level(FACTORS[factor][1], level)
-            )
+            labels.append("ideal model" if level == REFERENCE else FACTORS[factor].written(level))
             key = (factor or factors[0], level)
             if (*key, "all") not in known.index:
                 continue

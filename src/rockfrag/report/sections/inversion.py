@@ -8,6 +8,7 @@ from rockfrag.pedestal.inversion import inversion_words
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.explanation import FACTORS, asks_explanation
+from rockfrag.report.wording import sentence
 from rockfrag.study.study import Study
 
 SHOWN = 12
@@ -40,7 +41,7 @@ def _section(results: Results) -> Section | None:
     )
     rows = table.head(SHOWN).to_dict("records")
     shown = table.head(SHOWN).assign(
-        name=[mechanism_name(row) for row in rows],
+        name=[sentence(mechanism_name(row)) for row in rows],
         together=[_together(row) for row in rows],
         excluded=["no" if row["plausible"] else "yes" for row in rows],
     )
@@ -62,7 +63,7 @@ def _section(results: Results) -> Section | None:
 
 
 def _title(factor: str) -> str:
-    return FACTORS[factor][0].lower() if factor else ""
+    return FACTORS[factor].title if factor else ""
 
 
 def mechanism_name(row: Mapping[Hashable, Any]) -> str:
@@ -71,9 +72,7 @@ def mechanism_name(row: Mapping[Hashable, Any]) -> str:
 
 
 def _departure(row: Mapping[Hashable, Any], number: int) -> str:
-    title, unit = FACTORS[str(row[f"factor_{number}"])]
-    level = f"{row[f'level_{number}']:.3g}".replace("-", "−")
-    return f"{title if number == 1 else title.lower()} {unit.format(level)}"
+    return FACTORS[str(row[f"factor_{number}"])].at(f"{row[f'level_{number}']:.3g}")
 
 
 def _together(row: Mapping[Hashable, Any]) -> str:

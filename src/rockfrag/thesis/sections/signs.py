@@ -24,6 +24,7 @@ def _section(results: Results) -> Section:
         else "None has its intervals on those sides."
     )
     shown = table.assign(
+        name=table["name"].map(sentence),
         signs=table["signs"].map({True: "yes", False: "no"}),
         beyond_chance=table["beyond_chance"].map({True: "yes", False: "no"}),
     )
