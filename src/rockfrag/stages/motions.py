@@ -66,12 +66,18 @@ def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict
     """Rows of the catalogue, what became of each, and which were left out and why."""
     from rockfrag.motions.directions import motion_and_vertical, motion_of_row
     from rockfrag.motions.processing import process
+    from rockfrag.records.sources.wheel import NotFetched
 
     study = job.study
     rows, felt, left_out = [], [], []
+    unfetched: dict[str, NotFetched] = {}
     for row in study.catalogue.to_dict("records"):
         named = {str(key): value for key, value in row.items()}
+        source = str(named["source"])
         try:
+            if source in unfetched:
+                # asked for once in a run, which takes a minute where there is no network
+                raise unfetched[source]
             ups: list[Motion] = []
             if study.vertical:
                 record, up = motion_and_vertical(named, *_place(study))
@@ -86,6 +92,8 @@ def _felt(job: Job[Study]) -> tuple[list[dict[str, Any]], list[_Felt], list[dict
         except InputError as error:
             if not study.keep_going:
                 raise
+            if isinstance(error, NotFetched):
+                unfetched[source] = error
             left_out.append({"motion": str(named["name"]), "reason": str(error)})
             job.log.warning("left out: %s", error)
     if not felt:

