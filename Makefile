@@ -2,7 +2,7 @@
 # make smoke    a small study in under a minute
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
-# make torture  a small study killed, starved and misused; make fuzz damaged inputs (MUTATIONS=1000000)
+# make torture  a small study killed, starved and misused; make fuzz damaged inputs (INPUTS=10000 for fewer)
 # make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
@@ -10,7 +10,7 @@
 
 PYTHON ?= python3
 STUDY ?= config/thesis.yaml
-MUTATIONS ?= 10000
+INPUTS ?= 1000000
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
@@ -57,8 +57,7 @@ format: .venv/installed
 	@.venv/bin/python .venv/bin/snakefmt Snakefile workflow
 
 fuzz: .venv/installed
-	@.venv/bin/python benchmarks/fuzz_records.py --mutations $(MUTATIONS)
-	@.venv/bin/python benchmarks/fuzz_inputs.py --mutations $(MUTATIONS)
+	@.venv/bin/python benchmarks/fuzz.py --inputs $(INPUTS)
 
 torture: .venv/installed
 	@.venv/bin/python benchmarks/torture.py

@@ -1,148 +1,37 @@
-"""Read damaged records: every format, archives and catalogues, cut, flipped, doubled and mixed.
+"""Damaged records: every format, archives and catalogues, cut, flipped, doubled and mixed."""
 
-    python benchmarks/fuzz_records.py --mutations 10000 --seed 1
-
-Each damaged input must be read or refused with an :class:`InputError` of at most 500 characters, within
-two seconds of processor time (those of the clock depend on what else the machine does). Prints the
-number of inputs and what went wrong; exit status 1 if anything did.
-"""
-
-import argparse
 import gzip
 import importlib.util
 import io
 import random
 import sys
-import tempfile
-import time
-import traceback
-import warnings
+import tarfile
 import zipfile
-from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
+from fuzz_damage import damage
 from obspy import Stream, Trace, UTCDateTime
 
-from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.records.catalogue import load_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
 
-MOST_SECONDS = 2.0
 BUILDERS = Path(__file__).resolve().parents[1] / "tests/records/built_records.py"
-WORDS = (
-    b"NPTS=", b"1e308", b"1e-308", b"-1", b"0", b"999999999999", b"nan", b"inf", b"\n", b"\n\n", b";",
-    b",", b"\t", b"\x00", b"\xff", b"\xef\xbb\xbf", b"{", b"}", b"/&", b"*****", b"1.2.3", b"E+99",
-    b"DT= 1e-30", b"units=", b"#", b"|", b"-32768", b"\r", b"a" * 9000, b"9" * 400,
-)  # fmt: skip
 
 
-def main() -> int:
-    """Run the harness; return 0 if nothing went wrong."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--mutations", type=int, default=10_000, help="how many damaged inputs")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the damage")
-    options = parser.parse_args()
-    rng = random.Random(options.seed)
-    wrong: Counter[str] = Counter()
-    fates: Counter[str] = Counter()
-    with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        seeds = list(_seeds(folder))
-        slowest = 0.0
-        for number in range(options.mutations):
-            name, content, read = seeds[number % len(seeds)]
-            other = rng.choice(seeds)[1]
-            damaged = damage(content, other, rng)
-            fate, seconds = _outcome(folder, name, damaged, read)
-            slowest = max(slowest, seconds)
-            fates[fate.split(":")[0]] += 1
-            if fate not in ("read", "refused"):
-                wrong[f"{name}: {fate}"] += 1
-                if wrong.total() <= 20:
-                    kept = Path(tempfile.gettempdir()) / f"fuzz-{options.seed}-{number}-{name}"
-                    kept.write_bytes(damaged)
-                    print(f"{kept}: {fate}", file=sys.stderr)
-    print(
-        f"{options.mutations} damaged inputs of {len(seeds)} kinds (seed {options.seed}): "
-        f"{fates['read']} read, {fates['refused']} refused, {wrong.total()} wrong; "
-        f"slowest {slowest:.2f} s"
-    )
-    for what, count in wrong.most_common():
-        print(f"{count:6d}  {what}")
-    return 1 if wrong else 0
+def records(folder: Path) -> Callable[[random.Random], tuple[Path, Callable[[], object]]]:
+    """Return what makes a damaged record and how it is read."""
+    seeds = list(_seeds(folder))
 
+    def one(rng: random.Random) -> tuple[Path, Callable[[], object]]:
+        name, content, read = rng.choice(seeds)
+        path = folder / name
+        path.write_bytes(damage(content, rng.choice(seeds)[1], rng))
+        return path, lambda: read(path)
 
-def damage(content: bytes, other: bytes, rng: random.Random) -> bytes:
-    """Return a damaged copy: one to four cuts, flips, insertions, repetitions or exchanges."""
-    data = bytearray(content)
-    for _ in range(rng.randint(1, 4)):
-        size = len(data)
-        at = rng.randrange(size + 1)
-        # headers decide how a file is read, so that half of the damage is done there
-        if rng.random() < 0.5:
-            at = min(at, rng.randrange(2000))
-        kind = rng.randrange(8)
-        if kind == 0:
-            del data[at:]
-        elif kind == 1 and size:
-            data[min(at, size - 1)] = rng.randrange(256)
-        elif kind == 2:
-            data[at:at] = rng.choice(WORDS)
-        elif kind == 3:
-            del data[at : at + rng.randint(1, 200)]
-        elif kind == 4:
-            data[at:at] = data[at : at + rng.randint(1, 500)] * rng.randint(1, 3)
-        elif kind == 5:
-            _exchange_number(data, at, rng)
-        elif kind == 6 and other:
-            start = rng.randrange(len(other))
-            data[at : at + rng.randint(0, 300)] = other[start : start + rng.randint(1, 300)]
-        else:
-            lines = bytes(data).split(b"\n")
-            rng.shuffle(lines) if len(lines) < 3 else lines.insert(
-                rng.randrange(len(lines)), lines[rng.randrange(len(lines))]
-            )
-            data = bytearray(b"\n".join(lines))
-    return bytes(data)
-
-
-def _exchange_number(data: bytearray, at: int, rng: random.Random) -> None:
-    """Put another number where the next one stands."""
-    start = at
-    while start < len(data) and not chr(data[start]).isdigit():
-        start += 1
-    stop = start
-    while stop < len(data) and chr(data[stop]) in "0123456789.":
-        stop += 1
-    choices = [b"0", b"-5", b"1e308", b"99999999999", b"3.7", b"1e-30", b"007", b"4294967296"]
-    data[start:stop] = rng.choice(choices)
-
-
-def _outcome(
-    folder: Path, name: str, content: bytes, read: Callable[[Path], None]
-) -> tuple[str, float]:
-    path = folder / name
-    path.write_bytes(content)
-    start = time.process_time()
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            read(path)
-        fate = "read"
-    except InputError as error:
-        fate = "refused" if len(str(error)) <= LONGEST_MESSAGE else "message too long"
-        if "\n" in str(error):
-            fate = "message of several lines"
-    except Exception as error:
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        fate = f"uncaught: {type(error).__name__} in {Path(place.filename).name}:{place.lineno}"
-    seconds = time.process_time() - start
-    if seconds > MOST_SECONDS:
-        fate = f"slow: {seconds:.1f} s"
-    return fate, seconds
+    return one
 
 
 def _read_all(path: Path) -> None:
@@ -245,8 +134,6 @@ def _archives(texts: dict[str, bytes]) -> Iterable[tuple[str, bytes]]:
     with zipfile.ZipFile(nested, "w") as archive:
         archive.writestr("inner.zip", buffer.getvalue())
     yield "nested.zip", nested.getvalue()
-    import tarfile
-
     for name, mode in (("some.tar", "w"), ("some.tar.gz", "w:gz")):
         buffer = io.BytesIO()
         with tarfile.open(fileobj=buffer, mode=mode) as archive:
@@ -256,7 +143,3 @@ def _archives(texts: dict[str, bytes]) -> Iterable[tuple[str, bytes]]:
                 archive.addfile(info, io.BytesIO(content))
         yield name, buffer.getvalue()
     yield "peer.AT2.gz", gzip.compress(some["at2_peer-peer.AT2"])
-
-
-if __name__ == "__main__":
-    sys.exit(main())

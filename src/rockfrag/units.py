@@ -5,6 +5,7 @@ A unit stands in the name of a key or column (``width_cm``), or beside the numbe
 
 import math
 import re
+import sys
 from collections.abc import Mapping
 
 from rockfrag.errors import InputError
@@ -96,7 +97,8 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     expected = f"expected a {dimension} such as 35 {next(iter(units))}"
     number = _NUMBER.fullmatch(given) if isinstance(given, str) else None
     if isinstance(given, int | float) and not isinstance(given, bool):
-        value, written = float(given), ""
+        # a whole number may be larger than any float
+        value, written = math.inf if abs(given) > sys.float_info.max else float(given), ""
     elif number:
         value, written = float(number[1]), number[2]
     else:

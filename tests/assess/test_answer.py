@@ -98,6 +98,7 @@ def test_answers_are_json_with_all_that_an_independent_computation_needs(motions
         (FIGURE | {"depth": "1 cm"}, "density"),
         (FIGURE | {"cg_height": "130 cm"}, "cg_height"),
         (FIGURE | {"pga": "0.25"}, "without a unit"),
+        (FIGURE | {"width": 10**400}, "expected a length such as 35 m, found 10000"),
         (FIGURE | {"pga": "25 g"}, "no shaking"),
         (FIGURE | {"pgv": "20 g"}, "velocity"),
         (FIGURE | {"pga": "0.2 g", "pgv": "10 cm/s"}, "both given"),

@@ -82,6 +82,7 @@ def test_one_level_passes_through_its_return_period():
         ("mmi,annual_rate\n7,0.01\n8,0.001\n", "expected a column"),
         ("pga_g,poe_50_years\n0.1,0.4\n0.2,1.2\n", "1.2"),
         ("pga_g,return_period_years\n0.1,0\n0.2,475\n", "return period"),
+        ("pga_g,poe_50_years\n0.1,1\n0.2,0\n", "0 usable point"),
         (samples.openquake_csv(kind="rlz-003"), "rlz-003"),
         (samples.openquake_csv(imt="MMI"), "MMI"),
         (samples.openquake_csv().replace("investigation_time=50.0, ", ""), "investigation_time"),

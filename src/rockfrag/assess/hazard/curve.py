@@ -133,7 +133,7 @@ def make_curve(
     kept = (x > 0) & np.isfinite(y) & (y > 0)
     x, y = x[kept], y[kept]
     # of equal neighbours the highest level says most
-    last = np.append(np.diff(y) < 0, True)
+    last = np.append(np.diff(y) < 0, True)[: y.size]
     x, y = x[last], y[last]
     if x.size < 2:
         raise InputError(

@@ -1,0 +1,97 @@
+"""Ways of damaging what a program is given: bytes of any file, and values of a configuration."""
+
+import copy
+import random
+from typing import Any
+
+VALUES: tuple[Any, ...] = (
+    None, True, False, 0, 1, -1, 2**31, 10**400, 0.0, -0.0, 1.0, 1e-300, 1e308, -1e308, float("nan"),
+    float("inf"), "", " ", "x", "a\nb", "=1+1", "../x", "/etc/passwd", "x" * 3000, "1e3", "35 cm", "像",
+    "\x07", "${HOME}", "{x}", "1976-13-45", [], {}, [[]], [1, 2], ["pga_g"], {"a": 1}, {1: 2}, [None],
+    [0.9, "b"], "motions.csv", "study.yaml", ".", "specimens.csv",
+)  # fmt: skip
+WORDS = (
+    b"NPTS=", b"1e308", b"1e-308", b"-1", b"0", b"999999999999", b"nan", b"inf", b"\n", b"\n\n", b";",
+    b",", b"\t", b"\x00", b"\xff", b"\xef\xbb\xbf", b"{", b"}", b"/&", b"*****", b"1.2.3", b"E+99",
+    b"DT= 1e-30", b"units=", b"#", b"|", b"-32768", b"\r", b"a" * 9000, b"9" * 400,
+)  # fmt: skip
+
+
+def damage(content: bytes, other: bytes, rng: random.Random) -> bytes:
+    """Return a damaged copy: one to four cuts, flips, insertions, repetitions or exchanges."""
+    data = bytearray(content)
+    for _ in range(rng.choice((1, 1, 2, 4))):
+        size = len(data)
+        at = rng.randrange(size + 1)
+        # headers decide how a file is read, so that half of the damage is done there
+        if rng.random() < 0.5:
+            at = min(at, rng.randrange(2000))
+        kind = rng.randrange(8)
+        if kind == 0:
+            del data[at:]
+        elif kind == 1 and size:
+            data[min(at, size - 1)] = rng.randrange(256)
+        elif kind == 2:
+            data[at:at] = rng.choice(WORDS)
+        elif kind == 3:
+            del data[at : at + rng.randint(1, 200)]
+        elif kind == 4:
+            data[at:at] = data[at : at + rng.randint(1, 500)] * rng.randint(1, 3)
+        elif kind == 5:
+            _exchange_number(data, at, rng)
+        elif kind == 6 and other:
+            start = rng.randrange(len(other))
+            data[at : at + rng.randint(0, 300)] = other[start : start + rng.randint(1, 300)]
+        else:
+            lines = bytes(data).split(b"\n")
+            rng.shuffle(lines) if len(lines) < 3 else lines.insert(
+                rng.randrange(len(lines)), lines[rng.randrange(len(lines))]
+            )
+            data = bytearray(b"\n".join(lines))
+    return bytes(data)
+
+
+def _exchange_number(data: bytearray, at: int, rng: random.Random) -> None:
+    """Put another number where the next one stands."""
+    start = at
+    while start < len(data) and not chr(data[start]).isdigit():
+        start += 1
+    stop = start
+    while stop < len(data) and chr(data[stop]) in "0123456789.":
+        stop += 1
+    choices = [b"0", b"-5", b"1e308", b"99999999999", b"3.7", b"1e-30", b"007", b"4294967296"]
+    data[start:stop] = rng.choice(choices)
+
+
+def changed(content: Any, rng: random.Random) -> Any:
+    """Return a copy of a configuration with one value exchanged, removed, renamed or repeated."""
+    content = copy.deepcopy(content)
+    places: list[tuple[Any, Any]] = []
+
+    def walk(node: Any) -> None:
+        if isinstance(node, dict):
+            for key, value in node.items():
+                places.append((node, key))
+                walk(value)
+        elif isinstance(node, list):
+            for index, value in enumerate(node):
+                places.append((node, index))
+                walk(value)
+
+    walk(content)
+    if not places:
+        return rng.choice(VALUES)
+    node, key = rng.choice(places)
+    kind = rng.randrange(5)
+    if kind == 0:
+        del node[key]
+    elif kind == 1 and isinstance(node, dict):
+        word = str(rng.choice(VALUES))
+        node[word[:100]] = node.pop(key)
+    elif kind == 2:
+        other, inner = rng.choice(places)
+        value = other[inner] if not isinstance(other, list) or inner < len(other) else None
+        node[key] = copy.deepcopy(value)
+    else:
+        node[key] = copy.deepcopy(rng.choice(VALUES))
+    return content
