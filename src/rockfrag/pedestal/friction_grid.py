@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.motions.scaling import factors_to_pga
-from rockfrag.pedestal.cluster_means import mean_effect
+from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
@@ -107,31 +107,36 @@ def friction_effects(ratios: pd.DataFrame, floors: Mapping[str, int]) -> pd.Data
     level = ratios["floor"].map(floors).fillna(0)
     places = {"ground": level == 0, "above": level > 0}
     places |= {floor: ratios["floor"] == floor for floor in floors if floor not in places}
-    rows = []
-    for (ground, interface), here in ratios.groupby(["ground", "interface"]):
+    work = ratios.assign(d=np.log(ratios["ratio"]))
+    parts: dict[tuple[float, float, str, str], pd.DataFrame] = {}
+    for (ground, interface), here in work.groupby(["ground", "interface"]):
         for place, inside in places.items():
             for thing in ("all", *ratios["object"].unique()):
                 part = here[inside[here.index] & ((thing == "all") | (here["object"] == thing))]
-                if part.empty:
-                    continue
-                known = part.dropna(subset="ratio").assign(d=lambda table: np.log(table["ratio"]))
-                found = mean_effect(known) if len(known) else None
-                rows.append(
-                    {
-                        "ground": ground,
-                        "interface": interface,
-                        "place": place,
-                        "object": thing,
-                        "ratio": found.ratio if found else np.nan,
-                        "lower": found.ratio_lower if found else np.nan,
-                        "upper": found.ratio_upper if found else np.nan,
-                        "pairs": len(known),
-                        "events": found.units if found else 0,
-                        "left_out": len(part) - len(known),
-                        "p_survives": int(part["p_g"].isna().sum()),
-                        "np_survives": int(part["np_g"].isna().sum()),
-                    }
-                )
+                if len(part):
+                    parts[ground, interface, place, thing] = part
+    # all at once: a grid of some hundred means takes longer to group than to compute
+    known = [part.dropna(subset="ratio").assign(scope=k) for k, part in enumerate(parts.values())]
+    found = mean_effects(pd.concat(known), "scope") if known else {}
+    rows = []
+    for k, ((ground, interface, place, thing), part) in enumerate(parts.items()):
+        mean = found.get(k)
+        rows.append(
+            {
+                "ground": ground,
+                "interface": interface,
+                "place": place,
+                "object": thing,
+                "ratio": mean.ratio if mean else math.nan,
+                "lower": mean.ratio_lower if mean else math.nan,
+                "upper": mean.ratio_upper if mean else math.nan,
+                "pairs": len(known[k]),
+                "events": mean.units if mean else 0,
+                "left_out": len(part) - len(known[k]),
+                "p_survives": int(part["p_g"].isna().sum()),
+                "np_survives": int(part["np_g"].isna().sum()),
+            }
+        )
     return pd.DataFrame(rows)
 
 

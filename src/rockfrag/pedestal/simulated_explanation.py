@@ -23,8 +23,11 @@ from rockfrag.rocking.measured_restitution import LAWS, Law, MeasuredRestitution
 
 Floats = NDArray[np.float64]
 
-BATCH = 16
+BATCH = 64
 """Bodies that are shaken at a time, between two lines of progress."""
+
+RUNGS = 8
+"""Rungs of a ladder that are climbed at a time: whatever has fallen climbs no further."""
 
 REFERENCE = "ideal"
 LARGEST_RESTITUTION = 0.995
@@ -287,14 +290,23 @@ def ladder_amplitudes(
     Amplitudes [g], shape (bodies, motions); NaN where nothing or everything was survived.
     """
     scales = np.array([factors_to_pga(motion, ladder_g) for motion in motions])
-    fell = overturns(
-        bodies,
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        scales,
-        restitution=list(restitution),
-        threads=threads,
-    ).overturned
+    fell = np.zeros((len(bodies), *scales.shape), dtype=bool)
+    for low in range(0, len(ladder_g), RUNGS):
+        climbing = ~fell.any(axis=2)
+        here, under = np.flatnonzero(climbing.any(axis=1)), np.flatnonzero(climbing.any(axis=0))
+        if not here.size:
+            break
+        rungs = slice(low, low + RUNGS)
+        found = overturns(
+            [bodies[i] for i in here],
+            [motions[j].acceleration for j in under],
+            [motions[j].dt for j in under],
+            scales[under, rungs],
+            restitution=[restitution[i] for i in here],
+            threads=threads,
+        ).overturned
+        # a pair that has fallen already has its first fall below
+        fell[np.ix_(here, under, range(len(ladder_g))[rungs])] = found
     first = fell.argmax(axis=2)
     known = fell.any(axis=2) & (first > 0)
     return np.where(known, ladder_g[np.maximum(first - 1, 0)], np.nan)

@@ -1,6 +1,7 @@
 """Which readings of a test stand when motion and body differ a little, and which are a matter of luck."""
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -9,6 +10,8 @@ from numpy.typing import NDArray
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
+from rockfrag.rocking.bodies import Body
+from rockfrag.rocking.case_list import overturns_of_cases
 from rockfrag.rocking.sureness import perturbed
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import always_overturning, first_overturning, step_protocol
@@ -20,13 +23,20 @@ SIZES = (1e-9, 1e-6, 1e-4)
 COPIES = 4
 """Perturbed copies of a test for each of them."""
 
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Bounds = tuple[float, float]
+Copy = tuple[Body, float]
+"""A perturbed body and the factor on its motion."""
+
+CLIMBING = ("step_protocol", "first_overturning")
+"""Readings that see nothing above the amplitude at which they end."""
 
 
 def standing_readings(
     configurations: Sequence[Configuration],
     motions: Sequence[Motion],
-    amplitudes_g: NDArray[np.float64],
+    amplitudes_g: Floats,
     protocol: Protocol,
     seed: int,
     threads: int = 1,
@@ -54,50 +64,110 @@ def standing_readings(
     """
     scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
     rng = np.random.default_rng(seed)
-
-    def read(configuration: Configuration, size: float) -> Iterator[dict[str, Bounds]]:
-        """Bounds by reading for each motion, of a copy that differs by up to ``size``."""
-        body = configuration.body if size == 0 else perturbed(configuration.body, size, rng)
+    rows = []
+    for one in configurations:
+        rng.uniform(-1, 1)
+        copies = [[_copy(one.body, size, rng) for _ in range(COPIES)] for size in SIZES]
         fell = overturns(
-            [body],
+            [one.body],
             [motion.acceleration for motion in motions],
             [motion.dt for motion in motions],
-            scales * (1 + size * float(rng.uniform(-1, 1))),
-            restitution=[configuration.restitution],
+            scales,
+            restitution=[one.restitution],
             threads=threads,
         ).overturned[0]
-        for verdicts in fell:
-            outcomes = {
-                "step_protocol": step_protocol(amplitudes_g, verdicts, protocol),
-                "first_overturning": first_overturning(amplitudes_g, verdicts),
-                "always_overturning": always_overturning(amplitudes_g, verdicts),
-            }
-            yield {name: (one.lower_g, one.upper_g) for name, one in outcomes.items()}
-
-    rows = []
-    for configuration in configurations:
-        found = list(read(configuration, 0.0))
-        copies = {size: [list(read(configuration, size)) for _ in range(COPIES)] for size in SIZES}
+        found = [_readings(amplitudes_g, verdicts, protocol) for verdicts in fell]
+        stands = {
+            (k, i, name): True
+            for k in range(len(SIZES))
+            for i in range(len(motions))
+            for name in found[i]
+        }
+        for number in range(COPIES):
+            tried = [each[number] for each in copies]
+            wanted = _asked(amplitudes_g, found, stands)
+            ends = _verdicts(one, tried, motions, scales, wanted, threads)
+            for k, i in np.ndindex(wanted.shape[:2]):
+                # where a copy was not shaken its verdict changes no reading that is still in question
+                verdicts = np.where(wanted[k, i], ends[k, i], fell[i])
+                for name, bounds in _readings(amplitudes_g, verdicts, protocol).items():
+                    stands[k, i, name] &= _same(bounds, found[i][name])
         for i, motion in enumerate(motions):
-            for reading, bounds in found[i].items():
-                stands = {
-                    f"stands_{size:.0e}": all(
-                        _same(copy[i][reading], bounds) for copy in copies[size]
-                    )
-                    for size in SIZES
+            rows += [
+                {
+                    "test": f"{one.name} {motion.name}",
+                    "configuration": one.name,
+                    "motion": motion.name,
+                    "reading": name,
+                    "lower_g": bounds[0],
+                    "upper_g": bounds[1],
+                    **{f"stands_{size:.0e}": stands[k, i, name] for k, size in enumerate(SIZES)},
                 }
-                rows.append(
-                    {
-                        "test": f"{configuration.name} {motion.name}",
-                        "configuration": configuration.name,
-                        "motion": motion.name,
-                        "reading": reading,
-                        "lower_g": bounds[0],
-                        "upper_g": bounds[1],
-                        **stands,
-                    }
-                )
+                for name, bounds in found[i].items()
+            ]
     return pd.DataFrame(rows)
+
+
+def _copy(body: Body, size: float, rng: np.random.Generator) -> Copy:
+    near = perturbed(body, size, rng)
+    return near, 1 + size * float(rng.uniform(-1, 1))
+
+
+def _readings(amplitudes_g: Floats, verdicts: Flags, protocol: Protocol) -> dict[str, Bounds]:
+    """Bounds by reading."""
+    outcomes = {
+        "step_protocol": step_protocol(amplitudes_g, verdicts, protocol),
+        "first_overturning": first_overturning(amplitudes_g, verdicts),
+        "always_overturning": always_overturning(amplitudes_g, verdicts),
+    }
+    return {name: (one.lower_g, one.upper_g) for name, one in outcomes.items()}
+
+
+def _asked(
+    amplitudes_g: Floats,
+    found: Sequence[Mapping[str, Bounds]],
+    stands: Mapping[tuple[int, int, str], bool],
+) -> Flags:
+    """Amplitudes that can tell whether a reading stands that does so far, shape (sizes, motions, amplitudes).
+
+    What climbs until the first overturning does not see the amplitudes above it; the amplitude from which
+    everything overturns does not see those below the last survived one.
+    """
+    asked = np.zeros((len(SIZES), len(found), len(amplitudes_g)), dtype=bool)
+    for (k, i, name), so_far in stands.items():
+        lower, upper = found[i][name]
+        if not so_far:
+            continue
+        if name in CLIMBING:
+            asked[k, i] |= amplitudes_g <= (math.inf if math.isnan(upper) else upper)
+        else:
+            asked[k, i] |= amplitudes_g >= lower
+    return asked
+
+
+def _verdicts(
+    configuration: Configuration,
+    copies: Sequence[Copy],
+    motions: Sequence[Motion],
+    scales: Floats,
+    wanted: Flags,
+    threads: int,
+) -> Flags:
+    """Whether each copy overturns in the wanted cases, shape (copies, motions, amplitudes); False elsewhere."""
+    copy, motion, amplitude = np.nonzero(wanted)
+    factors = np.array([factor for _, factor in copies])
+    ends = np.zeros(wanted.shape, dtype=bool)
+    ends[wanted] = overturns_of_cases(
+        [body for body, _ in copies],
+        [one.acceleration for one in motions],
+        np.array([one.dt for one in motions]),
+        copy,
+        motion,
+        scales[motion, amplitude] * factors[copy],
+        restitution=[configuration.restitution] * len(copies),
+        threads=threads,
+    )
+    return ends
 
 
 def _same(one: Bounds, other: Bounds) -> bool:
