@@ -11,6 +11,7 @@ from rockfrag.errors import InputError
 from rockfrag.guests import study_stages
 from rockfrag.stages.running import prepared
 from rockfrag.stages.same_numbers import same_numbers
+from rockfrag.stages.stage import priorities
 from rockfrag.yaml_file import read_yaml
 
 # jobs inherit it: no number depends on what the processor at hand could do beyond others of its kind
@@ -34,6 +35,7 @@ except InputError as error:
 
 RESULTS = str(FOLDER)
 STAGES = study_stages(STUDY)
+PRIORITIES = priorities(STAGES, STUDY)
 logger.info(
     f"The report will be {RESULTS}/report.html",
     extra={"report": f"{RESULTS}/report.html"},

@@ -13,11 +13,12 @@ for stage in STAGES:
             [flagged(path) for path in stage.output_files(STUDY)],
         log:
             f"{RESULTS}/logs/{stage.name}.log",
+        priority: PRIORITIES[stage.name]
         localrule: stage.small
         conda:
             "../envs/rockfrag.yaml"
         # a cluster's profile says how many threads a job may have at most
-        threads: (workflow.resource_settings.cores or 64) if stage.parallel else 1
+        threads: stage.threads(workflow.resource_settings.cores or 64)
         resources:
             mem_mb=stage.memory_mb(STUDY),
             runtime=stage.minutes,

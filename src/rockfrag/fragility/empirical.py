@@ -7,8 +7,6 @@ these stand beside it.
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy import optimize
-from statsmodels.stats.proportion import proportion_confint
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, Outcomes, positive, verdicts
@@ -28,6 +26,8 @@ def wilson_interval(
     level
         Of the confidence limits [-], 0 to 1.
     """
+    from statsmodels.stats.proportion import proportion_confint
+
     lower, upper = proportion_confint(overturned, trials, alpha=1.0 - level, method="wilson")
     return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
 
@@ -104,6 +104,8 @@ def isotonic_share(outcomes: Outcomes) -> pd.DataFrame:
         One row per value of the measure, ascending: ``im``, ``tests``, ``share`` (raw),
         ``isotonic``.
     """
+    from scipy import optimize
+
     values, code = np.unique(outcomes.im, return_inverse=True)
     trials = np.bincount(code, outcomes.trials)
     share = np.bincount(code, outcomes.overturned) / trials

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
-from scipy import stats
+from scipy import special
 
 from rockfrag.pedestal.cluster_means import ROUNDING, Array
 
@@ -47,13 +47,13 @@ def bca_interval(
     indices = np.random.default_rng(seed).integers(0, n, size=(draws, n))
     drawn = np.sort(statistic(x[indices]))
     below = (np.sum(drawn < observed) + 0.5 * np.sum(drawn == observed)) / draws
-    bias = stats.norm.ppf(np.clip(below, 0.5 / draws, 1 - 0.5 / draws))
+    bias = special.ndtri(np.clip(below, 0.5 / draws, 1 - 0.5 / draws))
     left_out = np.array([float(statistic(np.delete(x, i))) for i in range(n)])
     deviation = left_out.mean() - left_out
     acceleration = float(np.sum(deviation**3) / (6 * np.sum(deviation**2) ** 1.5))
     tail = (1 - confidence) / 2
-    z = bias + stats.norm.ppf([tail, 1 - tail])
-    levels = stats.norm.cdf(bias + z / (1 - acceleration * z))
+    z = bias + special.ndtri([tail, 1 - tail])
+    levels = special.ndtr(bias + z / (1 - acceleration * z))
     lower, upper = np.quantile(drawn, levels)
     return float(lower), float(upper)
 

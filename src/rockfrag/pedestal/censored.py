@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import optimize, stats
+from scipy import optimize
 from scipy.special import ndtr
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import ROUNDING, Array, Estimate, t_estimate
+from rockfrag.pedestal.cluster_means import ROUNDING, Array, Estimate, t_beyond, t_estimate
 from rockfrag.pedestal.paired_tests import KEY, check_tests, pedestals_apart
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -130,7 +130,7 @@ def _jackknife(clean: pd.DataFrame, start: Array) -> Estimate:
     shift = delta - spread.mean
     p = spread.p
     if spread.se > 0:
-        p = float(2 * stats.t.sf(abs(delta) / spread.se, k - 1))
+        p = float(2 * t_beyond(abs(delta) / spread.se, k - 1))
     return Estimate(delta, spread.se, k, spread.lower + shift, spread.upper + shift, p)
 
 

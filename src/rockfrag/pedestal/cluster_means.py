@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
-from scipy import stats
+from scipy import special
 
 Array = npt.NDArray[np.float64]
 
@@ -97,7 +97,7 @@ class Estimate:
             return math.nan
         if self.mean - bound <= self.resolution:
             return 1.0
-        return float(stats.t.sf((self.mean - bound) / self.se, self.units - 1))
+        return float(t_beyond((self.mean - bound) / self.se, self.units - 1))
 
     def p_below(self, bound: float) -> float:
         """One-sided p value of the hypothesis that the mean is at least ``bound``."""
@@ -110,6 +110,14 @@ class Estimate:
         if not self.se > 0:
             return f"{self.ratio:.3f} (all units agree and their steps are not known, no interval)"
         return f"{self.ratio:.3f} [{self.ratio_lower:.3f}, {self.ratio_upper:.3f}]"
+
+
+def t_beyond(t: npt.ArrayLike, degrees: int) -> Array:
+    """Probability that Student's t with some degrees of freedom exceeds a value [-]; shape as ``t``.
+
+    As `scipy.stats.t.sf`, whose package takes longer to import than most tables here take to compute.
+    """
+    return np.asarray(special.stdtr(degrees, -np.asarray(t, dtype=float)))
 
 
 def t_estimate(
@@ -153,10 +161,10 @@ def t_estimate(
     se = max(scatter, resolution / math.sqrt(3 * x.size))
     if se == 0:
         return Estimate(mean, 0.0, x.size, math.nan, math.nan, math.nan)
-    half = max(float(stats.t.ppf(0.5 + confidence / 2, x.size - 1)) * se, resolution)
+    half = max(float(special.stdtrit(x.size - 1, 0.5 + confidence / 2)) * se, resolution)
     p = 1.0
     if abs(mean) > resolution:
-        p = float(2 * stats.t.sf(abs(mean) / se, x.size - 1))
+        p = float(2 * t_beyond(abs(mean) / se, x.size - 1))
     return Estimate(mean, se, x.size, mean - half, mean + half, p, resolution)
 
 

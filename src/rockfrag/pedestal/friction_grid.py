@@ -5,7 +5,7 @@ coefficient of that interface too.  So the smallest coefficients are tried first
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -108,7 +108,7 @@ def friction_effects(ratios: pd.DataFrame, floors: Mapping[str, int]) -> pd.Data
     places = {"ground": level == 0, "above": level > 0}
     places |= {floor: ratios["floor"] == floor for floor in floors if floor not in places}
     work = ratios.assign(d=np.log(ratios["ratio"]))
-    parts: dict[tuple[float, float, str, str], pd.DataFrame] = {}
+    parts: dict[tuple[Hashable, ...], pd.DataFrame] = {}
     for (ground, interface), here in work.groupby(["ground", "interface"]):
         for place, inside in places.items():
             for thing in ("all", *ratios["object"].unique()):
@@ -119,14 +119,11 @@ def friction_effects(ratios: pd.DataFrame, floors: Mapping[str, int]) -> pd.Data
     known = [part.dropna(subset="ratio").assign(scope=k) for k, part in enumerate(parts.values())]
     found = mean_effects(pd.concat(known), "scope") if known else {}
     rows = []
-    for k, ((ground, interface, place, thing), part) in enumerate(parts.items()):
+    for k, (keys, part) in enumerate(parts.items()):
         mean = found.get(k)
         rows.append(
             {
-                "ground": ground,
-                "interface": interface,
-                "place": place,
-                "object": thing,
+                **dict(zip(("ground", "interface", "place", "object"), keys, strict=True)),
                 "ratio": mean.ratio if mean else math.nan,
                 "lower": mean.ratio_lower if mean else math.nan,
                 "upper": mean.ratio_upper if mean else math.nan,

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy import special
 
 from rockfrag.pedestal.cluster_means import Array
 
@@ -271,7 +271,7 @@ def hotelling(values: Array, goal: Array, resolution: float) -> Array:
     inverse = np.linalg.solve(covariance, away[..., None])[..., 0]
     distance = events * np.einsum("pi,pi->p", away, inverse)
     scaled = distance * (events - places) / (places * (events - 1))
-    return np.asarray(stats.f.sf(scaled, places, events - places))
+    return np.asarray(special.fdtrc(places, events - places, scaled))
 
 
 def inversion_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> str:

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import optimize, stats
-from statsmodels.regression.linear_model import OLS
+from scipy import optimize, special
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import CONFIDENCE, Array
+from rockfrag.pedestal.cluster_means import CONFIDENCE, Array, t_beyond
 
 STARTS = (0.0, 0.1, 0.5, 1.5)
 """Square roots of the variance ratios from whose best pair the search starts [-]."""
@@ -144,6 +143,8 @@ def fit_mixed(rows: pd.DataFrame, formula: str) -> MixedFit:
     FitDisagreementError
         If the fixed effects of balanced data disagree with those of least squares.
     """
+    from statsmodels.regression.linear_model import OLS
+
     if rows["event"].nunique() < 2 or rows.groupby(["event", "floor"]).ngroups < 3:
         raise InputError(
             "Mixed model: it needs at least two events and three motions to tell their variances; "
@@ -199,7 +200,7 @@ def _coefficients(
 ) -> pd.DataFrame:
     estimate = direct.beta
     se = np.sqrt(np.diag(direct.covariance))
-    half = float(stats.t.ppf(0.5 + CONFIDENCE / 2, events - 1)) * se
+    half = float(special.stdtrit(events - 1, 0.5 + CONFIDENCE / 2)) * se
     return pd.DataFrame(
         {
             "term": names,
@@ -207,7 +208,7 @@ def _coefficients(
             "se": se,
             "lower": estimate - half,
             "upper": estimate + half,
-            "p": 2 * stats.t.sf(np.abs(estimate) / se, events - 1),
+            "p": 2 * t_beyond(np.abs(estimate) / se, events - 1),
             "least_squares": least_squares,
         }
     )

@@ -2,8 +2,7 @@
 
 import math
 
-from scipy import stats
-from statsmodels.stats.power import TTestPower
+from scipy import special
 
 from rockfrag.pedestal.cluster_means import Estimate
 
@@ -24,6 +23,8 @@ def power_of_t(ratio: float, sd: float, n: int, level: float = LEVEL) -> float:
     n
         Number of values, at least 2.
     """
+    from statsmodels.stats.power import TTestPower
+
     if n < 2 or sd <= 0:
         raise ValueError("power needs two values and a positive standard deviation")
     size = abs(math.log(ratio)) / sd
@@ -39,6 +40,8 @@ def detectable_ratio(effect: Estimate, power: float = POWER) -> float:
     can be seen exceeds the resolution by what normal scatter takes away with this power. Infinite for
     one unit; NaN where neither scatter nor resolution are known.
     """
+    from statsmodels.stats.power import TTestPower
+
     if effect.units < 2:
         return math.inf
     if not effect.se > 0:
@@ -46,7 +49,7 @@ def detectable_ratio(effect: Estimate, power: float = POWER) -> float:
     size = TTestPower().solve_power(
         nobs=effect.units, alpha=LEVEL / 2, power=power, alternative="larger"
     )
-    beyond = effect.resolution + float(stats.norm.ppf(power)) * effect.se
+    beyond = effect.resolution + float(special.ndtri(power)) * effect.se
     return math.exp(max(float(size) * effect.sd, beyond if effect.resolution > 0 else 0.0))
 
 

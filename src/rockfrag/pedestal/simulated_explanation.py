@@ -291,22 +291,21 @@ def ladder_amplitudes(
     """
     scales = np.array([factors_to_pga(motion, ladder_g) for motion in motions])
     fell = np.zeros((len(bodies), *scales.shape), dtype=bool)
-    for low in range(0, len(ladder_g), RUNGS):
-        climbing = ~fell.any(axis=2)
+    for rungs in np.array_split(np.arange(len(ladder_g)), np.arange(RUNGS, len(ladder_g), RUNGS)):
+        climbing = np.logical_not(fell.any(axis=2))
         here, under = np.flatnonzero(climbing.any(axis=1)), np.flatnonzero(climbing.any(axis=0))
         if not here.size:
             break
-        rungs = slice(low, low + RUNGS)
         found = overturns(
-            [bodies[i] for i in here],
-            [motions[j].acceleration for j in under],
-            [motions[j].dt for j in under],
-            scales[under, rungs],
-            restitution=[restitution[i] for i in here],
+            [bodies[i] for i in here.tolist()],
+            [motions[j].acceleration for j in under.tolist()],
+            [motions[j].dt for j in under.tolist()],
+            scales[np.ix_(under, rungs)],
+            restitution=[restitution[i] for i in here.tolist()],
             threads=threads,
         ).overturned
         # a pair that has fallen already has its first fall below
-        fell[np.ix_(here, under, range(len(ladder_g))[rungs])] = found
+        fell[np.ix_(here, under, rungs)] = found
     first = fell.argmax(axis=2)
     known = fell.any(axis=2) & (first > 0)
     return np.where(known, ladder_g[np.maximum(first - 1, 0)], np.nan)

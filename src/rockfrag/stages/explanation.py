@@ -281,4 +281,6 @@ STAGE = Stage(
         ),
     ),
     settings=("explanation", "bodies", "amplitudes", "protocol", "seed"),
+    parallel=True,
+    leaves_half=True,
 )

@@ -67,6 +67,8 @@ class Stage(Generic[S]):
         Whether a study has this stage at all.
     parallel
         Whether it can use all cores, and gets them.
+    leaves_half
+        Whether it leaves half of them to the stages that do not wait for it, though it could use all.
     small
         Whether it takes seconds, less than a cluster takes to start it.
     minutes
@@ -81,8 +83,15 @@ class Stage(Generic[S]):
     settings: tuple[str, ...] = ()
     wanted: Callable[[S], bool] = lambda study: True
     parallel: bool = False
+    leaves_half: bool = False
     small: bool = False
     minutes: int = 120
+
+    def threads(self, cores: int) -> int:
+        """Threads that it gets of so many cores."""
+        if not self.parallel:
+            return 1
+        return max(1, cores // 2) if self.leaves_half else cores
 
     def memory_mb(self, study: S) -> int:
         """Memory that a cluster should lend [MiB]: libraries, and the sweeps as tables."""
@@ -166,6 +175,21 @@ class Job(Generic[S]):
         if path not in self.stage.input_files(self.study):
             raise ValueError(f"stage {self.stage.name} reads {path} without declaring it")
         return self.folder / path
+
+
+def priorities(stages: Sequence[Stage[Any]], study: Any) -> dict[str, int]:
+    """Say which of the stages that could start does so first, by its name: the larger number.
+
+    First what most others wait for, then what takes long.
+    """
+    waiting: dict[str, set[str]] = {}
+    for one in reversed(stages):
+        written = set(one.output_files(study))
+        readers = [other for other in stages if written.intersection(other.input_files(study))]
+        waiting[one.name] = {
+            name for other in readers for name in (other.name, *waiting[other.name])
+        }
+    return {one.name: 2 * len(waiting[one.name]) + one.parallel for one in stages}
 
 
 def _of(names: Names, study: Any) -> Sequence[str]:

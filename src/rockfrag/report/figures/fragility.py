@@ -1,6 +1,7 @@
 """Fragility curves with their limits, the verdicts behind them, and what no curve can show."""
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -24,12 +25,14 @@ from rockfrag.figure_style import (
     plain_log,
 )
 from rockfrag.fragility.empirical import local_share, share_in_bins
-from rockfrag.fragility.estimators import Fragility
-from rockfrag.fragility.goodness import GoodnessOfFit
 from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit
-from rockfrag.fragility.states import ThreeStates
-from rockfrag.fragility.surface import FragilitySurface
 from rockfrag.report.wording import shortened
+
+if TYPE_CHECKING:
+    from rockfrag.fragility.estimators import Fragility
+    from rockfrag.fragility.goodness import GoodnessOfFit
+    from rockfrag.fragility.states import ThreeStates
+    from rockfrag.fragility.surface import FragilitySurface
 
 GREY = "#777777"
 
@@ -89,7 +92,7 @@ def _shares(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> None:
 
 
 def measures_figure(
-    curves: Mapping[str, Fragility], outcomes: Mapping[str, Outcomes], *, bins: int = 10
+    curves: Mapping[str, "Fragility"], outcomes: Mapping[str, Outcomes], *, bins: int = 10
 ) -> Figure:
     """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
     labels = [label for label, item in curves.items() if np.isfinite(item.fit.theta)]
@@ -118,7 +121,7 @@ def measures_figure(
 
 
 def surface_figure(
-    surface: FragilitySurface, tests: pd.DataFrame, *, overturned: str = "overturned"
+    surface: "FragilitySurface", tests: pd.DataFrame, *, overturned: str = "overturned"
 ) -> Figure:
     """Draw the tests in two measures with lines of equal fitted probability of overturning."""
     x_column, y_column = surface.measures
@@ -151,7 +154,7 @@ def surface_figure(
         return figure
 
 
-def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
+def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
     """Draw observed against fitted shares in bins; points on the diagonal are well calibrated."""
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 3.0)
@@ -185,7 +188,7 @@ def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
         return figure
 
 
-def states_figure(states: ThreeStates) -> Figure:
+def states_figure(states: "ThreeStates") -> Figure:
     """Draw the probabilities of no rocking, safe rocking and overturning over the measure."""
     fit = states.overturn.fit
     if not np.isfinite(fit.theta):
@@ -218,7 +221,7 @@ def states_figure(states: ThreeStates) -> Figure:
         return figure
 
 
-def _curve(axes: Axes, item: Fragility, grid: Floats, colour: str, label: str) -> None:
+def _curve(axes: Axes, item: "Fragility", grid: Floats, colour: str, label: str) -> None:
     lower, upper = item.interval.band(grid)
     if np.isfinite(lower).any():
         axes.fill_between(grid, lower, upper, color=colour, alpha=0.18, linewidth=0)
@@ -234,7 +237,7 @@ def _verdicts(axes: Axes, data: Outcomes, grid: Floats, colour: str, bins: int) 
         axes.plot(inside, local_share(data, inside), "--", color=colour, linewidth=0.8)
 
 
-def _grid(curves: Sequence[Fragility], data: Sequence[Outcomes]) -> Floats:
+def _grid(curves: Sequence["Fragility"], data: Sequence[Outcomes]) -> Floats:
     """Values from where the lowest curve leaves zero to where the highest reaches one."""
     low = min(item.fit.theta * np.exp(-2.6 * item.fit.beta) for item in curves)
     high = max(item.fit.theta * np.exp(2.6 * item.fit.beta) for item in curves)
