@@ -120,6 +120,14 @@ class TestCutShort:
             "samples_read": 320,
         }
 
+    @pytest.mark.parametrize("end", [b"}", b"} ", b"} \\\n", b"} -factor", b"} -factor 2"])
+    def test_a_script_cut_after_its_values_does_not_lose_its_factor(self, builders, tmp_path, end):
+        path = builders["opensees"](tmp_path).path
+        whole = path.read_bytes()
+        path.write_bytes(whole[: whole.index(b"}")] + end)
+        with pytest.raises(InputError, match="-factor may be cut off"):
+            read_motion(path)
+
     def test_a_k_net_file_cut_after_its_header_does_not_hide_its_neighbours(
         self, knet, tmp_path, builders, capsys
     ):

@@ -85,6 +85,12 @@ def _command(text: TextFile, line: int, stop: int) -> str:
     while True:
         following = script.find("\n", end)
         if following < 0:
+            if not script.endswith("\n") or script.endswith("\\\n"):
+                text.fail(
+                    "the Path series ends with the file and not with its line, and its -factor may be cut off; "
+                    "end the last line if the file is whole",
+                    line,
+                )
             return script
         whole = script[:following]
         if whole.count("{") <= whole.count("}") and not whole.endswith("\\"):
