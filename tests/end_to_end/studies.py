@@ -114,8 +114,13 @@ def _record(path: Path, seed: int) -> None:
 
 def run(study: Foreign, folder: Path) -> Path:
     """Write a study, run all its stages in this process, and return the folder of its results."""
-    checked = load_study(write(study, folder))
-    stages, results = study_stages(checked), folder / "results" / checked.name
+    return run_stages(write(study, folder))
+
+
+def run_stages(path: Path) -> Path:
+    """Run all stages of a configuration in this process, and return the folder of its results."""
+    checked = load_study(path)
+    stages, results = study_stages(checked), path.parent / "results" / checked.name
     for stage in stages:
         job = Job(checked, stage, results, 1, logging.getLogger("end to end"))
         for name, value in stage.run(job):

@@ -74,8 +74,8 @@ STUDIES = {
             "P&T2": ("T2", "P"),
             "P&T3": ("T3", "P"),
         },
-        records={"Friuli": "Friuli", "Kobe": "Kobe", "Gilroy": "Loma Prieta"},
-        floors={"GF": 0, "F3": 2, "F5": 3},
+        records={"Friuli": "Friuli", "Gilroy": "Loma Prieta"},
+        floors={"GF": 0, "F5": 3},
     ),
     "nothing overturns": Foreign(
         blocks=MARBLE,

@@ -53,7 +53,11 @@ def write_record(path: Path, seed: int) -> None:
 @pytest.fixture
 def study_folder(tmp_path: Path) -> Path:
     """A folder with a space in its name, holding a whole small study."""
-    folder = tmp_path / "a study"
+    return make_study(tmp_path / "a study")
+
+
+def make_study(folder: Path) -> Path:
+    """Write a whole small study into a new folder."""
     folder.mkdir()
     rows = [CATALOGUE]
     for number, event in enumerate(("First", "First", "Second", "Second", "Third", "Fourth")):

@@ -1,6 +1,7 @@
 """The workflow itself, on a small study with synthetic motions and without network."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,7 +9,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from .conftest import study_content, write_study
+from rockfrag.stages.same_numbers import same_numbers
+
+from .conftest import make_study, study_content, write_study
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -47,10 +50,41 @@ def test_a_wrong_configuration_stops_before_anything_runs(study_folder: Path):
     assert not (study_folder / "results").exists()
 
 
-def test_a_study_runs_from_records_to_report_and_then_has_nothing_to_do(study_folder: Path):
-    done = snakemake(study_folder, "--cores", "2")
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a study that has gone through the workflow."""
+    folder = make_study(tmp_path_factory.mktemp("by the workflow") / "a study")
+    done = snakemake(folder, "--cores", "2")
     assert done.returncode == 0, done.stderr[-3000:]
-    results = study_folder / "results" / "tiny"
+    return folder
+
+
+def test_the_workflow_writes_what_the_stages_write_to_the_byte(ran: Path, tmp_path: Path):
+    """Stages run one after the other, in a process where libraries choose their functions as in jobs."""
+    path = make_study(tmp_path / "by hand") / "study.yaml"
+    alone = (
+        "import sys; from pathlib import Path; from tests.end_to_end.studies import run_stages; "
+        "from tests.end_to_end.checked_report import check_report; "
+        "results = run_stages(Path(sys.argv[1])); check_report(results, sys.argv[2:]); print(results)"
+    )
+    names = ("P&T1", "P&T2", "T1", "T2", "First", "Second", "Third", "Fourth")
+    done = subprocess.run(
+        [sys.executable, "-c", alone, str(path), *names],
+        cwd=ROOT,
+        env=os.environ | same_numbers(os.environ),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    by_hand = Path(done.stdout.splitlines()[-1])
+    results = ran / "results" / "tiny"
+    for name in ("report.html", "tests.csv"):
+        assert (results / name).read_bytes() == (by_hand / name).read_bytes(), name
+
+
+def test_a_study_runs_from_records_to_report_and_then_has_nothing_to_do(ran: Path):
+    results = ran / "results" / "tiny"
     tests = pd.read_csv(results / "tests.csv")
     laboratory = tests[tests["reading"] == "step_protocol"]
     assert len(laboratory) == 6 * 4
@@ -62,17 +96,17 @@ def test_a_study_runs_from_records_to_report_and_then_has_nothing_to_do(study_fo
     assert 'src="http' not in report
     assert "Simulated, not measured" in report
     assert "thesis" not in report
-    assert {path.name for path in study_folder.iterdir() if path.is_dir()} <= {
+    assert {path.name for path in ran.iterdir() if path.is_dir()} <= {
         ".snakemake",
         "results",
     }
 
-    again = snakemake(study_folder, "--cores", "2", "--dry-run")
+    again = snakemake(ran, "--cores", "2", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
 
-    listed = snakemake(study_folder, "--report", "listed.html")
+    listed = snakemake(ran, "--report", "listed.html")
     assert listed.returncode == 0, listed.stderr[-3000:]
-    text = (study_folder / "listed.html").read_text(encoding="utf-8")
+    text = (ran / "listed.html").read_text(encoding="utf-8")
     captions = json.loads((results / "figures" / "captions.json").read_text(encoding="utf-8"))
     assert set(captions) == {path.stem for path in (results / "figures").glob("*.svg")}
     for name, said in captions.items():

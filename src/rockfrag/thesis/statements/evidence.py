@@ -121,10 +121,19 @@ class Evidence:
         Undecidable
             If the table has no such level.
         """
-        for name in self.table[column].unique():
-            if _plain(str(name)) == _plain(wanted):
-                return str(name)
-        raise Undecidable(f"no complete pair with {column} {wanted}")
+        try:
+            return self._spelled[column, _plain(wanted)]
+        except KeyError:
+            raise Undecidable(f"no complete pair with {column} {wanted}") from None
+
+    @cached_property
+    def _spelled(self) -> dict[tuple[str, str], str]:
+        """Levels as the table spells them, by column and plain spelling."""
+        return {
+            (column, _plain(name)): name
+            for column in ("object", "event", "floor")
+            for name in reversed(self.table[column].astype(str).unique().tolist())
+        }
 
     def effect(self, **levels: str) -> Estimate:
         """Mean log ratio P/NP at the given levels."""
