@@ -295,7 +295,10 @@ def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
     """
     from rockfrag.motions.side_by_side import peak_displacements
 
-    displacement = peak_displacements(motion, HOUSNER_PERIODS, damping)
+    return _housner(peak_displacements(motion, HOUSNER_PERIODS, damping))
+
+
+def _housner(displacement: Floats) -> float:
     return float(np.trapezoid(displacement * (2 * math.pi / HOUSNER_PERIODS), HOUSNER_PERIODS))
 
 
@@ -311,9 +314,23 @@ def average_spectral_acceleration(motion: Motion, damping: float = 0.05) -> floa
     """
     from rockfrag.motions.side_by_side import peak_displacements
 
-    displacement = peak_displacements(motion, AVERAGE_PERIODS, damping)
+    return _average(peak_displacements(motion, AVERAGE_PERIODS, damping))
+
+
+def _average(displacement: Floats) -> float:
     spectrum = displacement * (2 * math.pi / AVERAGE_PERIODS) ** 2
     return float(np.prod(spectrum ** (1 / spectrum.size)))
+
+
+def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, float]:
+    """`housner_intensity` [m] and `average_spectral_acceleration` [m/s²] of one march of all oscillators."""
+    from rockfrag.motions.side_by_side import peak_displacements
+
+    periods = np.concatenate([HOUSNER_PERIODS, AVERAGE_PERIODS])
+    displacement = peak_displacements(motion, periods, damping)
+    return _housner(displacement[: HOUSNER_PERIODS.size]), _average(
+        displacement[HOUSNER_PERIODS.size :]
+    )
 
 
 def uplift_ratio(motion: Motion, alpha: float) -> float:

@@ -1,5 +1,6 @@
 """Tables of intensity measures, a row per motion, with the unit in the name of each column."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -49,15 +50,17 @@ def measure_motion(
         If a period is not positive or the damping negative.
     """
     pulse = strongest_pulse(motion)
+    pga, pgv = intensity.pga(motion), intensity.pgv(motion)
+    housner, average = intensity.housner_and_average(motion, damping)
     cm = CENTIMETRES_PER_METRE
     return {
         "name": motion.name,
         "event": str(motion.metadata.get("event", "")),
         "floor": str(motion.metadata.get("floor", "")),
-        "pga_g": intensity.pga(motion) / GRAVITY,
-        "pgv_cm_s": intensity.pgv(motion) * cm,
+        "pga_g": pga / GRAVITY,
+        "pgv_cm_s": pgv * cm,
         "pgd_cm": intensity.pgd(motion) * cm,
-        "pgv_over_pga_s": intensity.pgv_over_pga(motion),
+        "pgv_over_pga_s": pgv / pga if pga > 0 else math.nan,
         "arias_m_s": intensity.arias(motion),
         "cav_m_s": intensity.cav(motion),
         "d5_75_s": intensity.significant_duration(motion, 0.05, 0.75),
@@ -65,8 +68,8 @@ def measure_motion(
         "mean_period_s": intensity.mean_period(motion),
         "predominant_period_s": intensity.predominant_period(motion),
         **_spectral(motion, periods, damping),
-        "avgsa_g": intensity.average_spectral_acceleration(motion, damping) / GRAVITY,
-        "housner_cm": intensity.housner_intensity(motion, damping) * cm,
+        "avgsa_g": average / GRAVITY,
+        "housner_cm": housner * cm,
         "pulse_period_s": pulse.period,
         "pulse_velocity_cm_s": pulse.velocity * cm,
         "pulse_explained": pulse.explained,

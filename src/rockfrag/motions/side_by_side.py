@@ -2,9 +2,10 @@
 
 Every oscillator takes the steps and finds the peaks between them as :func:`rockfrag.motions.response_spectrum`
 does, to the last bit.  What is saved is the look between two steps: a peak there is worth it only if it can be
-the largest so far.  Where u turns, u'' is bounded by the ground's and the spring's share, |u''| (1 - ch) ≤ PGA +
-k |u| with c = 2ζω, k = ω² and step h.  One end of the step is within h/2 of the turn, so that the peak exceeds
-the larger of the two ends by q (PGA/k + |u|) at most, with q = k (h/2)²/2/(1 - ch).
+the largest of all.  So all steps are taken without a look first, and those stretches of them alone are gone
+through again that may hold the peak.  Where u turns, u'' is bounded by the ground's and the spring's share,
+|u''| (1 - ch) ≤ PGA + k |u| with c = 2ζω, k = ω² and step h.  One end of the step is within h/2 of the turn, so
+that the peak exceeds the larger of the two ends by q (PGA/k + |u|) at most, with q = k (h/2)²/2/(1 - ch).
 
 The march ends where nothing larger can come: the free vibration only decays, and the rest of the motion moves
 the oscillator by (1 + r)/(1 - r) times its peak over k at most, with r = exp(-πζ/√(1 - ζ²)) the ratio of one
@@ -40,12 +41,14 @@ _UU, _UV, _UA, _US, _VU, _VV, _VA, _VS = range(0, 8 * LANES, LANES)
 _U, _V, _LARGEST, _RATE, _PER_TURN, _GAIN = range(8 * LANES, 14 * LANES, LANES)
 # for exact peaks the state before the step, what a peak within it can add, c = 2ζω and k = ω²;
 _U0, _V0, _KEPT, _ADDED, _C, _K = range(14 * LANES, 20 * LANES, LANES)
+# the largest displacement of a stretch of steps;
+_HIGHEST = 20 * LANES
 # for bounds the largest squared amplitude of free vibration, 1/k and c/k² in their place
 _FREE, _PER_A, _PER_S = range(14 * LANES, 17 * LANES, LANES)
-_ROWS = 20
+_ROWS = 21
 
 LOOK_EVERY = 32
-"""Samples after which is asked whether anything larger can still come."""
+"""Samples of a stretch, after which is asked whether anything larger can still come."""
 
 
 class _Group(NamedTuple):
@@ -120,7 +123,11 @@ def _exact(group: _Group, acceleration: Floats, to_come: Floats) -> Floats:
     """Sd of a group [m]."""
     table = group.table.copy()
     table[_ADDED : _ADDED + LANES] *= to_come[0]
-    _march(acceleration, to_come, group.quiet, group.step, group.parts, table)
+    stretches = -(-(acceleration.size - 1 + group.quiet) // LOOK_EVERY)
+    _march(
+        *(acceleration, to_come, group.quiet, group.step, group.parts, table),
+        np.empty((stretches, 3 * LANES)),
+    )
     return table[_LARGEST : _LARGEST + group.which.size]
 
 
@@ -142,14 +149,14 @@ def _bounds(
 
 @lru_cache(maxsize=64)
 def _groups(periods: bytes, damping: float, dt: float, exact: bool) -> tuple[_Group, ...]:
-    """Oscillators grouped by their steps; for bounds one step a sample of those that need several."""
+    """Oscillators grouped by their steps; for bounds one step a sample of those that need more than two."""
     each = np.frombuffer(periods)
     parts = np.array([steps_within(dt, float(period), damping) for period in each])
     # undamped vibration does not get smaller, and so each such oscillator must end at its own time
     lanes = LANES if damping > 0 else 1
     groups = []
     for count in np.unique(parts) if exact else (1,):
-        (which,) = np.nonzero(parts == count if exact else parts > 1)
+        (which,) = np.nonzero(parts == count if exact else parts > 2)
         for i in range(0, which.size, lanes):
             some = which[i : i + lanes]
             quiet = math.ceil(each[some].max() / dt) + 1
@@ -202,19 +209,50 @@ def _sample(acceleration: Floats, i: int) -> float:
 
 @njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
 def _march(
-    acceleration: Floats, to_come: Floats, quiet: int, step: float, parts: int, x: Floats
+    acceleration: Floats,
+    to_come: Floats,
+    quiet: int,
+    step: float,
+    parts: int,
+    x: Floats,
+    stretches: Floats,
 ) -> None:
-    """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then."""
-    for i in range(acceleration.size - 1 + quiet):
-        if i % LOOK_EVERY == 0 and _settled(x, _sample(to_come, i)):
-            return
-        start = _sample(acceleration, i)
-        s = (_sample(acceleration, i + 1) - start) / (parts * step)
-        for j in range(parts):
-            a = start + j * step * s
-            if _advance(x, a, s):
-                for lane in range(LANES):
-                    _look_between(x, lane, a, s, step)
+    """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then.
+
+    ``stretches`` is room for each stretch's state at its beginning and largest displacement, of all lanes.
+    """
+    end = acceleration.size - 1 + quiet
+    count = 0
+    for first in range(0, end, LOOK_EVERY):
+        if _settled(x, _sample(to_come, first)):
+            break
+        for i in range(LANES):
+            stretches[count, i], stretches[count, LANES + i] = x[_U + i], x[_V + i]
+            x[_HIGHEST + i] = abs(x[_U + i])
+        for k in range(first, min(first + LOOK_EVERY, end)):
+            start = _sample(acceleration, k)
+            s = (_sample(acceleration, k + 1) - start) / (parts * step)
+            for j in range(parts):
+                _advance(x, start + j * step * s, s)
+        for i in range(LANES):
+            stretches[count, 2 * LANES + i] = x[_HIGHEST + i]
+            x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
+        count += 1
+    for number in range(count):
+        if _may_hold_the_peak(x, stretches[number]):
+            for i in range(LANES):
+                x[_U + i], x[_V + i] = stretches[number, i], stretches[number, LANES + i]
+            first = number * LOOK_EVERY
+            for k in range(first, min(first + LOOK_EVERY, end)):
+                start = _sample(acceleration, k)
+                s = (_sample(acceleration, k + 1) - start) / (parts * step)
+                for j in range(parts):
+                    a = start + j * step * s
+                    for i in range(LANES):
+                        x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
+                    _advance(x, a, s)
+                    for lane in range(LANES):
+                        _look_between(x, lane, a, s, step)
 
 
 @njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
@@ -230,20 +268,24 @@ def _settled(x: Floats, to_come: float) -> bool:
 
 
 @njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
-def _advance(x: Floats, a: float, s: float) -> int:
-    """One step of all lanes; return how many may have passed their largest peak in it."""
-    turned = 0
+def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
+    """Whether a peak between two steps of a stretch can be the largest displacement of a lane."""
+    may = False
+    for i in range(LANES):
+        may |= stretch[2 * LANES + i] + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
+    return may
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+def _advance(x: Floats, a: float, s: float) -> None:
+    """One step of all lanes."""
     for i in range(LANES):
         u, v = x[_U + i], x[_V + i]
         u1 = x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s
         v1 = x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s
         # the zero keeps the compiler from storing under a condition, for which the next load would wait
-        largest = max(x[_LARGEST + i], abs(u1)) + 0.0
-        ends = max(abs(u), abs(u1))
-        turned += (v * v1 < 0) & (ends + x[_ADDED + i] > x[_KEPT + i] * largest)
-        x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i] = u, v, u1, v1
-        x[_LARGEST + i] = largest
-    return turned
+        x[_HIGHEST + i] = max(x[_HIGHEST + i], abs(u1)) + 0.0
+        x[_U + i], x[_V + i] = u1, v1
 
 
 @njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]

@@ -52,8 +52,10 @@ def velocity_extremes(acceleration: Floats, dt: float) -> Floats:
 def displacement_extremes(acceleration: Floats, dt: float) -> Floats:
     """Return the displacement at samples and where the velocity crosses zero between them [m]."""
     velocity, displacement = integrate(acceleration, dt)
-    a0, v0, d0 = acceleration[:-1], velocity[:-1], displacement[:-1]
-    slope = np.diff(acceleration) / dt
+    # the velocity has a zero in an interval only if it changes its sign there, or turns
+    changes = (velocity[:-1] * velocity[1:] < 0) | (acceleration[:-1] * acceleration[1:] < 0)
+    a0, v0, d0 = acceleration[:-1][changes], velocity[:-1][changes], displacement[:-1][changes]
+    slope = np.diff(acceleration)[changes] / dt
     discriminant = a0**2 - 2 * slope * v0
     # the two roots in the form that loses no digits when one of them is small; a root that does not
     # exist comes out infinite or not a number and so does not lie inside the interval
