@@ -3,21 +3,39 @@
 Read by :mod:`rockfrag.rocking.kernels.jit` alone, with versions of numba that it knows.
 """
 
+import operator
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
 from typing import Any, ClassVar
 
 import llvmlite.binding as llvm
 from numba import _dynfunc  # type: ignore[attr-defined]
-from numba.core import typed_passes, untyped_passes
+from numba.core import base, ir, typed_passes, typeinfer, untyped_passes
+from numba.core import lowering as lowering_stage
+from numba.core.base import BaseContext
+from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.ir_utils import build_definitions
+from numba.core.rewrites.static_getitem import RewriteConstGetitems, RewriteConstSetitems
+from numba.core.ssa import reconstruct_ssa
+from numba.core.targetconfig import ConfigStack
+from numba.core.transforms import canonicalize_cfg
+from numba.core.types.functions import BaseFunction
+from numba.core.typing.context import BaseContext as TypingContext
+from numba.core.typing.templates import signature
+from numba.cpython.builtins import do_minmax
+from numba.extending import intrinsic
 
 
 class Part(JITCodeLibrary):
     """The code of one kernel, not optimised and not made machine code of, with references to those it calls."""
 
-    def _optimize_functions(self, module: Any) -> None:
-        """Leave optimising to whoever links this kernel."""
+    def add_ir_module(self, module: Any) -> None:
+        """Take the kernel's code, which is all that there is."""
+        self._final_module = llvm.parse_assembly(normalize_ir_text(str(module)))
+        self._final_module.name = module.name
 
     def add_linking_library(self, library: Any) -> None:
         """Remember a kernel that is called; whoever links this one links it too."""
@@ -79,7 +97,64 @@ def _callers_first(libraries: list[Any]) -> list[Any]:
     return order[::-1]
 
 
-@register_pass(mutates_CFG=True, analysis_only=False)
+@intrinsic
+def _smaller(typing_context, a, b):  # type: ignore[no-untyped-def]
+    return _one_of(typing_context, (a, b), operator.lt)
+
+
+@intrinsic
+def _larger(typing_context, a, b):  # type: ignore[no-untyped-def]
+    return _one_of(typing_context, (a, b), operator.gt)
+
+
+def _one_of(typing_context: Any, pair: Any, comparison: Any) -> Any:
+    """Type and code of ``min`` or ``max`` of two numbers, as numba makes it."""
+
+    def generate(context: Any, builder: Any, types: Any, arguments: Any) -> Any:
+        return do_minmax(context, builder, types.args, arguments, comparison)
+
+    return signature(typing_context.unify_types(*pair), *pair), generate
+
+
+_OF_TWO = {min: _smaller, max: _larger}
+"""What numba would compile a function of a tuple for."""
+
+
+class _Prepare:
+    """Prepares a kernel, as it is translated, for its types to be found."""
+
+    def run_pass(self, state: Any) -> None:
+        """Do so."""
+        code = state.func_ir
+        code.blocks = canonicalize_cfg(code.blocks)
+        # tuple[0] is then a part of the tuple, not a function of tuple and index to be compiled
+        for one in (RewriteConstGetitems, RewriteConstSetitems):
+            rewrite = one(state)
+            for key, block in code.blocks.items():
+                if rewrite.match(code, block, None, None):
+                    code.blocks[key] = rewrite.apply()
+        for block in code.blocks.values():
+            for call in block.find_exprs("call"):
+                called = code._definitions[call.func.name][0]
+                if (
+                    isinstance(called, ir.Global)
+                    and called.value in _OF_TWO
+                    and len(call.args) == 2
+                ):
+                    called.value = _OF_TWO[called.value]
+        reconstruct_ssa(code)
+        code._definitions = build_definitions(code.blocks)
+
+
+class _StripPhis(typed_passes.PreLowerStripPhis):
+    """Takes choices by the way that was come out again, before lowering."""
+
+    def run_pass(self, state: Any) -> None:
+        """Do so."""
+        state.func_ir = self._strip_phi_nodes(state.func_ir)
+        state.func_ir._definitions = build_definitions(state.func_ir.blocks)
+
+
 class LowerPart(typed_passes.NativeLowering):
     """Make a kernel known to those that call it, without machine code."""
 
@@ -97,34 +172,110 @@ class LowerPart(typed_passes.NativeLowering):
         return True
 
 
+class _While:
+    """What numba says of an error that comes up here, put together only if one does."""
+
+    says = staticmethod(typeinfer.new_error_context)  # type: ignore[attr-defined]
+
+    def __init__(self, message: str, *args: Any, **named: Any) -> None:
+        self._said = message, args, named
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _: Any, error: BaseException | None, __: Any) -> None:
+        if error is not None:
+            message, args, named = self._said
+            with self.says(message, *args, **named):
+                raise error
+
+
+def _refresh(context: BaseContext) -> None:
+    """Learn of intrinsic functions, which make themselves known when they are used first."""
+    for registry in context._registries:
+        context.install_registry(registry)
+
+
+def _remembering_call_types(find: Any) -> Any:
+    """Find only once what a function makes of arguments of some types, among dozens of implementations."""
+    known: dict[Any, Any] = {}
+
+    def get_call_type(function: Any, context: Any, args: Any, named: Any) -> Any:
+        key = function, tuple(args), tuple(named.items())
+        if key not in known:
+            found = find(function, context, args, named)
+            if not all(one.is_precise() for one in args):
+                return found
+            known[key] = found
+        return known[key]
+
+    return get_call_type
+
+
+def _remembering_sizes(measure: Any) -> Any:
+    """Measure only once how large a type is, of which LLVM makes a module for each variable."""
+    sizes: dict[Any, int] = {}
+
+    def get_abi_sizeof(context: Any, kind: Any) -> int:
+        if kind not in sizes:
+            sizes[kind] = measure(context, kind)
+        return sizes[kind]
+
+    return get_abi_sizeof
+
+
+@contextmanager
+def _shortcuts() -> Iterator[None]:
+    """Spare numba what it would work out anew for each operation of each kernel.
+
+    The compiler's lock is held meanwhile.
+    """
+    if BaseContext.refresh is _refresh:
+        yield
+        return
+    places: tuple[tuple[Any, str, Any], ...] = (
+        (BaseFunction, "get_call_type", _remembering_call_types(BaseFunction.get_call_type)),
+        (BaseContext, "get_abi_sizeof", _remembering_sizes(BaseContext.get_abi_sizeof)),
+        (BaseContext, "refresh", _refresh),
+        (TypingContext, "refresh", lambda _: None),
+        (base, "_has_loc", cache(base._has_loc)),
+        (lowering_stage, "new_error_context", _While),
+        (typeinfer, "new_error_context", _While),
+    )
+    before = [(where, name, getattr(where, name)) for where, name, _ in places]
+    try:
+        for where, name, value in places:
+            setattr(where, name, value)
+        yield
+    finally:
+        for where, name, value in before:
+            setattr(where, name, value)
+
+
 class _KernelCompiler(CompilerBase):
     """The passes that kernels need."""
 
     library: ClassVar[type]
     lowering: ClassVar[type]
 
-    def define_pipelines(self) -> list[PassManager]:
-        """Return the one list of passes."""
+    def _compile_core(self) -> Any:
+        """Take the kernel through its passes, without what numba works out between them for others."""
         state = self.state
         state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
         state.library.enable_object_caching()
         state.type_annotation = None
-        passes = PassManager("kernel")
-        for one in (
-            untyped_passes.TranslateByteCode,
-            untyped_passes.FixupArgs,
-            untyped_passes.IRProcessing,
-            # tuple[0] is then a part of the tuple, not a function of tuple and index to be compiled
-            untyped_passes.GenericRewrites,
-            untyped_passes.ReconstructSSA,
-            typed_passes.NopythonTypeInference,
-            typed_passes.PreLowerStripPhis,
-            self.lowering,
-            typed_passes.NoPythonBackend,
-        ):
-            passes.add_pass(one, one.__name__)
-        passes.finalize()
-        return [passes]
+        with _shortcuts(), ConfigStack().enter(state.flags.copy()):
+            for one in (
+                untyped_passes.TranslateByteCode,
+                untyped_passes.FixupArgs,
+                _Prepare,
+                typed_passes.NopythonTypeInference,
+                _StripPhis,
+                self.lowering,
+                typed_passes.NoPythonBackend,
+            ):
+                one().run_pass(state)
+        return state.cr
 
 
 class PartCompiler(_KernelCompiler):

@@ -469,7 +469,7 @@ def _place(lane, i, ensemble, motions):
     lane.per_angle[i], lane.per_speed[i] = pole.per_alpha, pole.per_swing
     # largest A that can still push the block on this pole back down
     most, least = motions.ahead_high[k // BLOCK], motions.ahead_low[k // BLOCK]
-    bound = max(0.0, factor * most * side, factor * least * side)
+    bound = max(max(0.0, factor * most * side), factor * least * side)
     light, heavy = weights_ahead(motions, k, factor)
     lane.bound[i], lane.heavy[i] = bound, heavy
     lane.crest[i] = math.sqrt(light * light + bound * bound) + (heavy - light)
