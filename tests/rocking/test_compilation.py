@@ -7,6 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba import TypingError
+from numba.core import lowering, typeinfer
+from numba.core.base import BaseContext
+from numba.core.types.functions import BaseFunction
 
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
@@ -40,6 +44,24 @@ def test_no_kernel_has_more_than_eight_parameters(path):
             given = node.args
             count = len([*given.posonlyargs, *given.args, *given.kwonlyargs])
             assert count <= 8, f"{path.name}: {node.name} has {count} parameters"
+
+
+def test_compiling_leaves_numba_as_it_was_even_if_it_fails():
+    def places():
+        return [
+            BaseFunction.get_call_type, BaseContext.refresh, BaseContext.get_abi_sizeof,
+            lowering.new_error_context, typeinfer.new_error_context,
+        ]  # fmt: skip
+
+    @jit.entry_kernel
+    def adds(a, b):
+        return max(a, b) + a
+
+    before = places()
+    assert adds(1.0, 2.0) == 3.0
+    with pytest.raises(TypingError, match=r"typing of call at .*test_compilation\.py"):
+        adds(1.0, "two")
+    assert places() == before
 
 
 UNKNOWN = """

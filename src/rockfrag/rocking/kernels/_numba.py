@@ -108,12 +108,15 @@ def _larger(typing_context, a, b):  # type: ignore[no-untyped-def]
 
 
 def _one_of(typing_context: Any, pair: Any, comparison: Any) -> Any:
-    """Type and code of ``min`` or ``max`` of two numbers, as numba makes it."""
+    """Type and code of ``min`` or ``max`` of two numbers, as numba makes it; nothing of what is no number."""
+    common = typing_context.unify_types(*pair)
+    if common is None:
+        return None
 
     def generate(context: Any, builder: Any, types: Any, arguments: Any) -> Any:
         return do_minmax(context, builder, types.args, arguments, comparison)
 
-    return signature(typing_context.unify_types(*pair), *pair), generate
+    return signature(common, *pair), generate
 
 
 _OF_TWO = {min: _smaller, max: _larger}

@@ -7,8 +7,10 @@ written.
 Numba would otherwise optimise every kernel by itself, once more inside each kernel that calls it, and make
 machine code for all of them, of which only that of the entry kernels is ever run; and it would take every
 kernel through two dozen passes for what these do not use (closures, reference counts, array expressions,
-parallel loops).  Both cost more time than all that is needed.  So a kernel stays a piece of unoptimised code
-until an entry kernel that needs it is optimised as a whole.  This uses classes that numba does not document;
+parallel loops); and for each operation it would look anew among dozens of implementations for what a product
+of two numbers is.  All this costs more time than all that is needed.  So a kernel stays a piece of unoptimised
+code until an entry kernel that needs it is optimised as a whole, and what was found once is remembered until
+then.  This uses classes that numba does not document;
 with a version other than ``TESTED_NUMBA`` kernels are compiled the ordinary way, which takes longer and gives
 the same bits.
 
