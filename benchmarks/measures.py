@@ -113,19 +113,19 @@ def vertical_ratio(cases: Cases) -> float:
 @entry_kernel  # type: ignore[misc]
 def _only_blocks(lane: Any, count: int) -> None:
     for _ in range(count):
-        block.advance(lane)
+        block.advance(lane, False)
 
 
 @entry_kernel  # type: ignore[misc]
 def _only_one(lane: Any, count: int) -> None:
     for _ in range(count):
-        stack_one.advance(lane, 9.81)
+        stack_one.advance(lane, 9.81, False)
 
 
 @entry_kernel  # type: ignore[misc]
 def _only_two(lane: Any, count: int) -> None:
     for _ in range(count):
-        stack_two.advance(lane, 9.81)
+        stack_two.advance(lane, 9.81, False)
 
 
 def over_limit(kind: str, cases: Cases) -> tuple[float, float]:

@@ -238,30 +238,41 @@ def quick_sine_cosine(x):
 
 
 @inlined_kernel
+def pulled(gravity, now, before):
+    """Coefficient of gravity × a series, whose coefficients of this order and of the one before are given.
+
+    ``gravity``: at the beginning, what it grows by, and whether it changes at all; where it does not, nothing
+    is computed that would add zero.
+    """
+    g, lift, varies = gravity
+    return fma(lift, before, g * now) if varies else g * now
+
+
+@inlined_kernel
 def rates_of_one(turn, w, kappa, ground, weight):
     """Taylor coefficients 0 to 6 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0.
 
     ψ'' = κ (W sin ψ + A cos ψ) with A = a + rise τ, W = u + lift τ and time in steps (thesis eq. 2.4): a lone
     block with ψ = θc - |θ|, κ = p² h², A the ground acceleration over g, positive where it pushes the block back
-    down, and W gravity over g, 1 unless the ground moves vertically.
+    down, and W gravity over g, 1 unless the ground moves vertically; ``weight`` as in ``pulled``.
     """
-    (s0, c0), (a, rise), (u, lift) = turn, ground, weight
-    w1 = kappa * fma(a, c0, u * s0)
+    (s0, c0), (a, rise) = turn, ground
+    w1 = kappa * fma(a, c0, weight[0] * s0)
     s1 = c0 * w
     c1 = -(s0 * w)
-    w2 = 0.5 * kappa * fma(a, c1, fma(rise, c0, fma(lift, s0, u * s1)))
+    w2 = 0.5 * kappa * fma(a, c1, fma(rise, c0, pulled(weight, s1, s0)))
     s2 = 0.5 * fma(c1, w, c0 * w1)
     c2 = -0.5 * fma(s1, w, s0 * w1)
-    w3 = (1 / 3) * kappa * fma(a, c2, fma(rise, c1, fma(lift, s1, u * s2)))
+    w3 = (1 / 3) * kappa * fma(a, c2, fma(rise, c1, pulled(weight, s2, s1)))
     s3 = (1 / 3) * fma(c2, w, fma(c0, w2, c1 * w1))
     c3 = -(1 / 3) * fma(s2, w, fma(s0, w2, s1 * w1))
-    w4 = 0.25 * kappa * fma(a, c3, fma(rise, c2, fma(lift, s2, u * s3)))
+    w4 = 0.25 * kappa * fma(a, c3, fma(rise, c2, pulled(weight, s3, s2)))
     s4 = 0.25 * fma(c3, w, fma(c0, w3, fma(c2, w1, c1 * w2)))
     c4 = -0.25 * fma(s3, w, fma(s0, w3, fma(s2, w1, s1 * w2)))
-    w5 = 0.2 * kappa * fma(a, c4, fma(rise, c3, fma(lift, s3, u * s4)))
+    w5 = 0.2 * kappa * fma(a, c4, fma(rise, c3, pulled(weight, s4, s3)))
     s5 = 0.2 * fma(c4, w, fma(c0, w4, fma(c3, w1, fma(c1, w3, c2 * w2))))
     c5 = -0.2 * fma(s4, w, fma(s0, w4, fma(s3, w1, fma(s1, w3, s2 * w2))))
-    w6 = (1 / 6) * kappa * fma(a, c5, fma(rise, c4, fma(lift, s4, u * s5)))
+    w6 = (1 / 6) * kappa * fma(a, c5, fma(rise, c4, pulled(weight, s5, s4)))
     return w, w1, w2, w3, w4, w5, w6
 
 
@@ -305,13 +316,14 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     mass : M11, M22 and, at the start of the step, M12 and D
     weight1, weight2 : X and Y of the rotations at the start of the step
     rates : θ1' and θ2' then
-    ground, gravity : acceleration of the ground, and gravity, then, and what they grow by until the end
+    ground : acceleration of the ground then, and what it grows by until the end
+    gravity : as in ``pulled``
     """
     m11, m22, m0, d0 = mass
     (x10, y10), (x20, y20) = weight1, weight2
     p0, q0 = rates
     a, b = ground
-    g, lift = gravity
+    g = gravity[0]
     share = 1.0 / fma(m11, m22, -m0 * m0)
     i11, i12, i22 = m22 * share, m0 * share, m11 * share
     # order 0; u and v are the squared rates
@@ -329,9 +341,9 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     y11 = x10 * p0
     x21 = -(y20 * q0)
     y21 = x20 * q0
-    r1 = fma(-a, x11, fma(-b, x10, fma(lift, y10, g * y11)))
+    r1 = fma(-a, x11, fma(-b, x10, pulled(gravity, y11, y10)))
     r1 = fma(-d1, v0, r1)
-    r2 = fma(-a, x21, fma(-b, x20, fma(lift, y20, g * y21)))
+    r2 = fma(-a, x21, fma(-b, x20, pulled(gravity, y21, y20)))
     r2 = fma(d1, u0, r2)
     r1, r2 = fma(-(dq + m1), q1, r1), fma(dp - m1, p1, r2)
     u1 = 2.0 * p0 * p1
@@ -347,10 +359,10 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     y22 = 0.5 * fma(x21, q0, x20 * q1)
     u2 = p1 * p1
     v2 = q1 * q1
-    r1 = fma(-a, x12, fma(-b, x11, fma(lift, y11, g * y12)))
+    r1 = fma(-a, x12, fma(-b, x11, pulled(gravity, y12, y11)))
     r1 = fma(-d0, v2, fma(-d1, v1, r1))
     r1 = fma(-d2, v0, fma(-m2, q1, r1))
-    r2 = fma(-a, x22, fma(-b, x21, fma(lift, y21, g * y22)))
+    r2 = fma(-a, x22, fma(-b, x21, pulled(gravity, y22, y21)))
     r2 = fma(d0, u2, fma(d1, u1, r2))
     r2 = fma(d2, u0, fma(-m2, p1, r2))
     r1, r2 = fma(-(dq + 2.0 * m1), q2, r1), fma(dp - 2.0 * m1, p2, r2)
@@ -367,11 +379,11 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     y23 = (1 / 3) * fma(x22, q0, fma(x20, q2, x21 * q1))
     u3 = 2.0 * (p1 * p2)
     v3 = 2.0 * (q1 * q2)
-    r1 = fma(-a, x13, fma(-b, x12, fma(lift, y12, g * y13)))
+    r1 = fma(-a, x13, fma(-b, x12, pulled(gravity, y13, y12)))
     r1 = fma(-d1, v2, fma(-m2, 2.0 * q2, r1))
     r1 = fma(-d0, v3, fma(-d2, v1, r1))
     r1 = fma(-d3, v0, fma(-m3, q1, r1))
-    r2 = fma(-a, x23, fma(-b, x22, fma(lift, y22, g * y23)))
+    r2 = fma(-a, x23, fma(-b, x22, pulled(gravity, y23, y22)))
     r2 = fma(d1, u2, fma(-m2, 2.0 * p2, r2))
     r2 = fma(d0, u3, fma(d2, u1, r2))
     r2 = fma(d3, u0, fma(-m3, p1, r2))
@@ -389,12 +401,12 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     y24 = 0.25 * fma(x23, q0, fma(x20, q3, fma(x22, q1, x21 * q2)))
     u4 = fma(2.0, p1 * p3, p2 * p2)
     v4 = fma(2.0, q1 * q3, q2 * q2)
-    r1 = fma(-a, x14, fma(-b, x13, fma(lift, y13, g * y14)))
+    r1 = fma(-a, x14, fma(-b, x13, pulled(gravity, y14, y13)))
     r1 = fma(-m2, 3.0 * q3, fma(-d2, v2, r1))
     r1 = fma(-d1, v3, fma(-m3, 2.0 * q2, r1))
     r1 = fma(-d0, v4, fma(-d3, v1, r1))
     r1 = fma(-d4, v0, fma(-m4, q1, r1))
-    r2 = fma(-a, x24, fma(-b, x23, fma(lift, y23, g * y24)))
+    r2 = fma(-a, x24, fma(-b, x23, pulled(gravity, y24, y23)))
     r2 = fma(-m2, 3.0 * p3, fma(d2, u2, r2))
     r2 = fma(d1, u3, fma(-m3, 2.0 * p2, r2))
     r2 = fma(d0, u4, fma(d3, u1, r2))
@@ -413,13 +425,13 @@ def rates_of_two(mass, weight1, weight2, rates, ground, gravity):
     y25 = 0.2 * fma(x24, q0, fma(x20, q4, fma(x23, q1, fma(x21, q3, x22 * q2))))
     u5 = 2.0 * fma(p1, p4, p2 * p3)
     v5 = 2.0 * fma(q1, q4, q2 * q3)
-    r1 = fma(-a, x15, fma(-b, x14, fma(lift, y14, g * y15)))
+    r1 = fma(-a, x15, fma(-b, x14, pulled(gravity, y15, y14)))
     r1 = fma(-d2, v3, fma(-m3, 3.0 * q3, r1))
     r1 = fma(-m2, 4.0 * q4, fma(-d3, v2, r1))
     r1 = fma(-d1, v4, fma(-m4, 2.0 * q2, r1))
     r1 = fma(-d0, v5, fma(-d4, v1, r1))
     r1 = fma(-d5, v0, fma(-m5, q1, r1))
-    r2 = fma(-a, x25, fma(-b, x24, fma(lift, y24, g * y25)))
+    r2 = fma(-a, x25, fma(-b, x24, pulled(gravity, y25, y24)))
     r2 = fma(d2, u3, fma(-m3, 3.0 * p3, r2))
     r2 = fma(-m2, 4.0 * p4, fma(d3, u2, r2))
     r2 = fma(d1, u4, fma(-m4, 2.0 * p2, r2))

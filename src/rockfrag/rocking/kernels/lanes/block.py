@@ -109,8 +109,20 @@ def worker() -> Worker:
 
 
 @kernel
-def advance(lane):
+def advance(lane, upward):
     """Advance every lane to the end of its sample, and flag those with an event in between.
+
+    ``upward``: whether the ground moves vertically; where it does not, the weight is one and costs nothing.
+    """
+    if upward:
+        _advance(lane, True)
+    else:
+        _advance(lane, False)
+
+
+@inlined_kernel
+def _advance(lane, upward):
+    """Advance every lane; ``upward`` is known where this is compiled into ``advance``.
 
     Everything is stored in every lane: conditional stores cost many times as much.
 
@@ -130,9 +142,10 @@ def advance(lane):
         a_end = lane.ground_end[i]
         w = omega * left
         s, c = quick_sine_cosine(psi)
-        u = lane.weight[i]
-        u_end = lane.weight_end[i]
-        rates = rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), (u, u_end - u))
+        u = lane.weight[i] if upward else 1.0
+        u_end = lane.weight_end[i] if upward else 1.0
+        weight = u, u_end - u, upward
+        rates = rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), weight)
         end = psi + travel(rates, 1.0)
         v = rate_at(rates, 1.0)
         keep_rates(lane.rates, i, rates)
@@ -160,7 +173,8 @@ def advance(lane):
         lane.psi[i] = end
         lane.omega[i] = v
         lane.ground[i] = a_end
-        lane.weight[i] = u_end
+        if upward:
+            lane.weight[i] = u_end
         lane.part_left[i] = 1.0
 
 
@@ -180,6 +194,7 @@ def march_blocks(ensemble, motions, worker, outcomes):
     Number of steps that lanes were advanced by, alone in a tuple.
     """
     lane, tallies = worker.lane, worker.tallies
+    upward = motions.vertical.size > 0
     busy = 0
     for i in range(LANES):
         lane.case[i] = -1
@@ -190,7 +205,7 @@ def march_blocks(ensemble, motions, worker, outcomes):
     passes = 0
     while busy > 0:
         passes += 1
-        advance(lane)
+        advance(lane, upward)
         stops = next_samples(lane, lane.signed, LANES, motions)
         while stops != 0:
             i = lowest_bit(stops)

@@ -48,6 +48,7 @@ def march_stacks(ensemble, motions, worker, outcomes):
     Numbers of steps that lanes of one rotation and of two were advanced by.
     """
     g = ensemble.bodies[0].gravity
+    upward = motions.vertical.size > 0
     for slot in range(SLOTS):
         case = worker.cases[slot]
         next_case(case, ensemble, motions, worker, outcomes)
@@ -59,11 +60,11 @@ def march_stacks(ensemble, motions, worker, outcomes):
         kind = ONE_ROTATES if ones else BOTH_ROTATE
         if ones:
             steps1 += LANES
-            stack_one.advance(worker.one, g)
+            stack_one.advance(worker.one, g, upward)
             stops = next_samples(worker.one, worker.one.factor, LANES, motions)
         else:
             steps2 += LANES
-            stack_two.advance(worker.two, g)
+            stack_two.advance(worker.two, g, upward)
             stops = next_samples(worker.two, worker.two.factor, LANES, motions)
         while stops != 0:
             i = lowest_bit(stops)

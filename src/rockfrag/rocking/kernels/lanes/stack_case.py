@@ -117,6 +117,8 @@ def worker() -> Worker:
     """Memory for one thread."""
     one, two = np.zeros(1, stack_one.LANE)[0], np.zeros(1, stack_two.LANE)[0]
     one["slot"] = two["slot"] = -1
+    # these are written only where the ground moves vertically
+    one["was_weight"] = one["before_weight"] = two["was_weight"] = 1.0
     cases = np.zeros(SLOTS, CASE)
     cases["number"] = cases["body"] = -1
     cases["slot"] = np.arange(SLOTS)

@@ -85,15 +85,27 @@ def _moment(hold, i, turn, alpha, square, pull):
 def _rates(g_over_inertia, turn, w, left, ground, weight):
     """Taylor coefficients of θ' over the rest of a sample.
 
-    ``ground``: over -g, and ``weight``: at its beginning, and what they grow by.
+    ``ground``: over -g, at its beginning, and what it grows by; ``weight`` as in ``taylor.pulled``.
     """
     (gx, gy), (s, c) = g_over_inertia, turn
     return rates_of_one((gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight)
 
 
 @kernel
-def advance(lane, g):
+def advance(lane, g, upward):
     """Advance every lane to the end of its sample, and flag those with an event in between.
+
+    ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
+    """
+    if upward:
+        _advance(lane, g, True)
+    else:
+        _advance(lane, g, False)
+
+
+@inlined_kernel
+def _advance(lane, g, upward):
+    """Advance every lane; ``upward`` is known where this is compiled into ``advance``.
 
     Everything is stored in every lane: conditional stores cost many times as much.
     """
@@ -107,10 +119,11 @@ def advance(lane, g):
         per = 1.0 / left
         w = omega * left
         turn = quick_sine_cosine(theta)
-        u = lane.weight[i]
-        u_end = lane.weight_end[i]
+        u = lane.weight[i] if upward else 1.0
+        u_end = lane.weight_end[i] if upward else 1.0
         ground = a * down, (a_end - a) * down
-        rates = _rates((lane.gx[i], lane.gy[i]), turn, w, left, ground, (u, u_end - u))
+        weight = u, u_end - u, upward
+        rates = _rates((lane.gx[i], lane.gy[i]), turn, w, left, ground, weight)
         keep_rates(lane.rates, i, rates)
         end = theta + travel(rates, 1.0)
         z = rate_at(rates, 1.0)
@@ -131,20 +144,21 @@ def advance(lane, g):
         lane.before_theta[i] = lane.was_theta[i]
         lane.before_omega[i] = lane.was_omega[i]
         lane.before_ground[i] = lane.was_ground[i]
-        lane.before_weight[i] = lane.was_weight[i]
         lane.before_left[i] = lane.was_left[i]
         lane.has_before[i] = lane.has_step[i]
         lane.has_step[i] = 1.0
         lane.was_theta[i] = theta
         lane.was_omega[i] = omega
         lane.was_ground[i] = a
-        lane.was_weight[i] = u
         lane.was_left[i] = left
         lane.theta[i] = end
         z = z * per
         lane.omega[i] = z
         lane.ground[i] = a_end
-        lane.weight[i] = u_end
+        if upward:
+            lane.before_weight[i] = lane.was_weight[i]
+            lane.was_weight[i] = u
+            lane.weight[i] = u_end
         lane.part_left[i] = 1.0
         was_ratio, was_fast, was_near = lane.ratio[i], lane.fast[i], lane.near[i]
         lane.was_ratio[i], lane.was_fast[i], lane.was_near[i] = was_ratio, was_fast, was_near
@@ -179,7 +193,7 @@ def go_back(lane, i, g):
     down = -1.0 / g
     ground = a * down, (end - a) * down
     turn = quick_sine_cosine(theta)
-    rates = _rates((lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u))
+    rates = _rates((lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u, True))
     keep_rates(lane.rates, i, rates)
 
 

@@ -66,8 +66,20 @@ def span_of(left, part):
 
 
 @kernel
-def advance(lane, g):
+def advance(lane, g, upward):
     """Advance every lane by a step, and flag those with an event in it.
+
+    ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
+    """
+    if upward:
+        _advance(lane, g, True)
+    else:
+        _advance(lane, g, False)
+
+
+@inlined_kernel
+def _advance(lane, g, upward):
+    """Advance every lane by a step; ``upward`` is known where this is compiled into ``advance``.
 
     A lane is QUIET at the end of its sample, and WITHIN it after a step that does not reach that end.
     Everything is stored in every lane: conditional stores cost many times as much.
@@ -84,8 +96,8 @@ def advance(lane, g):
         w2 = omega2 * span
         a = lane.ground[i]
         a_end = lane.ground_end[i]
-        u = lane.weight[i]
-        u_end = lane.weight_end[i]
+        u = lane.weight[i] if upward else 1.0
+        u_end = lane.weight_end[i] if upward else 1.0
         rise = (a_end - a) * (span / left)
         lift = (u_end - u) * (span / left)
         s1, c1 = quick_sine_cosine(t1)
@@ -102,7 +114,7 @@ def advance(lane, g):
             (lane.m11[i], lane.m22[i], e * cd + f * sd, f * cd - e * sd),
             (v1y * c1 - v1x * s1, v1x * c1 + v1y * s1),
             (v2y * c2 - v2x * s2, v2x * c2 + v2y * s2),
-            (w1, w2), (a, rise), (g * u, g * lift),
+            (w1, w2), (a, rise), (g * u, g * lift, upward),
         )  # fmt: skip
         n1 = t1 + travel(rates1, 1.0)
         n2 = t2 + travel(rates2, 1.0)
@@ -129,7 +141,6 @@ def advance(lane, g):
         lane.was_theta2[i] = t2
         lane.was_omega2[i] = omega2
         lane.was_ground[i] = a
-        lane.was_weight[i] = u
         lane.was_left[i] = left
         per = 1.0 / span
         z1 = z1 * per
@@ -139,7 +150,9 @@ def advance(lane, g):
         lane.theta2[i] = n2
         lane.omega2[i] = z2
         lane.ground[i] = a + rise if span < left else a_end
-        lane.weight[i] = u + lift if span < left else u_end
+        if upward:
+            lane.was_weight[i] = u
+            lane.weight[i] = u + lift if span < left else u_end
         lane.part_left[i] = left - span if span < left else 1.0
         was_ratio1, was_ratio2 = lane.ratio1[i], lane.ratio2[i]
         was_fast, was_near = lane.fast[i], lane.near[i]
