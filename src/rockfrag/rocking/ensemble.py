@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -415,21 +416,27 @@ def _sampled(
     times = 2 ** (exponent - (mantissa == 0.5))
     kinds, number = np.unique(times * len(values) + np.arange(len(values)), return_inverse=True)
 
-    def end_to_end(each: list[Array]) -> list[Array]:
-        # whole blocks each, so that no block straddles two motions
-        refined = [_refined(each[kind % len(each)], kind // len(each)) for kind in kinds.tolist()]
-        sizes.append([v.size for v in refined])
-        return [np.append(v, np.zeros(-v.size % BLOCK)) for v in refined]
+    each_kind = [divmod(kind, len(values)) for kind in kinds.tolist()]
+    sizes = np.array([values[motion].size * times + 1 for times, motion in each_kind])
+    # whole blocks each, so that no block straddles two motions
+    offsets = np.concatenate([[0], np.cumsum(sizes + -sizes % BLOCK)])
 
-    sizes: list[list[int]] = []
+    def end_to_end(each: list[Array]) -> Array:
+        made = np.zeros(offsets[-1])
+        for start, (times, motion) in zip(offsets.tolist(), each_kind, strict=False):
+            dense = _refined(each[motion], times)
+            made[start : start + dense.size] = dense
+        return made
+
     horizontal = end_to_end(values)
-    offsets = np.concatenate([[0], np.cumsum([v.size for v in horizontal])])
-    highest, lowest, ahead_high, ahead_low = _extremes(horizontal)
-    upward = end_to_end([per_gravity * up for up in setting.vertical]) if setting.vertical else []
-    _, _, upward_high, upward_low = _extremes(upward)
+    upward = np.zeros(0)
+    if setting.vertical:
+        upward = end_to_end([per_gravity * up for up in setting.vertical])
+    highest, lowest, ahead_high, ahead_low = _extremes(horizontal, offsets)
+    _, _, upward_high, upward_low = _extremes(upward, offsets)
     motions = Motions(
-        samples=np.concatenate(horizontal),
-        vertical=np.concatenate([np.zeros(0), *upward]),
+        samples=horizontal,
+        vertical=upward,
         highest=highest,
         lowest=lowest,
         ahead_high=ahead_high,
@@ -437,27 +444,29 @@ def _sampled(
         upward_high=upward_high,
         upward_low=upward_low,
         offsets=offsets,
-        lasts=offsets[:-1] + np.array(sizes[0]) - 1,
+        lasts=offsets[:-1] + sizes - 1,
     )
     return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
 
 
-def _extremes(padded: list[Array]) -> tuple[Array, Array, Array, Array]:
+def _extremes(samples: Array, offsets: NDArray[np.int64]) -> tuple[Array, Array, Array, Array]:
     """Extremes of each BLOCK of samples, and from the beginning of each to the end of its motion."""
-    nothing = np.zeros(0)
-    blocks = [v.reshape(-1, BLOCK) for v in padded]
-    high, low = [v.max(axis=1) for v in blocks], [v.min(axis=1) for v in blocks]
-    ahead = [np.maximum.accumulate(v[::-1])[::-1] for v in high]
-    behind = [np.minimum.accumulate(v[::-1])[::-1] for v in low]
-    found = [np.concatenate([nothing, *each]) for each in (high, low, ahead, behind)]
-    return found[0], found[1], found[2], found[3]
+    blocks = samples.reshape(-1, BLOCK)
+    high, low = blocks.max(axis=1, initial=-np.inf), blocks.min(axis=1, initial=np.inf)
+    ahead, behind = high.copy(), low.copy()
+    for start, end in pairwise((offsets // BLOCK).tolist()):
+        # from the last to the first
+        at = slice(start, end)
+        ahead[at][::-1] = np.maximum.accumulate(high[at][::-1])
+        behind[at][::-1] = np.minimum.accumulate(low[at][::-1])
+    return high, low, ahead, behind
 
 
 def _refined(values: Array, times: int) -> Array:
-    """Sample a piecewise linear motion ``times`` as densely, and let it end in zero."""
-    closed = np.append(values, 0.0)
+    """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least."""
     if times == 1:
-        return closed
+        return values
+    closed = np.append(values, 0.0)
     at = np.arange((closed.size - 1) * times + 1) / times
     return np.asarray(np.interp(at, np.arange(closed.size), closed))
 
