@@ -19,6 +19,7 @@ from rockfrag.stages import (
     sweep,
     tests,
 )
+from rockfrag.stages.running import RESULTS
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import AnyStudy
@@ -83,7 +84,11 @@ def _report_stage(stages: Sequence[Stage[Study]]) -> Stage[Study]:
         inputs=lambda study: [
             path for one in stages for path in one.output_files(study) if path.endswith(".parquet")
         ],
-        files=lambda study: study.body_files,
+        # what lies beside is declared, so that the report is made again when it comes, goes or changes
+        files=lambda study: [
+            *study.body_files,
+            *(path.as_posix() for path in thesis.wide_effects(study, RESULTS)),
+        ],
         outputs=("figures/", "report.html"),
         settings=(
             "title",

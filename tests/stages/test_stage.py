@@ -1,6 +1,9 @@
 """What a stage asks of the machine, and which stage goes first."""
 
 from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
 
 from rockfrag.guests import study_stages
 from rockfrag.stages.stage import Stage, priorities
@@ -41,3 +44,18 @@ def test_a_stage_that_leaves_half_lets_another_run_beside_it():
     assert [by_name["explanation"].threads(cores) for cores in (1, 2, 5, 16)] == [1, 1, 2, 8]
     assert [by_name["sweep"].threads(cores) for cores in (1, 2, 16)] == [1, 2, 16]
     assert by_name["tests"].threads(16) == 1
+
+
+def test_what_the_report_sets_beside_is_declared_where_it_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    study = load_any(ROOT / "config" / "thesis.yaml")
+    report = study_stages(study)[-1]
+    monkeypatch.chdir(tmp_path)
+    wide = Path("results") / "wide" / "pedestal" / "effects.parquet"
+    without = report.user_files(study)
+    wide.parent.mkdir(parents=True)
+    wide.write_bytes(b"")
+    assert report.user_files(study) == [*without, str(wide)]
+    own = load_any(ROOT / "config" / "wide.yaml")
+    assert str(wide) not in study_stages(own)[-1].user_files(own)

@@ -137,6 +137,15 @@ def test_a_process_that_never_has_arguments_or_environment_keeps_nobody_waiting(
     assert one_run._processes_of("of the dead run") == []
 
 
+def test_who_runs_a_study_is_written_whole(here: Path):
+    RUNS.mkdir(parents=True)
+    (RUNS / "tiny.json").write_text("{}")
+    # whoever reads it meanwhile has the old text or the new, nothing between
+    with (RUNS / "tiny.json").open() as reading, only_run("tiny", here / "results"):
+        assert reading.read() == "{}"
+        assert json.loads((RUNS / "tiny.json").read_text())["process"] == os.getpid()
+
+
 def test_what_a_killed_job_left_half_written_goes_with_the_next_run(here: Path):
     with only_run("tiny", here / "results"):
         pass

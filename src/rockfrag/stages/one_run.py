@@ -1,6 +1,5 @@
 """One run of a study at a time: who runs it, and what a run that died has left behind."""
 
-import fcntl
 import json
 import os
 import time
@@ -8,14 +7,16 @@ import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import psutil
+from filelock import FileLock, Timeout
 
 from rockfrag.errors import InputError
+from rockfrag.files import write_text
 
 RUNS = Path(".snakemake") / "rockfrag"
-"""Folder of a file for each study that was run, from the folder in which the workflow runs."""
+"""Folder of a lock and of its owner for each study that was run, from the folder in which the workflow runs."""
 
 TOKEN = "ROCKFRAG_RUN"
 """Variable of the environment by which the processes of a run are known, its jobs too."""
@@ -28,7 +29,7 @@ _PATIENCE = 10.0
 def only_run(study: str, results: Path) -> Iterator[None]:
     """Be the only run of a study while the block lasts, and end what a dead run has left running.
 
-    The kernel frees the lock when its process dies, however it dies, so that no lock outlives its owner.
+    The system frees the lock when its process dies, however it dies, so that no lock outlives its owner.
     Jobs whose run was killed are found by a token in their environment and ended before anything starts;
     half-written files of theirs are removed.
 
@@ -45,45 +46,43 @@ def only_run(study: str, results: Path) -> Iterator[None]:
         If the study is running already; says in which process and since when.
     """
     RUNS.mkdir(parents=True, exist_ok=True)
-    with (RUNS / f"{study}.json").open("a+", encoding="utf-8") as file:
+    # who holds the lock is said in another file, because a locked one cannot be read everywhere, and that
+    # one is always whole
+    file = RUNS / f"{study}.json"
+    try:
+        held = FileLock(RUNS / f"{study}.lock").acquire(timeout=0)
+    except Timeout:
         owner = _owner(file)
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            since = time.strftime("%H:%M:%S on %Y-%m-%d", time.localtime(owner.get("started", 0)))
-            raise InputError(
-                f"the study {study} is running in process {owner.get('process', '?')} since {since}; wait "
-                f"for it, or end it with 'kill {owner.get('process', '?')}'."
-            ) from None
+        since = time.strftime("%H:%M:%S on %Y-%m-%d", time.localtime(owner.get("started", 0)))
+        raise InputError(
+            f"the study {study} is running in process {owner.get('process', '?')} since {since}; wait "
+            f"for it, or end it with 'kill {owner.get('process', '?')}'."
+        ) from None
+    with held:
+        owner = _owner(file)
         if owner.get("token"):
             _end_all(str(owner["token"]))
         # a job that was killed alone leaves some too, though its run has ended as it should
         _remove_parts(results)
         token = uuid.uuid4().hex
-        _write(file, {"process": os.getpid(), "started": time.time(), "token": token})
+        write_text(
+            json.dumps({"process": os.getpid(), "started": time.time(), "token": token}), file
+        )
         os.environ[TOKEN] = token
         try:
             yield
         finally:
             del os.environ[TOKEN]
             _end_all(token)
-            _write(file, {})
+            write_text("{}", file)
 
 
-def _owner(file: IO[str]) -> dict[str, Any]:
-    file.seek(0)
+def _owner(file: Path) -> dict[str, Any]:
     try:
-        owner = json.load(file)
-    except ValueError:
+        owner = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
         return {}
     return owner if isinstance(owner, dict) else {}
-
-
-def _write(file: IO[str], owner: dict[str, object]) -> None:
-    file.seek(0)
-    file.truncate()
-    json.dump(owner, file)
-    file.flush()
 
 
 def _end_all(token: str) -> None:

@@ -178,8 +178,8 @@ def _beside(wide: pd.DataFrame) -> Finding:
     )
     return Finding(
         headline,
-        f"Over {counted(int(row['pairs']), 'pair')} from {counted(int(row['units']), 'earthquake')} on the "
-        f"ground P/NP is {_ratio(row)}"
+        f"In the wide study, whose results lie beside this one’s, over {counted(int(row['pairs']), 'pair')} from "
+        f"{counted(int(row['units']), 'earthquake')} on the ground P/NP is {_ratio(row)}"
         + (", so a change of 10 % or more is excluded." if within else "."),
     )
 

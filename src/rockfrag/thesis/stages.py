@@ -1,11 +1,31 @@
 """What a study does beyond its own when it is compared with the thesis: one stage."""
 
+from pathlib import Path
+
 import pandas as pd
 
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 
+WIDE = "wide"
+"""Study of many more earthquakes (config/wide.yaml), whose result the report sets beside where it has been run."""
+
 TABLES = ("table_3_1", "table_3_3", "table_4_1")
+
+
+def wide_effects(study: Study, results: Path) -> list[Path]:
+    """File of the pedestal's effects in the study of many more earthquakes, where there is one.
+
+    Parameters
+    ----------
+    study
+        The study whose report would set it beside.
+    results
+        Folder of all studies' results.
+    """
+    found = results / WIDE / "pedestal" / "effects.parquet"
+    wanted = study.compare_with == "thesis" and study.has_pairs and study.name != WIDE
+    return [found] if wanted and found.is_file() else []
 
 
 def run(job: Job[Study]) -> Results:

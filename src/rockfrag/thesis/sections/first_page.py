@@ -9,9 +9,7 @@ from rockfrag.report.sections.inversion import asks_inversion
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.figures.answer import ratios_figure
 from rockfrag.thesis.first_page import first_page
-
-WIDE = "wide"
-"""Study of many more earthquakes, whose result is set beside where it has been run (config/wide.yaml)."""
+from rockfrag.thesis.stages import wide_effects
 
 
 def thesis_answer(results: Results) -> Answer:
@@ -21,7 +19,8 @@ def thesis_answer(results: Results) -> Answer:
         return study_answer(results)
     effects = results.table("pedestal/effects")
     explanation = results.table("explanation/effects") if asks_explanation(study) else None
-    wide = _wide(results)
+    beside = wide_effects(study, results.folder.parent)
+    wide = pd.read_parquet(beside[0]) if beside else None
     inversion = results.table("explanation/inversion") if asks_inversion(study) else None
     settings = study.more.explanation
     wanted = {} if settings is None else settings.wanted_percent
@@ -42,10 +41,3 @@ def thesis_answer(results: Results) -> Answer:
         could_overturn=could_overturn(results),
         questions=questions(results),
     )
-
-
-def _wide(results: Results) -> pd.DataFrame | None:
-    beside = results.folder.parent / WIDE / "pedestal" / "effects.parquet"
-    if results.study.name == WIDE or not beside.is_file():
-        return None
-    return pd.read_parquet(beside)
