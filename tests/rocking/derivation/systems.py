@@ -129,7 +129,7 @@ class System:
         return self.get("motion", s1, s2)
 
 
-def random_systems(n: int = 200, seed: int = 2) -> System:
+def random_systems(n: int = 60, seed: int = 2) -> System:
     """Draw systems of any inertia, the statue narrower than the pedestal, in any state."""
     rng = np.random.default_rng(seed)
     b1, b2 = rng.uniform(0.2, 1.0, n), rng.uniform(0.3, 0.95, n)
