@@ -8,6 +8,9 @@
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
 # Paths are relative throughout, so the checkout may stand anywhere, spaces included.
 
+# jobs and tests are processes of their own; without bytecode each would translate all modules again
+unexport PYTHONDONTWRITEBYTECODE
+
 PYTHON ?= python3
 STUDY ?= config/thesis.yaml
 INPUTS ?= 1000000

@@ -223,9 +223,9 @@ def test_extrapolation_is_safe_on_the_thesis_s_line_and_not_where_no_trend_holds
 def test_scatter_about_an_exact_trend_does_not_speak_against_extrapolation(made, trend):
     confirmed = sum(
         finding(54, made(noise=0.134, seed=seed, objects=TRENDS[trend]), "measured") is FOR
-        for seed in range(40)
+        for seed in range(20)
     )
-    assert confirmed <= 2
+    assert confirmed <= 1
 
 
 def test_the_stack_is_less_slender_than_its_tower(made):
