@@ -250,19 +250,20 @@ def full_disk(study: Study, tally: Tally, rng: random.Random) -> None:
     if os.geteuid() == 0:
         for size in ("300k", "1m"):
             study.anew()
-            with _small_disk(study.folder / "results", size):
-                said = study.run()
-                study.refused(tally, said)
-            study.judge(tally, study.run())
+            with _small_disk(study.folder / "results", size) as small:
+                if small:
+                    study.refused(tally, study.run())
+            if small:
+                study.judge(tally, study.run())
 
 
 @contextmanager
-def _small_disk(folder: Path, size: str) -> Iterator[None]:
+def _small_disk(folder: Path, size: str) -> Iterator[bool]:
     folder.mkdir(exist_ok=True)
     mount = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)]
     mounted = subprocess.run(mount, capture_output=True, check=False).returncode == 0
     try:
-        yield
+        yield mounted
     finally:
         if mounted:
             subprocess.run(["umount", str(folder)], check=True)
@@ -279,10 +280,12 @@ def little_memory(study: Study, tally: Tally, rng: random.Random) -> None:
 
 
 def read_only(study: Study, tally: Tally, rng: random.Random) -> None:
-    """Forbid writing to the results, to Snakemake's folder, and to everything."""
+    """Forbid writing to the folder of all results, of the study's, and of its figures."""
     for name in ("results", "results/tiny", "results/tiny/figures"):
         study.forget("report.html")
         folder = study.folder / name
+        if name == "results":
+            shutil.rmtree(folder / "tiny")
         # root writes wherever permissions forbid it, but not where the folder itself may not change
         locked = _lock(folder, True)
         said = study.run()
