@@ -10,24 +10,34 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from rockfrag.cli import main as rockfrag
 from rockfrag.errors import InputError
-from rockfrag.stages.log import in_words
-from rockfrag.stages.one_run import only_run
-from rockfrag.stages.running import results_folder
-from rockfrag.study.loading import load_any
+from rockfrag.stages.means import check_folders, check_memory
 
 SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parents[1] / "Snakefile"))
 
 
 def main(study_file: str, arguments: Sequence[str]) -> int:
     """Run a study; return 0, or another number if it could not be run to its end."""
+    try:
+        check_memory()
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 1
+    # what takes much memory is loaded now that there is some
+    from rockfrag.cli import main as rockfrag
+    from rockfrag.stages.log import in_words
+    from rockfrag.stages.one_run import only_run
+    from rockfrag.stages.running import results_folder
+    from rockfrag.study.loading import load_any
+
     status = rockfrag(["check-config", "--quiet", study_file])
     if status:
         return status
     try:
         study = load_any(study_file)
-        with only_run(study.name, results_folder(study)):
+        results = results_folder(study)
+        check_folders(results)
+        with only_run(study.name, results):
             return _snakemake(study_file, ["--keep-going", *arguments])
     except InputError as error:
         print(error, file=sys.stderr)

@@ -15,6 +15,7 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.stages import one_run
 from rockfrag.stages.log import in_words, logged
+from rockfrag.stages.means import check_folders
 from rockfrag.stages.one_run import RUNS, TOKEN, only_run
 from rockfrag.stages.same_numbers import same_numbers
 
@@ -195,6 +196,36 @@ def test_a_job_that_may_not_write_its_log_says_so(
     said = capsys.readouterr().err
     assert said.startswith("sweep failed: ")
     assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("mebibytes", [300, 1000])
+def test_a_run_that_may_not_have_the_memory_it_needs_says_so_at_once(mebibytes: int):
+    """OpenBLAS would wait for ever for what it is refused while it is loaded."""
+    pytest.importorskip("resource")
+    # of this process alone, as a limit that was lowered is not raised again
+    program = (
+        f"import resource, runpy, sys; resource.setrlimit(resource.RLIMIT_AS, ({mebibytes << 20},) * 2); "
+        f"sys.argv = ['run.py', 'no.yaml']; runpy.run_path({str(LAUNCHER)!r}, run_name='__main__')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"a process may reserve {mebibytes} MiB of memory here")
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_job(
+    here: Path, monkeypatch: pytest.MonkeyPatch
+):
+    figures = here / "results" / "tiny" / "figures"
+    check_folders(figures.parent)
+    figures.mkdir(parents=True)
+    check_folders(figures.parent)
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != figures)
+    with pytest.raises(PermissionError) as told:
+        check_folders(figures.parent)
+    assert "figures may not be written" in in_words(told.value)
 
 
 @pytest.mark.slow

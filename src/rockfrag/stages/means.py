@@ -1,0 +1,50 @@
+"""What a run needs of the machine, looked at before anything starts: memory, and folders to write to."""
+
+import errno
+import os
+from pathlib import Path
+
+from rockfrag.errors import InputError
+
+LEAST_MEMORY = 4 * 2**30
+"""Bytes of addresses that a process of a run may have to reserve; a small study's take half of them."""
+
+
+def check_memory() -> None:
+    """Refuse a limit of memory (``ulimit -v``) under which no process of a run could work.
+
+    Libraries of linear algebra wait for ever where they are refused memory while they are loaded.
+
+    Raises
+    ------
+    InputError
+        If processes may reserve less than :data:`LEAST_MEMORY`.
+    """
+    if os.name != "posix":
+        return
+    import resource
+
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
+        raise InputError(
+            f"a process may reserve {limit / 2**20:.0f} MiB of memory here, and a run needs "
+            f"{LEAST_MEMORY / 2**20:.0f}; raise the limit with 'ulimit -v {LEAST_MEMORY // 2**10}'."
+        )
+
+
+def check_folders(results: Path) -> None:
+    """See that results can be written where there are some already.
+
+    Parameters
+    ----------
+    results
+        Folder of a study's results; it need not be there.
+
+    Raises
+    ------
+    PermissionError
+        If the folder, or one in it, may not be written.
+    """
+    for folder in [results, *(path for path in results.rglob("*") if path.is_dir())]:
+        if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
