@@ -28,8 +28,8 @@ stand), the last two in plain Python that bodies use too; ``jit`` says how they 
 **Data** are records with named fields: BODY, STATE (``equations``), SERIES (``taylor``), CASE
 (``stack_case``), LANE (of every kind of lane, a row of numbers for each field), OUTCOME (``case``), SAMPLE,
 EVENT, SUMMARY (``record``); what belongs
-together is handed on as a named tuple: Ensemble and Motions (``case``), Worker (the memory of a thread),
-Shaking, Step, Ahead.
+together is handed on as a named tuple: Ensemble and Motions (``case``) and Worker (the memory of a thread), these
+by reference (``by_reference``); Shaking, Step, Ahead.
 
 **Types** are inferred by numba from records and tuples that annotations cannot name, so mypy is kept out of
 these modules (but not of ``jit``, ``elementary`` and ``geometry``); what Python hands to them is typed where it is

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockfrag.rocking.kernels.by_reference import by_reference
 from rockfrag.rocking.kernels.chatter import Ahead, block_dies_out
 from rockfrag.rocking.kernels.contact_states import HALF_TURN
 from rockfrag.rocking.kernels.elementary import acos, cos
@@ -90,6 +91,7 @@ LANE = np.dtype(
 """The lanes: a row of LANES numbers for each quantity."""
 
 
+@by_reference
 class Worker(NamedTuple):
     """Memory that a thread works in: ``worker()``.
 

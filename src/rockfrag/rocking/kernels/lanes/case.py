@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.rocking.kernels.by_reference import by_reference
 from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
 
 LANES = 16
@@ -32,6 +33,7 @@ OUTCOME = np.dtype(
 """What remains of a case; time is counted in samples."""
 
 
+@by_reference
 class Motions(NamedTuple):
     """All motions end to end, sampled as densely as the bodies need.
 
@@ -58,6 +60,7 @@ class Motions(NamedTuple):
     lasts: NDArray[np.int64]
 
 
+@by_reference
 class Ensemble(NamedTuple):
     """Bodies × motions × scales, the scale running fastest.
 

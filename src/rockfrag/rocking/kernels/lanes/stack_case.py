@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from rockfrag.rocking.kernels.by_reference import by_reference
 from rockfrag.rocking.kernels.chatter import (
     RESTORING,
     VERDICT,
@@ -84,6 +85,7 @@ CASE = np.dtype(
 """A case in flight; time is counted in samples."""
 
 
+@by_reference
 class Worker(NamedTuple):
     """Memory that a thread works in: ``worker()``.
 

@@ -1,0 +1,68 @@
+"""Named tuples that Python makes and kernels hand on by reference.
+
+Numba would hand on all numbers of a tuple, seven for each array, and take them apart and put them together in
+every kernel on the way; that is most of the code it would make, and time goes by what it makes.
+"""
+
+from typing import Any
+
+from numba import types
+from numba.core import cgutils
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.extending import (
+    NativeValue,
+    lower_getattr_generic,
+    models,
+    register_model,
+    typeof_impl,
+    unbox,
+)
+
+
+class Reference(types.Type):  # type: ignore[misc]
+    """Numba's type of a reference to a named tuple."""
+
+    def __init__(self, tuple_type: Any) -> None:
+        self.tuple_type = tuple_type
+        super().__init__(f"Reference({tuple_type})")
+
+
+def by_reference(named_tuple: Any) -> Any:
+    """Mark a class of named tuples whose values kernels get by reference."""
+
+    @typeof_impl.register(named_tuple)  # type: ignore[untyped-decorator]
+    def of_value(values: Any, context: Any) -> Reference:
+        return Reference(
+            types.BaseTuple.from_types([typeof_impl(one, context) for one in values], named_tuple)
+        )
+
+    return named_tuple
+
+
+@register_model(Reference)
+class _Pointer(models.PrimitiveModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, reference: Reference) -> None:
+        pointed = manager.lookup(reference.tuple_type).get_value_type()
+        super().__init__(manager, reference, pointed.as_pointer())
+
+
+@infer_getattr
+class _Fields(AttributeTemplate):  # type: ignore[misc]
+    key = Reference
+
+    def generic_resolve(self, reference: Reference, name: str) -> Any:
+        names = reference.tuple_type.fields
+        return reference.tuple_type.types[names.index(name)] if name in names else None
+
+
+@lower_getattr_generic(Reference)  # type: ignore[untyped-decorator]
+def _field(context: Any, builder: Any, reference: Reference, pointer: Any, name: str) -> Any:
+    at = reference.tuple_type.fields.index(name)
+    return builder.load(cgutils.gep_inbounds(builder, pointer, 0, at))
+
+
+@unbox(Reference)  # type: ignore[untyped-decorator]
+def _from_python(reference: Reference, value: Any, call: Any) -> Any:
+    given = call.unbox(reference.tuple_type, value)
+    place = cgutils.alloca_once_value(call.builder, given.value)
+    return NativeValue(place, cleanup=given.cleanup, is_error=given.is_error)
