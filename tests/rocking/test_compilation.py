@@ -4,6 +4,7 @@ import ast
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -11,10 +12,12 @@ from numba import TypingError
 from numba.core import lowering, typeinfer
 from numba.core.base import BaseContext
 from numba.core.types.functions import BaseFunction
+from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.kernels import jit
+from rockfrag.rocking.kernels.by_reference import by_reference
 from rockfrag.rocking.kernels.lanes.block import march_blocks
 from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
 
@@ -64,11 +67,32 @@ def test_compiling_leaves_numba_as_it_was_even_if_it_fails():
     assert places() == before
 
 
+@by_reference
+class Given(NamedTuple):
+    values: NDArray[np.float64]
+    count: int
+
+
+def test_a_tuple_by_reference_has_the_fields_of_the_tuple():
+    @jit.entry_kernel
+    def fills(given):
+        for i in range(given.count):
+            given.values[i] += i
+        return given.values[0], given.count
+
+    given = Given(np.full(3, 7.0), 2)
+    assert fills(given) == (7.0, 2)
+    assert given.values.tolist() == [7.0, 8.0, 7.0]
+    with pytest.raises(TypingError, match="Unknown attribute 'missing'"):
+        jit.entry_kernel(lambda given: given.missing)(given)
+
+
 UNKNOWN = """
 import numba, numpy as np
 numba.__version__ = "9.9.9"
 from rockfrag.rocking import Block, overturns
 from rockfrag.rocking.kernels import jit
+from rockfrag.rocking.kernels.by_reference import by_reference
 assert not jit.KNOWN
 found = overturns(Block(0.3, 1.2, 200.0), 6.0 * np.sin(np.arange(300) * 0.06), 0.01, [0.5, 1.0])
 print(found.peak_velocity.ravel().tolist())
