@@ -44,9 +44,10 @@ def until_the_eighth_event(response: Response) -> int:
     return int(np.searchsorted(response.time, times[7] if len(times) > 7 else math.inf))
 
 
-# the same seeds each time: some 3 of 10 000 have two impacts within a microsecond and leave up to 8e-8
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60, deadline=None)
 @given(seeds)
+# two contacts close within a tenth of a microsecond, soon after one has opened
+@example(2037)
 # a corner that slides the whole face along falls off its far edge
 @example(1358)
 def test_energy_is_what_the_ground_gave_less_what_impacts_and_friction_took(seed: int) -> None:

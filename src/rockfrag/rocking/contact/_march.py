@@ -1,6 +1,10 @@
 """Marching one body through one motion, event by event, with friction and flight."""
 
 import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rockfrag.rocking.contact._modes import (
     approach,
@@ -15,8 +19,11 @@ from rockfrag.rocking.contact._step import (
     FALL,
     FRICTION,
     GAP,
+    Stretch,
+    beginning,
     comes_near,
     first_failure,
+    ground_at,
     least_margin,
     margin_at,
     start_step,
@@ -41,68 +48,130 @@ CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
 """Kinds of events: the last is a corner that passes an edge while nothing else changes."""
 
 
+Array = NDArray[np.float64]
+
+
+class Shaking(NamedTuple):
+    """One motion, and in what steps it is marched through.
+
+    Attributes
+    ----------
+    horizontal, vertical : samples [m/s²], zero after the last; an empty ``vertical`` is zero throughout
+    dt : sampling interval [s]
+    scale : factor on the samples
+    substeps : steps per sample
+    free_samples : samples that the march goes on after the last one at most
+    """
+
+    horizontal: Array
+    vertical: Array
+    dt: float
+    scale: float
+    substeps: int
+    free_samples: int
+
+
+class Book(NamedTuple):
+    """What is written down on the way.
+
+    Attributes
+    ----------
+    history : (samples, HISTORY), or of no rows
+    events : (capacity, EVENT), or of no rows
+    """
+
+    history: Array
+    events: Array
+
+
+class Cases(NamedTuple):
+    """Bodies × motions × scales, the scale running fastest.
+
+    Attributes
+    ----------
+    bodies : (bodies,) BODY
+    starts : (bodies, 2, 6) coordinates and velocities
+    horizontal, vertical : all motions end to end; ``vertical`` may be empty
+    offsets : (motions + 1,) where each begins
+    dts : (motions,) sampling intervals [s]
+    factors : (motions, scales)
+    substeps, free_samples : (bodies, motions)
+    """
+
+    bodies: NDArray[Any]
+    starts: Array
+    horizontal: Array
+    vertical: Array
+    offsets: NDArray[np.int64]
+    dts: Array
+    factors: Array
+    substeps: NDArray[np.int64]
+    free_samples: NDArray[np.int64]
+
+
+class Instant(NamedTuple):
+    """A time [s], and the accelerations of the ground then [m/s²]."""
+
+    time: float
+    ah: float
+    av: float
+
+
 @entry_kernel
-def march_cases(
-    cases, bodies, horizontal, vertical, offsets, dts, factors, substeps, free_samples, closing,
-    starts, outcome, history, events, w,
-):  # fmt: skip
-    """March some ``cases`` of bodies × motions × scales, and keep their outcomes.
+def march_cases(numbers, cases, closing, book, w, outcome):
+    """March the cases of some ``numbers``, and keep their outcomes.
 
     Parameters
     ----------
-    bodies : (bodies,) BODY
-    horizontal, vertical : all motions end to end; ``offsets`` (motions + 1,) where each begins
-    factors : (motions, scales)
-    substeps, free_samples : (bodies, motions)
-    starts : (bodies, 2, 6)
-    outcome : (cases,) OUTCOME
-    history, events : of no rows
+    numbers : of the cases to march
+    cases : Cases
+    closing : as of :func:`march`
+    book : Book, of no rows
+    w : WORK
+    outcome : (all cases,) OUTCOME
     """
-    scales = factors.shape[1]
-    motions = factors.shape[0]
-    for case in cases:
-        b = case // (motions * scales)
-        m = case // scales - b * motions
-        scale = factors[m, case - (b * motions + m) * scales]
-        begin, end = offsets[m], offsets[m + 1]
-        up = vertical[begin:end] if vertical.size > 0 else vertical
-        _, _, fall = march(
-            bodies[b], horizontal[begin:end], up, dts[m], scale, substeps[b, m], free_samples[b, m],
-            starts[b], closing, history, events, w,
-        )  # fmt: skip
-        out = outcome[case]
+    motions, scales = cases.factors.shape
+    for number in numbers:
+        b = number // (motions * scales)
+        m = number // scales - b * motions
+        begin, end = cases.offsets[m], cases.offsets[m + 1]
+        up = cases.vertical[begin:end] if cases.vertical.size > 0 else cases.vertical
+        shaking = Shaking(
+            cases.horizontal[begin:end],
+            up,
+            cases.dts[m],
+            cases.factors[m, number % scales],
+            cases.substeps[b, m],
+            cases.free_samples[b, m],
+        )
+        _, _, fall = march(cases.bodies[b], shaking, cases.starts[b], closing, book, w)
+        out = outcome[number]
         out.fallen = w.fallen
         out.time = fall
         out.impacts = w.impacts
         out.paradoxes = w.paradoxes
         out.forced = w.forced
         out.flights = w.flights
-        for k in range(bodies[b].count):
+        for k in range(cases.bodies[b].count):
             out.peak[k] = w.peak[k]
             out.peak_speed[k] = w.peak_speed[k]
             out.peak_slip[k] = w.peak_slip[k]
             out.slid[k] = w.slid[k]
-            look_at(bodies[b], w, w.q)
-            out.slip[k] = slip(bodies[b], w, k)
+            look_at(cases.bodies[b], w, w.q)
+            out.slip[k] = slip(cases.bodies[b], w, k)
 
 
 @entry_kernel
-def march(
-    p, horizontal, vertical, dt, scale, substeps, free_samples, start, closing, history, events, w
-):
+def march(p, shaking, start, closing, book, w):
     """March one body through ``scale`` × the motion and on until it rests or has fallen.
 
     Parameters
     ----------
     p : BODY
-    horizontal, vertical : samples [m/s²], zero after the last; an empty ``vertical`` is zero throughout
-    dt : sampling interval [s]
-    substeps : steps per sample
-    free_samples : samples that the march goes on after the last one at most
+    shaking : Shaking
     start : (2, 6) coordinates and velocities
     closing : speed over √(g b) below which a contact stays closed after an impact
-    history : (samples, HISTORY), or of no rows
-    events : (capacity, EVENT), or of no rows
+    book : Book
     w : WORK
 
     Returns
@@ -110,31 +179,21 @@ def march(
     Samples done, events met, and the time of the fall [s] (NaN if none; ``w.fallen`` says which).
     """
     _begin(p, w, start)
-    n = horizontal.size
-    keeps = history.shape[0] > 0
-    ledger = keeps
-    up = vertical.size > 0
-    count = _handle(p, w, 0.0, _at(horizontal, 0, scale, n), _at(vertical, 0, scale, n) if up else 0.0,
-                    closing, True, False, events, 0)  # fmt: skip
+    dt, substeps = shaking.dt, shaking.substeps
+    n = shaking.horizontal.size
+    ledger = book.history.shape[0] > 0
+    now = _now(shaking, 0)
+    count = _handle(p, w, now, closing, True, False, book.events, 0)
     fresh = True  # the acceleration in w.a is not that of this state and mode
-    if keeps:
-        _keep(
-            p,
-            w,
-            0,
-            _at(horizontal, 0, scale, n),
-            _at(vertical, 0, scale, n) if up else 0.0,
-            history,
-        )
+    if ledger:
+        _keep(p, w, 0, now, book.history)
     known_rest = False
     done = 1
     fall = math.nan
     idle = 0
-    for i in range(n - 1 + free_samples):
-        left, right = _at(horizontal, i, scale, n), _at(horizontal, i + 1, scale, n)
-        low, high = 0.0, 0.0
-        if up:
-            low, high = _at(vertical, i, scale, n), _at(vertical, i + 1, scale, n)
+    for i in range(n - 1 + shaking.free_samples):
+        late = _now(shaking, i + 1)
+        sample = Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
         tau = 0.0
         met = 0
         while tau < 1.0:
@@ -142,13 +201,15 @@ def march(
                 if not known_rest:
                     _rest_margins(p, w)
                     known_rest = True
-                tau = _rest_ends(p, w, tau, left, right, low, high)
+                tau = _rest_ends(p, w, tau, now, late)
                 if tau > 1.0:
                     break
                 known_rest = False
                 fresh = True
-                count = _handle(p, w, (i + tau) * dt, left + tau * (right - left), low + tau * (high - low),
-                                closing, True, True, events, count)  # fmt: skip
+                ah, av = ground_at(sample, tau)
+                count = _handle(
+                    p, w, Instant((i + tau) * dt, ah, av), closing, True, True, book.events, count
+                )
                 met += 1
                 if w.resting == 1:
                     # it failed by rounding only
@@ -156,20 +217,19 @@ def march(
                 continue
             known_rest = False
             step = (math.floor(tau * substeps + 1e-9) + 1.0) / substeps - tau
-            h = step * dt
-            ah, av = left + tau * (right - left), low + tau * (high - low)
-            rise_h, rise_v = step * (right - left), step * (high - low)
+            ah, av = ground_at(sample, tau)
+            stretch = Stretch(step * dt, ah, av, step * sample.rise_h, step * sample.rise_v)
             if fresh:
                 look_at(p, w, w.q)
                 solve(p, w, w.q, w.v, ah, av, False)
                 for d in range(3 * p.count):
                     w.a[d] = w.out[d]
             start_step(p, w)
-            work, rubbed = take_step(p, w, h, ah, av, rise_h, rise_v, ledger)
+            work, rubbed = take_step(p, w, stretch, ledger)
             at_end = least_margin(p, w, w.q1, w.v1)
             when = 2.0
             if idle <= MOST_IDLE:
-                when = _event_in_step(p, w, at_end, h, ah, av, rise_h, rise_v)
+                when = _event_in_step(p, w, at_end, stretch)
             else:
                 # events that do not let time go on: leave them behind
                 idle = 0
@@ -185,11 +245,9 @@ def march(
                 if 1.0 - tau < 1e-12:
                     tau = 1.0
             else:
-                margin_at(p, w, when, h, ah, av, rise_h, rise_v)  # sets what fails
+                margin_at(p, w, when, stretch)  # sets what fails
                 if when > 0.0:
-                    work, rubbed = take_step(
-                        p, w, when * h, ah, av, when * rise_h, when * rise_v, ledger
-                    )
+                    work, rubbed = take_step(p, w, beginning(stretch, when), ledger)
                     for d in range(3 * p.count):
                         w.q[d] = w.q1[d]
                         w.v[d] = w.v1[d]
@@ -206,8 +264,10 @@ def march(
                 coarser = closing * 10.0 ** (met // MOST_EVENTS)
                 if met >= MOST_EVENTS:
                     w.forced += 1
-                count = _handle(p, w, (i + tau) * dt, left + tau * (right - left), low + tau * (high - low),
-                                coarser, False, False, events, count)  # fmt: skip
+                ah, av = ground_at(sample, tau)
+                count = _handle(
+                    p, w, Instant((i + tau) * dt, ah, av), coarser, False, False, book.events, count
+                )
                 fresh = True
                 if met > 10 * MOST_EVENTS:
                     tau = 1.0
@@ -218,8 +278,9 @@ def march(
                 fall = (i + tau) * dt
                 break
         done = i + 2
-        if keeps:
-            _keep(p, w, i + 1, right, high, history)
+        now = late
+        if ledger:
+            _keep(p, w, i + 1, now, book.history)
         if w.fallen > 0:
             break
         if i >= n - 1 and w.resting == 1:
@@ -228,8 +289,14 @@ def march(
 
 
 @kernel
-def _at(samples, i, scale, n):
-    return samples[i] * scale if i < n else 0.0
+def _now(shaking, i):
+    """Sample i of a motion."""
+    ah, av = 0.0, 0.0
+    if i < shaking.horizontal.size:
+        ah = shaking.horizontal[i] * shaking.scale
+        if shaking.vertical.size > 0:
+            av = shaking.vertical[i] * shaking.scale
+    return Instant(i * shaking.dt, ah, av)
 
 
 @kernel
@@ -267,7 +334,7 @@ def _track(p, w):
 
 
 @kernel
-def _event_in_step(p, w, at_end, h, ah, av, rise_h, rise_v):
+def _event_in_step(p, w, at_end, stretch):
     """Fraction of the step at which something fails first; 2.0 if nothing does."""
     high = 2.0
     at_high = at_end
@@ -279,21 +346,21 @@ def _event_in_step(p, w, at_end, h, ah, av, rise_h, rise_v):
             if not near and quarter != 2:
                 continue
             tau = 0.25 * quarter
-            value = margin_at(p, w, tau, h, ah, av, rise_h, rise_v)
+            value = margin_at(p, w, tau, stretch)
             if value < 0.0:
                 high = tau
                 at_high = value
                 break
     if high > 1.0:
         return 2.0
-    at_low = margin_at(p, w, 0.0, h, ah, av, rise_h, rise_v)
+    at_low = margin_at(p, w, 0.0, stretch)
     if at_low < 0.0:
         return 0.0
-    return first_failure(p, w, 0.0, at_low, high, at_high, h, ah, av, rise_h, rise_v)
+    return first_failure(p, w, at_low, high, at_high, stretch)
 
 
 @kernel
-def _handle(p, w, time, ah, av, closing, all_ends, exclude, events, count):
+def _handle(p, w, now, closing, all_ends, exclude, events, count):
     """Change the mode at an event, whose failing channels are in ``w.fails``.
 
     ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
@@ -314,7 +381,7 @@ def _handle(p, w, time, ah, av, closing, all_ends, exclude, events, count):
         for k in range(p.count):
             if w.fails[k, FALL] == 1:
                 w.fallen = k + 1
-                return _note(p, w, time, FALLEN, events, count)
+                return _note(p, w, now.time, FALLEN, events, count)
     look_at(p, w, w.q)
     for k in range(p.count):
         leaves0, leaves1 = 0, 0
@@ -359,22 +426,22 @@ def _handle(p, w, time, ah, av, closing, all_ends, exclude, events, count):
             if w.touching[k, end] == 1 and approach(p, w, k, end) < -1e-13 * p.speed:
                 hit = True
     if hit:
-        strike(p, w, ah, av, closing * p.speed, False)
+        strike(p, w, now.ah, now.av, closing * p.speed, False)
         _touch_closed(p, w)
         kind = IMPACT
         exclude = False
-    if not settle(p, w, ah, av, exclude):
+    if not settle(p, w, now.ah, now.av, exclude):
         w.paradoxes += 1
-        strike(p, w, ah, av, closing * p.speed, True)
+        strike(p, w, now.ah, now.av, closing * p.speed, True)
         _touch_closed(p, w)
-        settle(p, w, ah, av, False)
+        settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     for k in range(p.count):
         if w.slides[k] != 0 and w.old_slides[k] == 0:
             w.slips += 1
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
             w.flights += 1
-    return _note(p, w, time, kind, events, count)
+    return _note(p, w, now.time, kind, events, count)
 
 
 @kernel
@@ -424,15 +491,15 @@ def _rest_margins(p, w):
 
 
 @kernel
-def _rest_ends(p, w, tau, left, right, low, high):
+def _rest_ends(p, w, tau, early, late):
     """Fraction of the sample interval, from ``tau`` on, at which rest ends; 2.0 if it lasts."""
     when = 2.0
     for row in range(4 * p.count):
-        late = w.rest[row, 0] + w.rest[row, 1] * right + w.rest[row, 2] * high
-        if late < 0.0:
-            slope = w.rest[row, 1] * (right - left) + w.rest[row, 2] * (high - low)
+        margin = w.rest[row, 0] + w.rest[row, 1] * late.ah + w.rest[row, 2] * late.av
+        if margin < 0.0:
+            slope = w.rest[row, 1] * (late.ah - early.ah) + w.rest[row, 2] * (late.av - early.av)
             if slope < 0.0:
-                when = min(when, max(tau, 1.0 - late / slope))
+                when = min(when, max(tau, 1.0 - margin / slope))
     return when
 
 
@@ -489,9 +556,9 @@ def slip(p, w, k):
 
 
 @kernel
-def _keep(p, w, i, ah, av, history):
+def _keep(p, w, i, now, history):
     look_at(p, w, w.q)
-    solve(p, w, w.q, w.v, ah, av, False)
+    solve(p, w, w.q, w.v, now.ah, now.av, False)
     for d in range(3 * p.count):
         history[i, d] = w.q[d]
         history[i, 6 + d] = w.v[d]

@@ -1,6 +1,7 @@
 """One step between events, and the first event in it."""
 
 import math
+from typing import NamedTuple
 
 from rockfrag.rocking.contact._solve import AT_EDGE, end_of, look_at, rate, solve
 from rockfrag.rocking.kernels.jit import kernel
@@ -9,10 +10,43 @@ SLACK, TOUCH = 1e-12, 1e-13
 """Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;
 speeds over √(g b) and lengths over b [-]."""
 
-GAP, PRESS, EDGE = 0, 0, 2
+MOST_SECANTS = 20
+"""Tries of regula falsi before an interval is halved; a smooth margin takes eight."""
+
+GAP, EDGE = 0, 2
 """Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
 FRICTION, FALL = 4, 5
 """... stick or slip, and the fall of the body above it."""
+
+
+class Stretch(NamedTuple):
+    """A stretch of time over which the accelerations of the ground are linear.
+
+    Attributes
+    ----------
+    length : [s]
+    ah, av : horizontal and vertical acceleration at its beginning [m/s²]
+    rise_h, rise_v : by which they rise over it
+    """
+
+    length: float
+    ah: float
+    av: float
+    rise_h: float
+    rise_v: float
+
+
+@kernel
+def beginning(stretch, part):
+    """First ``part`` of a stretch, a fraction of it."""
+    rise_h, rise_v = part * stretch.rise_h, part * stretch.rise_v
+    return Stretch(part * stretch.length, stretch.ah, stretch.av, rise_h, rise_v)
+
+
+@kernel
+def ground_at(stretch, part):
+    """Accelerations of the ground at a fraction of a stretch."""
+    return stretch.ah + part * stretch.rise_h, stretch.av + part * stretch.rise_v
 
 
 @kernel
@@ -25,12 +59,12 @@ def start_step(p, w):
 
 
 @kernel
-def take_step(p, w, h, ah, av, rise_h, rise_v, ledger):
-    """Go on by ``h`` [s] from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
+def take_step(p, w, stretch, ledger):
+    """Go on by a stretch of time from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
 
-    The ground's accelerations rise from ``ah``, ``av`` by ``rise_h``, ``rise_v``.  With ``ledger`` the work of the
-    ground and of friction is added up.
+    With ``ledger`` the work of the ground and of friction is added up.
     """
+    h = stretch.length
     size = 3 * p.count
     for d in range(size):
         w.kv[0, d] = w.v0[d]
@@ -38,8 +72,8 @@ def take_step(p, w, h, ah, av, rise_h, rise_v, ledger):
     work, rubbed = 0.0, 0.0
     if ledger:
         look_at(p, w, w.q0)
-        solve(p, w, w.q0, w.v0, ah, av, False)
-        one, two = _powers(p, w, w.q0, w.v0, ah, av)
+        solve(p, w, w.q0, w.v0, stretch.ah, stretch.av, False)
+        one, two = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
         work += 35.0 / 384.0 * one
         rubbed += 35.0 / 384.0 * two
     for stage in range(1, 7):
@@ -97,12 +131,13 @@ def take_step(p, w, h, ah, av, rise_h, rise_v, ledger):
                     + b5 * w.kv[5, d]
                 )  # fmt: skip
         look_at(p, w, w.q1)
-        solve(p, w, w.q1, w.v1, ah + t * rise_h, av + t * rise_v, False)
+        ah, av = ground_at(stretch, t)
+        solve(p, w, w.q1, w.v1, ah, av, False)
         for d in range(size):
             w.kv[stage, d] = w.v1[d]
             w.ka[stage, d] = w.out[d]
         if ledger and 2 <= stage <= 5:
-            one, two = _powers(p, w, w.q1, w.v1, ah + t * rise_h, av + t * rise_v)
+            one, two = _powers(p, w, w.q1, w.v1, ah, av)
             weight = 500.0 / 1113.0
             if stage == 3:
                 weight = 125.0 / 192.0
@@ -220,26 +255,35 @@ def interpolate(p, w, tau, h):
 
 
 @kernel
-def margin_at(p, w, tau, h, ah, av, rise_h, rise_v):
+def margin_at(p, w, tau, stretch):
     """Least margin at the fraction ``tau`` of the step."""
-    interpolate(p, w, tau, h)
+    interpolate(p, w, tau, stretch.length)
     look_at(p, w, w.q)
-    solve(p, w, w.q, w.v, ah + tau * rise_h, av + tau * rise_v, False)
+    ah, av = ground_at(stretch, tau)
+    solve(p, w, w.q, w.v, ah, av, False)
     return least_margin(p, w, w.q, w.v)
 
 
 @kernel
-def first_failure(p, w, low, at_low, high, at_high, h, ah, av, rise_h, rise_v):
-    """Fraction of the step just after the least margin has become negative, by regula falsi (Illinois)."""
+def first_failure(p, w, at_low, high, at_high, stretch):
+    """Fraction of the step just after the least margin has become negative, by regula falsi (Illinois).
+
+    It is ``at_low`` at the beginning and ``at_high``, which is negative, at the fraction ``high``.
+    A margin that starts at its slack and bends upwards before it falls would hold that up for hundreds of
+    tries, so after ``MOST_SECANTS`` the rest is halved.
+    """
+    low = 0.0
     moved = 0
-    for _ in range(100):
-        if high - low <= 1e-12:
-            break
-        tau = high - at_high * (high - low) / (at_high - at_low)
+    tries = 0
+    while high - low > 1e-12:
+        tau = 0.5 * (low + high)
+        if tries < MOST_SECANTS:
+            tau = high - at_high * (high - low) / (at_high - at_low)
+        tries += 1
         width = high - low
         tau = min(max(tau, low + 1e-3 * width), high - 1e-3 * width)
         tau = min(max(tau, low + 4e-13), high - 4e-13) if width > 1e-12 else 0.5 * (low + high)
-        value = margin_at(p, w, tau, h, ah, av, rise_h, rise_v)
+        value = margin_at(p, w, tau, stretch)
         if value >= 0.0:
             low = tau
             at_low = value

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.contact._body import BODY, OUTCOME, contact_body, posed, working_memory
-from rockfrag.rocking.contact._march import EVENT, HISTORY, march_cases
+from rockfrag.rocking.contact._march import EVENT, HISTORY, Book, Cases, march_cases
 from rockfrag.rocking.contact.friction import Friction
 from rockfrag.rocking.inputs import free_samples, step_count
 from rockfrag.rocking.kernels.jit import compiling_alone
@@ -78,22 +78,27 @@ def contact_outcomes(
     for i, (body, friction, *start) in enumerate(zip(*standing, strict=True)):
         table[i] = contact_body(body, friction, g)
         starts[i] = posed(table[i], *start)
-    steps = np.array([step_count(body, dts, g, step) for body in bodies])
-    free = np.array([free_samples(body, dts, g) for body in bodies])
+    cases = Cases(
+        bodies=table,
+        starts=starts,
+        horizontal=np.concatenate(moving.horizontal),
+        vertical=np.concatenate(moving.vertical) if moving.vertical else np.zeros(0),
+        offsets=np.concatenate([[0], np.cumsum([v.size for v in moving.horizontal])]),
+        dts=dts,
+        factors=moving.factors,
+        substeps=np.array([step_count(body, dts, g, step) for body in bodies]),
+        free_samples=np.array([free_samples(body, dts, g) for body in bodies]),
+    )
     outcome = np.zeros(wanted.size, OUTCOME)
-    cases = np.flatnonzero(wanted)
-    offsets = np.concatenate([[0], np.cumsum([v.size for v in moving.horizontal])])
-    up = np.concatenate(moving.vertical) if moving.vertical else np.zeros(0)
-    arguments: Any = (
-        table, np.concatenate(moving.horizontal), up, offsets, dts, moving.factors, steps, free,
-        COARSE_CLOSING, starts, outcome, np.zeros((0, HISTORY)), np.zeros((0, EVENT)),
-    )  # fmt: skip
+    numbers = np.flatnonzero(wanted)
+    book = Book(np.zeros((0, HISTORY)), np.zeros((0, EVENT)))
+
+    def work(first: int, last: int) -> None:
+        march_cases(numbers[first:last], cases, COARSE_CLOSING, book, working_memory(), outcome)
+
     with compiling_alone(march_cases):
-        march_cases(cases[:0], *arguments, working_memory())
-
-    def work(first: int) -> None:
-        march_cases(cases[first : first + CHUNK], *arguments, working_memory())
-
+        work(0, 0)
     with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(work, range(0, cases.size, CHUNK)))
+        firsts = range(0, numbers.size, CHUNK)
+        list(pool.map(work, firsts, [first + CHUNK for first in firsts]))
     return outcome.reshape(wanted.shape)

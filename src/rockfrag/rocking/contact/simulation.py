@@ -19,6 +19,8 @@ from rockfrag.rocking.contact._march import (
     IMPACT,
     PARADOX,
     PASSING,
+    Book,
+    Shaking,
     march,
 )
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
@@ -85,15 +87,14 @@ def simulate_with_friction(
     blocks = int(p["count"])
     start = posed(p, checked_start(body, theta0, "theta0"), checked_start(body, omega0, "omega0"))
     substeps, free = int(step_count(body, interval, g, step)), int(free_samples(body, interval, g))
+    shaking = Shaking(values, up, interval, 1.0, substeps, free)
     history = np.zeros((values.size + free, HISTORY))
     work = working_memory()
     capacity = 4096
     while True:
         events = np.zeros((capacity, EVENT))
         with compiling_alone(march):
-            done, count, fall = march(
-                p, values, up, interval, 1.0, substeps, free, start, closing, history, events, work
-            )
+            done, count, fall = march(p, shaking, start, closing, Book(history, events), work)
         if count <= capacity:
             break
         capacity = count
