@@ -12,6 +12,7 @@ from rockfrag.report.findings import (
 )
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results
 from rockfrag.report.wording import counted, listed, of_all, sentence
+from rockfrag.rocking.ensemble import LIGHT
 
 FEW = 10
 """Of fewer earthquakes than this the intervals rest on little."""
@@ -142,6 +143,14 @@ def could_overturn(results: Results) -> list[str]:
             if slides
             else f"Sliding, on surfaces with less friction than dry stone ({FRICTION:g}), which holds every test."
         )
+    if results.study.vertical and not results.study.slides:
+        lightest = results.verdicts["lightest"]
+        light = int((lightest < LIGHT).sum())
+        if light:
+            words.append(
+                f"Flight: in {of_all(light, len(lightest), 'case')} the ground takes more than half of all weight "
+                "away, where bodies may leave it; the key friction lets them fly."
+            )
     events = results.study.catalogue["event"].nunique()
     if events < FEW:
         words.append(

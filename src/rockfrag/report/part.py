@@ -144,6 +144,8 @@ class Results:
     def verdicts(self) -> pd.DataFrame:
         """Verdicts of every configuration at every amplitude: the sweeps without their responses."""
         columns = ["configuration", "object", "motion", "amplitude_g", "overturned"]
+        if self.study.vertical and not self.study.slides:
+            columns.append("lightest")
         paths = [self.folder / "sweep" / f"{one.slug}.parquet" for one in self.study.configurations]
         parts = [pd.read_parquet(path, columns=columns) for path in paths]
         return pd.concat(parts, ignore_index=True)

@@ -1,5 +1,6 @@
 """Every configuration under every motion at every amplitude: what all statistics start from."""
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -32,6 +33,8 @@ BATCH = 12
 
 def run(job: Job[Study]) -> Results:
     """Yield the sweep of every configuration."""
+    from rockfrag.rocking.ensemble import LIGHT
+
     motions = job.motions("motions/floors")
     ups = job.motions("motions/vertical") if job.study.vertical else None
     histories, recorded = 0, []
@@ -48,6 +51,14 @@ def run(job: Job[Study]) -> Results:
         ]
         table = pd.concat(parts, ignore_index=True)
         yield f"sweep/{configuration.slug}", table
+        if ups is not None and configuration.friction is None:
+            light = int((table["lightest"] < LIGHT).sum())
+            job.log.info(
+                "%s: the ground takes more than half of all weight in %d of %d histories",
+                configuration.name,
+                light,
+                len(table),
+            )
         recorded.append(as_recorded(configuration, motions, job.threads, ups))
         histories += len(table)
         job.log.info("%s: %d histories so far", configuration.name, histories)
@@ -82,7 +93,8 @@ def sweep(
     One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
     ``motion``, ``event``, ``floor``, ``amplitude_g``, ``overturned``, ``overturned_body``,
     ``overturning_time_s``, ``peak_rotation_statue``, ``peak_rotation_pedestal`` (|θ| over the
-    critical angle), ``impacts``, ``closest_approach`` (small where the verdict nearly flipped); with friction
+    critical angle), ``impacts``, ``closest_approach`` (small where the verdict nearly flipped); with vertical
+    motion and without friction also ``lightest``, the least weight over that on a ground at rest; with friction
     also ``slip_ground_m``, ``slip_interface_m`` (at the end), ``peak_slip_ground_m``, ``peak_slip_interface_m``,
     ``flights`` and ``overturned_without_sliding``, the verdict if nothing could slide or fly.
     """
@@ -113,7 +125,7 @@ def sweep(
         }
     )
     if configuration.friction is None:
-        return table
+        return table if vertical is None else table.assign(lightest=result.lightest[0].ravel())
     rough = _shaken(replace(configuration, friction=None), motions, scales, threads, vertical)
     return table.assign(
         **{f"{name}_m": getattr(result, name)[0].ravel() for name in SLIPS},
@@ -130,18 +142,21 @@ def _shaken(
     vertical: Sequence[Motion] | None,
 ) -> "EnsembleResult":
     """Outcomes of one configuration under every motion at every scale."""
-    from rockfrag.rocking import overturns
+    from rockfrag.rocking.ensemble import LightBodies, overturns
 
-    return overturns(
-        [configuration.body],
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        scales,
-        restitution=[configuration.restitution],
-        friction=None if configuration.friction is None else [configuration.friction],
-        vertical=None if vertical is None else [motion.acceleration for motion in vertical],
-        threads=threads,
-    )
+    with warnings.catch_warnings():
+        # told of in the column lightest and in the report
+        warnings.simplefilter("ignore", LightBodies)
+        return overturns(
+            [configuration.body],
+            [motion.acceleration for motion in motions],
+            [motion.dt for motion in motions],
+            scales,
+            restitution=[configuration.restitution],
+            friction=None if configuration.friction is None else [configuration.friction],
+            vertical=None if vertical is None else [motion.acceleration for motion in vertical],
+            threads=threads,
+        )
 
 
 def as_recorded(

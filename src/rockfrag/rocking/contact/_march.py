@@ -402,6 +402,10 @@ def _handle(p, w, now, closing, all_ends, exclude, events, count):
                     exclude = True
                 else:
                     w.slides[k] = 0
+                    # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
+                    solve(p, w, w.q, w.v, now.ah, now.av, True, False)
+                    for d in range(3 * p.count):
+                        w.v[d] = w.out[d]
                     project(p, w)
                     w.resting = 0
         for end in range(2):
