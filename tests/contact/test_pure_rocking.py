@@ -80,8 +80,8 @@ def test_where_the_ground_takes_weight_away_pure_rocking_says_that_it_may_be_wro
     other = pure.overturned != free.overturned
     assert other.any() and light[other].all()
     assert 0.2 < light.mean() < 0.8
-    # a ground that takes all weight away is left, unless the body has fallen before
-    assert (free.flights[(pure.lightest <= 0) & ~free.overturned] > 0).all()
+    # a ground that takes all weight away is left, but by what its own rocking presses on just then
+    assert (free.flights[pure.lightest <= 0] > 0).mean() > 0.8
     assert (free.lightest == pure.lightest).all()
 
 

@@ -77,6 +77,7 @@ def cases(count):
         yield body, motion, up
 
 
+@pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
 def test_ensembles_and_histories_agree_under_vertical_motion():
     differ = 0
     for body, motion, up in cases(60):

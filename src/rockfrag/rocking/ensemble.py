@@ -233,7 +233,7 @@ def overturns(
     Warns
     -----
     LightBodies
-        If the ground takes more than half of its weight from a body, without ``friction``.
+        If the ground takes more than half of its weight from a body, with neither ``friction`` nor ``forces``.
 
     Notes
     -----
@@ -262,7 +262,7 @@ def overturns(
         return result
     if up:
         result.lightest[:] = lightest_of(up, factors, g)
-        if friction is None:
+        if friction is None and not forces:
             warn_of_weight(result.lightest)
     alone = checked_switch("linear", linear) or checked_switch("forces", forces)
     if alone or theta0 is not None or omega0 is not None:
