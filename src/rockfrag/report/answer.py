@@ -12,7 +12,6 @@ from rockfrag.report.findings import (
 )
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results
 from rockfrag.report.wording import counted, listed, of_all, sentence
-from rockfrag.rocking.ensemble import LIGHT
 
 FEW = 10
 """Of fewer earthquakes than this the intervals rest on little."""
@@ -144,6 +143,8 @@ def could_overturn(results: Results) -> list[str]:
             else f"Sliding, on surfaces with less friction than dry stone ({FRICTION:g}), which holds every test."
         )
     if results.study.vertical and not results.study.slides:
+        from rockfrag.rocking.ensemble import LIGHT
+
         lightest = results.verdicts["lightest"]
         light = int((lightest < LIGHT).sum())
         if light:

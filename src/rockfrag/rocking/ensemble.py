@@ -261,9 +261,9 @@ def overturns(
     if not result.overturned.size:
         return result
     if up:
-        result.lightest[:] = lightest_of(up, factors, g)
+        result.lightest[:] = _lightest_of(up, factors, g)
         if friction is None and not forces:
-            warn_of_weight(result.lightest)
+            _warn_of_weight(result.lightest)
     alone = checked_switch("linear", linear) or checked_switch("forces", forces)
     if alone or theta0 is not None or omega0 is not None:
         starts = [
@@ -292,13 +292,13 @@ class LightBodies(UserWarning):
     """Bodies are nearly weightless at times, and pure rocking holds them on the ground."""
 
 
-def lightest_of(up: Sequence[Array], factors: Array, g: float) -> Array:
+def _lightest_of(up: Sequence[Array], factors: Array, g: float) -> Array:
     """Least weight under each vertical motion at each scale, over that on a ground at rest, (motions, scales)."""
     ends = np.array([(motion.min(initial=0.0), motion.max(initial=0.0)) for motion in up])
     return np.asarray(1.0 + np.min(ends[:, np.newaxis, :] * factors[..., np.newaxis], axis=2) / g)
 
 
-def warn_of_weight(lightest: Array) -> None:
+def _warn_of_weight(lightest: Array) -> None:
     """Warn of cases in which bodies may leave the ground."""
     light, none = int((lightest < LIGHT).sum()), int((lightest <= 0).sum())
     if light:
