@@ -72,6 +72,68 @@ def test_nrml_gives_back_median_and_dispersion_in_its_own_units(tmp_path):
         assert mean / np.exp(found**2 / 2) == pytest.approx(theta)
 
 
+def states_of_one() -> pd.DataFrame:
+    """Rocking at exactly 0.25 g, and overturning whose lognormal curve begins below it."""
+    one = {"configuration": "urn", "im": "PGA", "unit": "g"}
+    return pd.DataFrame(
+        [
+            {**one, "state": "rocks", "theta": 0.25, "beta": 1e-9},
+            {**one, "state": "overturned", "theta": 0.4, "beta": 0.4},
+        ]
+    )
+
+
+def levels_of(path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
+    (function,) = ElementTree.parse(path).getroot().findall(".//n:fragilityFunction", space)
+    assert function.get("format") == "discrete"
+    levels = np.array(function.find("n:imls", space).text.split(), dtype=float)
+    return levels, {
+        one.get("ls"): np.array(one.text.split(), dtype=float)
+        for one in function.findall("n:poes", space)
+    }
+
+
+def test_nothing_that_does_not_rock_overturns_in_nrml(tmp_path):
+    """Two lognormal curves said so: 12 % overturned at the amplitude below which nothing rocks."""
+    curves = states_of_one()
+    assert stats.norm.cdf(np.log(0.25 / 0.4) / 0.4) > 0.1
+    write_nrml(curves, tmp_path / "model.xml")
+    levels, chance = levels_of(tmp_path / "model.xml")
+    assert (chance["overturned"] <= chance["rocks"]).all()
+    assert (chance["overturned"][levels < 0.24] < 1e-6).all()
+    high = levels > 0.26
+    lognormal = stats.norm.cdf(np.log(levels[high] / 0.4) / 0.4)
+    assert chance["overturned"][high] == pytest.approx(lognormal, abs=1e-9)
+    assert (np.diff(levels) > 0).all()
+
+
+def test_rejected_curve_is_exported_as_its_points(tmp_path):
+    points = pd.DataFrame(
+        {
+            "configuration": "urn",
+            "state": "overturned",
+            "x": [0.3, 0.5, 0.6, 0.8],
+            "share": [0.0, 0.3, 0.4, 0.9],
+        }
+    )
+    write_nrml(states_of_one(), tmp_path / "model.xml", shares=points)
+    levels, chance = levels_of(tmp_path / "model.xml")
+    found = np.interp(points["x"], levels, chance["overturned"])
+    assert found == pytest.approx(points["share"].to_numpy(), abs=1e-9)
+    csv, story = tmp_path / "damage.csv", tmp_path / "damage.json"
+    write_simcenter(states_of_one(), csv, story, shares=points)
+    row = pd.read_csv(csv).iloc[0]
+    assert (row["LS1-Family"], row["LS2-Family"]) == ("lognormal", "multilinear_CDF")
+    at, share = (np.array(part.split(","), dtype=float) for part in row["LS2-Theta_0"].split("|"))
+    # nothing is known beyond the last level, and a distribution must end somewhere
+    assert at.tolist() == [0.3, 0.5, 0.6, 0.8, 1.6] and share[-1] == 1.0
+    assert (
+        "Beyond 0.8 g nothing was tried"
+        in json.loads(story.read_text())["ROCKFRAG.urn"]["Comments"]
+    )
+
+
 def test_nrml_refuses_what_openquake_cannot_compute(tmp_path):
     path = tmp_path / "model.xml"
     with pytest.raises(InputError, match="Arias intensity is no intensity measure"):

@@ -43,7 +43,7 @@ def curves():
                 for a in np.geomspace(0.1, 2.0, 60)
             ]
     sweep, measures = pd.DataFrame(rows), pd.DataFrame(measures)
-    return floor_curves(sweep, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)
+    return floor_curves(sweep, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)[0]
 
 
 def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves):
@@ -61,6 +61,43 @@ def test_rocking_starts_at_b_over_h_and_varies_in_other_measures(curves):
     assert rocks.loc["pga_g", "theta"] == pytest.approx(0.2 / 0.8)
     assert rocks.loc["pgv_cm_s", "theta"] == pytest.approx(60 * 0.25, rel=0.2)
     assert 0.05 < rocks.loc["pgv_cm_s", "beta"] < 0.5
+
+
+def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path):
+    """A slip that one sees, or a fall, counts; a hair's breadth at an impact does not."""
+    rng = np.random.default_rng(5)
+    rows = []
+    for k in range(8):
+        slides, falls = 0.25 * np.exp(0.1 * rng.normal()), 0.6 * np.exp(0.1 * rng.normal())
+        rows += [
+            {
+                "configuration": "statue",
+                "motion": f"m{k}",
+                "event": f"e{k}",
+                "floor": "hall",
+                "amplitude_g": a,
+                "overturned": a > falls,
+                "peak_slip_ground_m": 0.0004 if a < slides else 0.02,
+                "peak_slip_interface_m": 0.0,
+            }
+            for a in np.geomspace(0.1, 2.0, 60)
+        ]
+    names = ["pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g"]
+    measures = pd.DataFrame({"name": [f"m{k}" for k in range(8)]} | dict.fromkeys(names, 0.3))
+    curves, _ = floor_curves(
+        pd.DataFrame(rows), measures, FLOORS, {"statue": STATUE}, "abc", 0.90, rocks_at_once=False
+    )
+    peak = curves[curves["measure"] == "pga_g"].set_index("state")
+    assert set(peak.index) == {"slides", "overturned"}
+    assert peak.loc["slides", "theta"] == pytest.approx(0.25, rel=0.15)
+    assert peak.loc["overturned", "theta"] == pytest.approx(0.6, rel=0.15)
+    written = export_curves(curves, tmp_path)
+    assert "fragility_pga.xml" in written
+    assert (
+        "<limitStates>slides overturned</limitStates>"
+        in (tmp_path / "fragility_pga.xml").read_text()
+    )
+    assert "Slides and may be displaced" in (tmp_path / "fragility_pga.json").read_text()
 
 
 def test_files_are_one_per_floor_and_measure(curves, tmp_path):

@@ -6,16 +6,14 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy import optimize
 from statsmodels.stats.diagnostic import lilliefors
 
+from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Outcomes
-
-REJECTED = 0.05
-"""A curve is said not to describe its data below this p value [-]."""
+from rockfrag.fragility.shares import Shares, shares_of_capacities, shares_of_verdicts
 
 TAILS = (
     "The limits of β hold for lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
@@ -43,9 +41,8 @@ class Checks:
         Motion (event) without which θ changes most; empty where there is none.
     influence
         θ without it over θ [-].
-    theta_isotonic, beta_isotonic
-        Median, and half the logarithmic distance from the 16 % to the 84 % point, of the never-falling
-        share closest to the verdicts; NaN where the data do not reach them.
+    shares
+        The curve without a form, to use where the fitted one is rejected.
     warnings
         Sentences.
     goodness
@@ -57,10 +54,14 @@ class Checks:
     largest_residual: float
     influential: str
     influence: float
-    theta_isotonic: float
-    beta_isotonic: float
+    shares: Shares
     warnings: tuple[str, ...]
     goodness: GoodnessOfFit | None = None
+
+    @property
+    def rejected(self) -> bool:
+        """Whether the fitted curve does not describe its data."""
+        return self.p_fit < REJECTED
 
 
 def checks_of_verdicts(
@@ -81,12 +82,9 @@ def checks_of_verdicts(
         p_fit, test = found.p_value, f"deviance, parametric bootstrap of {found.dependence}"
         apart = (found.calibration["observed"] - found.calibration["predicted"]).to_numpy()
         residual = float(apart[np.abs(apart).argmax()])
-    values, level = np.unique(outcomes.log_im, return_inverse=True)
-    trials = np.bincount(level, outcomes.trials)
-    share = np.bincount(level, outcomes.overturned) / trials
-    rising = optimize.isotonic_regression(share, weights=trials).x
     groups = outcomes.motion if interval.over == "motion" else outcomes.event
-    checks = _checks(fit, interval, groups, (p_fit, test, residual), _points(values, rising))
+    shares = shares_of_verdicts(outcomes, groups, interval.level)
+    checks = _checks(fit, interval, groups, (p_fit, test, residual), shares)
     return replace(checks, goodness=found)
 
 
@@ -113,19 +111,9 @@ def checks_of_brackets(
         residual = float(apart[np.abs(apart).argmax()])
     # a motion that never overturned counts above all others
     middles = np.where(np.isfinite(upper), 0.5 * np.log(np.maximum(lower, 1e-300) * upper), np.inf)
-    ordered = np.sort(np.where(lower > 0, middles, -np.inf))
-    points = _points(ordered, (np.arange(ordered.size) + 0.5) / ordered.size)
-    return _checks(fit, interval, groups, (p_fit, test, residual), points)
-
-
-def _points(log_im: Floats, share: Floats) -> tuple[float, float]:
-    """Median and half the distance from 16 to 84 % of a rising share."""
-    found = []
-    for level in (0.1587, 0.5, 0.8413):
-        reached = np.flatnonzero(share >= level)
-        at = float(log_im[reached[0]]) if reached.size and share[0] <= level else np.nan
-        found.append(at if np.isfinite(at) else np.nan)
-    return float(np.exp(found[1])), 0.5 * (found[2] - found[0])
+    capacity = np.where(lower > 0, middles, -np.inf)
+    shares = shares_of_capacities(capacity, groups, interval.level)
+    return _checks(fit, interval, groups, (p_fit, test, residual), shares)
 
 
 def _checks(
@@ -133,14 +121,14 @@ def _checks(
     interval: Interval,
     groups: NDArray[np.object_],
     judged: tuple[float, str, float],
-    points: tuple[float, float],
+    shares: Shares,
 ) -> Checks:
     p_fit, test, residual = judged
     notes: list[str] = []
     if p_fit < REJECTED:
         notes.append(
             f"The lognormal curve does not describe the data (p = {p_fit:.3f}): where it matters use the "
-            f"empirical shares{_known_points(points, fit.unit)}."
+            f"empirical shares{_known_points(shares, fit.unit, interval.level)}."
         )
     if interval.method == "jackknife" and np.isfinite(interval.beta).all():
         notes.append(TAILS)
@@ -150,16 +138,26 @@ def _checks(
             "describes little beyond."
         )
     name, influence = _influence(interval, groups)
-    return Checks(p_fit, test, residual, name, influence, *points, tuple(notes))
+    return Checks(p_fit, test, residual, name, influence, shares, tuple(notes))
 
 
-def _known_points(points: tuple[float, float], unit: str) -> str:
-    """Say the median and β of the shares as far as these go from 16 to 84 %."""
-    median, beta = points
-    if not np.isfinite(median):
+def _known_points(shares: Shares, unit: str, level: float) -> str:
+    """Say the median and β of the shares as far as these go from 16 to 84 %, with their limits."""
+    if not np.isfinite(shares.theta):
         return ", which do not go through a half"
-    spread = f" and β {beta:.2f}" if np.isfinite(beta) else ", and which do not go from 16 to 84 %"
-    return f", whose median is {median:.3g} {unit}{spread}"
+    median = f"{shares.theta:.3g} {unit}{_limits_text(shares.theta_limits, level)}"
+    if not np.isfinite(shares.beta):
+        return f", whose median is {median}, and which do not go from 16 to 84 %"
+    return f", whose median is {median} and β {shares.beta:.2f}{_limits_text(shares.beta_limits, level)}"
+
+
+def _limits_text(limits: tuple[float, float], level: float) -> str:
+    low, high = limits
+    if not low < high:
+        return ""
+    words = [f"from {low:.3g}"] if low > 0 else []
+    words += [f"to {high:.3g}"] if np.isfinite(high) else []
+    return f" ({' '.join(words)}, {level:.0%} limits)" if words else " (without limits)"
 
 
 def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:

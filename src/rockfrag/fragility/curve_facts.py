@@ -4,6 +4,9 @@ import math
 from collections.abc import Hashable, Mapping
 from typing import Any
 
+REJECTED = 0.05
+"""A curve is said not to describe its data below this p value [-]."""
+
 BETA_MODEL = math.log(16.9 / 13.9)
 """Uncertainty of the median that comes from the planar rocking model [-].
 
@@ -43,6 +46,8 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
         )
     if _known(row, "p_fit"):
         parts.append(f"Goodness of fit p = {float(row['p_fit']):.3f}.")
+        if float(row["p_fit"]) < REJECTED and _known(row, "theta_isotonic"):
+            parts.append(_without_form(row))
     if row.get("influential"):
         parts.append(
             f"Without {row['influential']} theta is {float(row['influence']):.2f} times as large."
@@ -57,3 +62,15 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
 def _known(row: Mapping[Hashable, Any], name: str) -> bool:
     value = row.get(name)
     return value is not None and math.isfinite(float(value))
+
+
+def _without_form(row: Mapping[Hashable, Any]) -> str:
+    """Median and dispersion of the curve that stands in the place of a rejected one."""
+    words = []
+    for name in ("theta", "beta"):
+        value, low, high = (
+            float(row.get(f"{name}_isotonic{end}", math.nan)) for end in ("", "_lower", "_upper")
+        )
+        if math.isfinite(value):
+            words.append(f"{name} {value:.4g} ({low:.4g} to {high:.4g})")
+    return f"In its place the never-falling share of the tests, without a form: {', '.join(words)}."

@@ -26,7 +26,9 @@ def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes)
         ``labels``; ``im``, ``unit``; ``x``: the measure, rising; ``probability`` of overturning, with
         ``lower`` and ``upper`` at the interval's level (missing where there is no interval); ``local``:
         share of overturned tests near x, which may fall where the curve cannot (missing where all
-        tests are at one value). Without a curve ``probability`` is missing.
+        tests are at one value); ``share`` with ``share_lower`` and ``share_upper``: the curve without a
+        form, which is to be used where the fitted one is rejected. Without a curve ``probability`` is
+        missing.
     """
     fit = item.fit
     low, high = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
@@ -43,6 +45,7 @@ def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes)
     local = nothing.copy()
     if inside.any():
         local[inside] = local_share(outcomes, x[inside])
+    share, share_lower, share_upper = item.checks.shares.at(x)
     return pd.DataFrame(
         {
             **labels,
@@ -53,8 +56,29 @@ def curve_points(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes)
             "lower": lower,
             "upper": upper,
             "local": local,
+            "share": share,
+            "share_lower": share_lower,
+            "share_upper": share_upper,
         }
     )
+
+
+def share_points(labels: Mapping[str, Any], item: Fragility) -> pd.DataFrame:
+    """Points of the curve without a form, if the fitted one is rejected; no row otherwise.
+
+    Returns
+    -------
+    pandas.DataFrame
+        ``labels``, ``im``, ``unit``; ``x``: the measure, rising; ``share`` of overturned tests, never falling
+        and straight over ln x between the points, with ``lower`` and ``upper`` at the interval's level.
+    """
+    shares = item.checks.shares
+    x = shares.knots()[0] if item.checks.rejected else np.empty(0)
+    share, lower, upper = shares.at(x) if x.size else (x, x, x)
+    about = pd.DataFrame(
+        {**labels, "im": item.fit.im, "unit": item.fit.unit}, index=pd.RangeIndex(x.size)
+    )
+    return about.assign(x=x, share=share, lower=lower, upper=upper)
 
 
 def verdict_bins(labels: Mapping[str, Any], item: Fragility, outcomes: Outcomes) -> pd.DataFrame:

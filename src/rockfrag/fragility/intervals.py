@@ -84,7 +84,7 @@ class Interval:
         predictors = self.replicates[:, :1] + self.replicates[:, 1:] * x
         centre = self.estimate[0] + self.estimate[1] * x
         if self.method == "jackknife":
-            half = _student(self.level, len(self.replicates)) * _jackknife_error(predictors)
+            half = student(self.level, len(self.replicates)) * jackknife_error(predictors)
             half = np.where(np.isfinite(half), half, np.inf)
             lower, upper = centre - half, centre + half
         else:
@@ -288,7 +288,7 @@ def resampled_interval(
         )
         return _none(estimate, level, groups, over, link, (*notes, reason))
     notes = (*notes, *_few_groups(method, groups, over))
-    deleted = fit(_all_but_one(groups, seed))
+    deleted = fit(all_but_one(groups, seed))
     if np.ptp(deleted, axis=0).max() < 1e-9:
         reason = f"All {over}s agree within the steps of the amplitude, which gives no limits."
         return _none(estimate, level, groups, over, link, (*notes, reason))
@@ -365,7 +365,7 @@ def _bca_tails(
     return tails[0], tails[1]
 
 
-def _all_but_one(groups: int, seed: int) -> Floats:
+def all_but_one(groups: int, seed: int) -> Floats:
     """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups."""
     if groups <= MOST_BLOCKS:
         return np.asarray(1.0 - np.eye(groups))
@@ -373,11 +373,12 @@ def _all_but_one(groups: int, seed: int) -> Floats:
     return np.asarray(block != np.arange(MOST_BLOCKS)[:, None], dtype=np.float64)
 
 
-def _student(level: float, groups: int) -> float:
+def student(level: float, groups: int) -> float:
+    """Quantile of Student's t with one degree of freedom less than there are groups."""
     return float(stats.t.ppf(0.5 + 0.5 * level, groups - 1))
 
 
-def _jackknife_error(left_out: Floats) -> Floats:
+def jackknife_error(left_out: Floats) -> Floats:
     """Return the standard error from delete-one-group values along the first axis (Tukey)."""
     groups = len(left_out)
     # an infinite value makes the error NaN, which the caller turns into limits without an end
@@ -390,9 +391,9 @@ def _jackknife_limits(
     estimate: Floats, deleted: Floats, level: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     groups = len(deleted)
-    factor = _student(level, groups)
+    factor = student(level, groups)
     log_theta = float(_log_theta(estimate[None, :])[0])
-    half = factor * float(_jackknife_error(_log_theta(deleted)))
+    half = factor * float(jackknife_error(_log_theta(deleted)))
     # β of few groups has a long lower tail, also in its logarithm; this power of it has less of one
     power = float(_beta(estimate[None, :])[0] ** BETA_POWER)
     with np.errstate(divide="ignore"):
@@ -400,7 +401,7 @@ def _jackknife_limits(
     # the jackknife also takes out the first-order bias of β, which few groups make too small; where
     # that puts the limits beside the estimate, they are stretched to hold it
     centre = groups * power - (groups - 1) * float(left_out.mean())
-    half_beta = factor * float(_jackknife_error(left_out))
+    half_beta = factor * float(jackknife_error(left_out))
     if not np.isfinite(half):
         half = np.inf
     theta = (float(np.exp(log_theta - half)), float(np.exp(log_theta + half)))

@@ -7,13 +7,15 @@ from collections.abc import Hashable, Mapping
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pandas as pd
-from scipy import constants
+from scipy import constants, special
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.identifiers import identifiers
+from rockfrag.fragility.observations import Floats
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
 STATES = ("rocks", "slides", "overturned")
@@ -21,6 +23,12 @@ STATES = ("rocks", "slides", "overturned")
 
 STEP = 0.01
 """β with which an exact threshold, a step, is written [-]; the formats take no step."""
+CROSSING = 1e-3
+"""Levels are written where a state would be more probable than the state before it by this much [-]."""
+
+_STEPS = np.linspace(-4.0, 4.0, 33)
+"""Levels of a discrete function around each median, in standard deviations."""
+
 _SPECTRAL = re.compile(r"^SA\((?P<period>[\d.]+)s\)$")
 
 
@@ -62,6 +70,7 @@ def write_nrml(
     *,
     identifier: str = "rockfrag",
     by: str = "configuration",
+    shares: pd.DataFrame | None = None,
 ) -> None:
     """Write rows of a fragility table as an NRML 0.5 fragility model.
 
@@ -82,6 +91,10 @@ def write_nrml(
     by
         Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
         does not take in a name becomes ``_``.
+    shares
+        Points of the curves without a form (:func:`rockfrag.fragility.drawn_curves.share_points`), with columns
+        ``by`` and ``state``. A function of which a state has such points is written as discrete levels; so is one
+        whose lognormal curves would make a state more probable than the one that comes before it.
 
     Raises
     ------
@@ -124,7 +137,7 @@ def write_nrml(
         facts.append(f"{name}: {said}")
         # two hyphens would end the comment
         model.append(ElementTree.Comment(f" {facts[-1].replace('--', '- -')} "))
-        model.append(_function(name, {state: rows[name][state] for state in known}, by))
+        model.append(_function(name, {state: rows[name][state] for state in known}, by, shares))
     description.text = " ".join(
         ["Free-standing bodies in earthquakes, lognormal in the intensity measure.", *facts]
     )
@@ -134,9 +147,13 @@ def write_nrml(
 
 
 def _function(
-    taxonomy: str, states: Mapping[str, Mapping[Hashable, Any]], by: str
+    taxonomy: str,
+    states: Mapping[str, Mapping[Hashable, Any]],
+    by: str,
+    shares: pd.DataFrame | None,
 ) -> ElementTree.Element:
     curves: dict[str, tuple[float, float]] = {}
+    free: dict[str, tuple[Floats, Floats]] = {}
     measures: set[str] = set()
     for state, row in states.items():
         name = str(row[by])
@@ -154,11 +171,17 @@ def _function(
         imt, factor = intensity_measure_type(str(row["im"]), str(row["unit"]))
         measures.add(imt)
         curves[state] = theta * factor, max(beta, STEP)
+        levels, share = points_of(shares, by, name, state)
+        if levels.size:
+            free[state] = levels * factor, share
     if len(measures) > 1:
         raise InputError(
             f"NRML: the limit states of {taxonomy!r} are in {' and '.join(sorted(measures))}; one "
             "function has one measure."
         )
+    levels, chances, lowered = _nested(curves, free)
+    if free or lowered > CROSSING:
+        return _discrete(taxonomy, measures.pop(), levels, chances)
     function = ElementTree.Element(
         "fragilityFunction", {"id": taxonomy, "format": "continuous", "shape": "logncdf"}
     )
@@ -172,4 +195,45 @@ def _function(
         mean, deviation = lognormal_moments(theta, beta)
         parameters = {"ls": state, "mean": repr(mean), "stddev": repr(deviation)}
         ElementTree.SubElement(function, "params", parameters)
+    return function
+
+
+def points_of(shares: pd.DataFrame | None, by: str, name: str, state: str) -> tuple[Floats, Floats]:
+    """Levels and shares of the curve without a form; empty where the lognormal one stands."""
+    if shares is None:
+        return np.empty(0), np.empty(0)
+    own = shares[(shares[by].astype(str) == name) & (shares["state"] == state)]
+    return own["x"].to_numpy(dtype=np.float64), own["share"].to_numpy(dtype=np.float64)
+
+
+def _nested(
+    curves: Mapping[str, tuple[float, float]], free: Mapping[str, tuple[Floats, Floats]]
+) -> tuple[Floats, dict[str, Floats], float]:
+    """Levels, the chance of each state there, never above that of the state before, and by how much it was."""
+    parts = [theta * np.exp(beta * _STEPS) for theta, beta in curves.values()]
+    levels = np.unique(np.concatenate([*parts, *(x for x, _ in free.values())]))
+    found: dict[str, Floats] = {}
+    before, lowered = np.ones(levels.size), 0.0
+    for state, (theta, beta) in curves.items():
+        chance = special.ndtr(np.log(levels / theta) / beta)
+        if state in free:
+            x, share = free[state]
+            chance = np.interp(np.log(levels), np.log(x), share)
+        lowered = max(lowered, float((chance - before).max()))
+        before = np.minimum(chance, before)
+        found[state] = before
+    return levels, found, lowered
+
+
+def _discrete(
+    taxonomy: str, imt: str, levels: Floats, chances: Mapping[str, Floats]
+) -> ElementTree.Element:
+    """Function of levels and probabilities."""
+    function = ElementTree.Element("fragilityFunction", {"id": taxonomy, "format": "discrete"})
+    attributes = {"imt": imt, "noDamageLimit": repr(float(levels[0]))}
+    text = " ".join(repr(float(level)) for level in levels)
+    ElementTree.SubElement(function, "imls", attributes).text = text
+    for state, chance in chances.items():
+        poes = ElementTree.SubElement(function, "poes", {"ls": state})
+        poes.text = " ".join(repr(float(value)) for value in chance)
     return function

@@ -6,13 +6,15 @@ import os
 from collections.abc import Hashable, Mapping
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.identifiers import identifiers
-from rockfrag.fragility.nrml import STATES, STEP
+from rockfrag.fragility.nrml import STATES, STEP, points_of
+from rockfrag.fragility.observations import Floats
 
 _DEMANDS = {
     "PGA": ("Peak Ground Acceleration", {"g": "g", "m/s²": "mps2"}),
@@ -20,6 +22,9 @@ _DEMANDS = {
     "PFA": ("Peak Floor Acceleration", {"g": "g", "m/s²": "mps2"}),
     "PFV": ("Peak Floor Velocity", {"cm/s": "cmps", "m/s": "mps"}),
 }
+BEYOND = 2.0
+"""Where a curve without a form that ends below 1 reaches it, as a multiple of its last level."""
+
 _REPAIR = {
     "rocks": ("Rocks and may be displaced", "Inspect and put back"),
     "slides": ("Slides and may be displaced", "Inspect and put back"),
@@ -33,6 +38,7 @@ def write_simcenter(
     json_path: str | os.PathLike[str],
     *,
     by: str = "configuration",
+    shares: pd.DataFrame | None = None,
 ) -> None:
     """Write rows of a fragility table as a damage model.
 
@@ -47,6 +53,9 @@ def write_simcenter(
         Files to write.
     by
         Column that names the curve; the ID is ``ROCKFRAG.`` and its letters and digits.
+    shares
+        Points of the curves without a form, as of :func:`rockfrag.fragility.nrml.write_nrml`; a state that has
+        them is written with the family ``multilinear_CDF``.
 
     Raises
     ------
@@ -76,14 +85,17 @@ def write_simcenter(
         states[state] = row
     for name, states in components.items():
         ordered = {state: states[state] for state in STATES if state in states}
-        line, notes[name] = _component(name, ordered, by)
+        line, notes[name] = _component(name, ordered, by, shares)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
     write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
 
 
 def _component(
-    identifier: str, states: Mapping[str, Mapping[Hashable, Any]], by: str
+    identifier: str,
+    states: Mapping[str, Mapping[Hashable, Any]],
+    by: str,
+    shares: pd.DataFrame | None,
 ) -> tuple[dict[str, object], dict[str, object]]:
     demands: set[tuple[str, str]] = set()
     limit_states: dict[str, object] = {}
@@ -103,16 +115,24 @@ def _component(
             )
         demand, units = _DEMANDS[im]
         demands.add((demand, units[unit]))
+        levels, share = points_of(shares, by, name, state)
+        family: str = "lognormal"
+        parameters: tuple[float | str, float | str] = (theta, max(beta, STEP))
+        if levels.size:
+            family, parameters = "multilinear_CDF", (_multilinear(levels, share), "")
         line |= {
-            f"LS{number}-Family": "lognormal",
-            f"LS{number}-Theta_0": theta,
-            f"LS{number}-Theta_1": max(beta, STEP),
+            f"LS{number}-Family": family,
+            f"LS{number}-Theta_0": parameters[0],
+            f"LS{number}-Theta_1": parameters[1],
             f"LS{number}-DamageStateWeights": "",
         }
         words, repair = _REPAIR[state]
         damage = {"Description": words, "RepairAction": repair}
         limit_states[f"LS{number}"] = {f"DS{number}": damage}
-        said.append(f"{words}: {curve_facts(row)}")
+        facts = curve_facts(row)
+        if levels.size and share[-1] < 1.0:
+            facts += f" Beyond {levels[-1]:.4g} {unit} nothing was tried: all is put at {BEYOND:g} times it."
+        said.append(f"{words}: {facts}")
     if len(demands) > 1:
         raise InputError(
             f"SimCenter: the limit states of {identifier} have two demands; choose one."
@@ -136,3 +156,11 @@ def _component(
         "LimitStates": limit_states,
     }
     return line, note
+
+
+def _multilinear(levels: Floats, share: Floats) -> str:
+    """Points of a distribution from 0 to 1, as pelicun's ``multilinear_CDF`` takes them."""
+    if share[-1] < 1.0:
+        levels, share = np.append(levels, BEYOND * levels[-1]), np.append(share, 1.0)
+    texts = (",".join(repr(float(value)) for value in values) for values in (levels, share))
+    return "|".join(texts)

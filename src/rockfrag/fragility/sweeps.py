@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import total_beta
-from rockfrag.fragility.drawn_curves import curve_points, verdict_bins
+from rockfrag.fragility.drawn_curves import curve_points, share_points, verdict_bins
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import outcomes_from_table, positive
 from rockfrag.records.motion import Motion
@@ -145,6 +145,7 @@ def fragility_row(
         Digest of the motions.
     """
     fit, interval, checks = fragility.fit, fragility.interval, fragility.checks
+    shares = checks.shares
     return {
         **labels,
         "im": fit.im,
@@ -175,8 +176,12 @@ def fragility_row(
         "largest_residual": checks.largest_residual,
         "influential": checks.influential,
         "influence": checks.influence,
-        "theta_isotonic": checks.theta_isotonic,
-        "beta_isotonic": checks.beta_isotonic,
+        "theta_isotonic": shares.theta,
+        "theta_isotonic_lower": shares.theta_limits[0],
+        "theta_isotonic_upper": shares.theta_limits[1],
+        "beta_isotonic": shares.beta,
+        "beta_isotonic_lower": shares.beta_limits[0],
+        "beta_isotonic_upper": shares.beta_limits[1],
         "beta_statistical": fragility.beta_statistical,
         "beta_total": total_beta(fit.beta, fragility.beta_statistical),
         "record_set_sha256": record_set,
@@ -195,11 +200,15 @@ class FragilityTables:
     bands, bins
         What figures draw of the curves of mean probability, see
         :mod:`rockfrag.fragility.drawn_curves`.
+    shares
+        Points of the curves without a form of those that are rejected, see
+        :func:`rockfrag.fragility.drawn_curves.share_points`.
     """
 
     curves: pd.DataFrame
     bands: pd.DataFrame
     bins: pd.DataFrame
+    shares: pd.DataFrame
 
 
 def fragility_table(
@@ -238,8 +247,9 @@ def fragility_table(
         for the amplitude), ``theta``, ``beta`` with limits, ``level``, ``interval_method``,
         ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``, ``link``,
         ``method``, ``n``, ``n_overturned``, ``n_motions``, ``n_events``; ``p_fit``, ``fit_test``,
-        ``largest_residual``, ``influential``, ``influence``, ``theta_isotonic``, ``beta_isotonic`` (see
-        :class:`rockfrag.fragility.checks.Checks`); ``beta_statistical`` and ``beta_total`` (with the
+        ``largest_residual``, ``influential``, ``influence`` (see
+        :class:`rockfrag.fragility.checks.Checks`); ``theta_isotonic``, ``beta_isotonic`` with limits (see
+        :class:`rockfrag.fragility.shares.Shares`); ``beta_statistical`` and ``beta_total`` (with the
         model's uncertainty, :mod:`rockfrag.fragility.curve_facts`); ``record_set_sha256``, ``warnings``.
     """
     return fragility_tables(
@@ -277,7 +287,7 @@ def fragility_tables(
         if column not in sweep:
             raise InputError(f"sweep: there is no column {column!r}; correct the name.")
     rows: list[dict[str, Any]] = []
-    bands, bins = [], []
+    bands, bins, shares = [], [], []
     for key, part in sweep.groupby(list(by), sort=True):
         labels = dict(zip(by, key, strict=True))
         for column in columns:
@@ -293,12 +303,12 @@ def fragility_tables(
                 readings = {"mean_probability": fragility_of(outcomes, level=level)}
             bands.append(curve_points(labels, readings["mean_probability"], outcomes))
             bins.append(verdict_bins(labels, readings["mean_probability"], outcomes))
-            rows += [
-                fragility_row(fragility, labels, name, record_set)
-                for name, fragility in readings.items()
-            ]
+            for name, fragility in readings.items():
+                rows.append(fragility_row(fragility, labels, name, record_set))
+                shares.append(share_points({**labels, "estimator": name}, fragility))
     return FragilityTables(
         pd.DataFrame(rows),
         pd.concat(bands, ignore_index=True),
         pd.concat(bins, ignore_index=True),
+        pd.concat(shares, ignore_index=True),
     )

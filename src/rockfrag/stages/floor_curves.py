@@ -6,12 +6,19 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from rockfrag.files import file_name
 from rockfrag.rocking.bodies import Block, Body
 
 GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
 FLOOR_MEASURES = ("pga_g", "pgv_cm_s")
+SLIPS = ("peak_slip_ground_m", "peak_slip_interface_m")
+"""Columns of a sweep with friction: largest slips at the two interfaces [m]."""
+
+SLIDES = 0.001
+"""Slip above which a body counts as having slid [m]: a displacement that one sees."""
+
 FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
 """What peaks are called where the motion is that of a floor above the ground."""
 
@@ -34,7 +41,7 @@ def floor_curves(
     record_set: str,
     level: float,
     rocks_at_once: bool = True,
-) -> pd.DataFrame:
+) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Fragility of every configuration on every floor; motions of different floors are never mixed.
 
     Parameters
@@ -57,15 +64,22 @@ def floor_curves(
 
     Returns
     -------
-    One row per configuration, floor, measure and limit state: ``configuration``, ``floor``,
-    ``floor_level``, ``measure`` (column of ``measures``), ``state`` (``rocks``, ``overturned``) and the
-    columns of :func:`rockfrag.fragility.sweeps.fragility_table`. Overturning is the mean probability over
-    all verdicts; rocking starts at an exact peak acceleration, whose value in another measure varies from
-    motion to motion.
+    curves
+        One row per configuration, floor, measure and limit state: ``configuration``, ``floor``,
+        ``floor_level``, ``measure`` (column of ``measures``), ``state`` (``rocks``, ``slides``, ``overturned``)
+        and the columns of :func:`rockfrag.fragility.sweeps.fragility_table`. Overturning is the mean probability
+        over all verdicts; so is sliding, where the sweep tells it: slipping by more than `SLIDES` or worse.
+        Rocking starts at an exact peak acceleration, whose value in another measure varies from motion to
+        motion.
+    shares
+        Points of the curves without a form, of those that are rejected: see
+        :func:`rockfrag.fragility.drawn_curves.share_points`.
     """
     from rockfrag.fragility import fragility_of, fragility_row, outcomes_from_table, with_measures
+    from rockfrag.fragility.drawn_curves import share_points
     from rockfrag.fragility.states import fit_uplift
 
+    shares = []
     rows = []
     for (name, floor), part in sweep.groupby(["configuration", "floor"], sort=False):
         height = floors[str(floor)]
@@ -78,6 +92,10 @@ def floor_curves(
             labels = {"configuration": name, "floor": floor, "floor_level": height}
             outcomes = outcomes_from_table(measured, column, event="event", source="sweep")
             states = {"overturned": fragility_of(outcomes, level=level)}
+            if set(SLIPS) <= set(measured):
+                moved = measured.assign(overturned=displaced(measured))
+                outcomes = outcomes_from_table(moved, column, event="event", source="sweep")
+                states = {"slides": fragility_of(outcomes, level=level), **states}
             if rocks_at_once:
                 rocks = fit_uplift(at_uplift, column, level=level)
                 states = {"rocks": rocks, **states}
@@ -85,17 +103,29 @@ def floor_curves(
                 about = {**labels, "measure": column, "state": state}
                 estimator = "exact_threshold" if state == "rocks" else "mean_probability"
                 row = fragility_row(found, about, estimator, record_set)
+                points = share_points({**about, "estimator": estimator}, found)
                 if height > 0:
                     row["im"] = FLOOR_NAMES[str(row["im"])]
+                    points["im"] = row["im"]
                 rows.append(row)
-    return pd.DataFrame(rows)
+                shares.append(points)
+    return pd.DataFrame(rows), pd.concat(shares, ignore_index=True)
 
 
-def export_curves(curves: pd.DataFrame, folder: Path) -> list[str]:
+def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:
+    """Whether each run slid by more than `SLIDES` at either interface, or overturned, shape (n,)."""
+    slip = sweep[list(SLIPS)].to_numpy(dtype=float).max(axis=1)
+    return np.asarray((slip > SLIDES) | sweep["overturned"].to_numpy(dtype=bool))
+
+
+def export_curves(
+    curves: pd.DataFrame, folder: Path, shares: pd.DataFrame | None = None
+) -> list[str]:
     """Write the curves for OpenQuake and SimCenter; return the names of the files.
 
     One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
-    the ground only. Configurations without a curve are left out, and a measure without any has no file.
+    the ground only. Configurations without a curve are left out, and a measure without any has no file. Of
+    rejected curves the points without a form are written, as far as ``shares`` has them.
     """
     from rockfrag.fragility import write_nrml, write_simcenter
 
@@ -106,15 +136,20 @@ def export_curves(curves: pd.DataFrame, folder: Path) -> list[str]:
         usable = _usable(rows)
         if usable.empty:
             continue
+        points = None
+        if shares is not None:
+            points = shares[(shares["floor"] == floor) & (shares["measure"] == column)]
         stem = f"fragility_{_stem(str(usable['im'].iloc[0]))}"
         if height != 0:
             stem += f"_{file_name(str(floor))}"
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it
-            write_nrml(usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem)
+            write_nrml(
+                usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem, shares=points
+            )
             written.append(f"{stem}.xml")
         if column in FLOOR_MEASURES:
-            write_simcenter(usable, folder / f"{stem}.csv", folder / f"{stem}.json")
+            write_simcenter(usable, folder / f"{stem}.csv", folder / f"{stem}.json", shares=points)
             written += [f"{stem}.csv", f"{stem}.json"]
     return written
 

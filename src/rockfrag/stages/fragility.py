@@ -23,13 +23,14 @@ def run(job: Job[Study]) -> Results:
     yield "fragility", _at_the_base(found.curves, several)
     yield "fragility_bands", _at_the_base(found.bands, several)
     yield "fragility_bins", _at_the_base(found.bins, several)
+    yield "fragility_shares", _at_the_base(found.shares, several)
     by = ["configuration", "event", "floor", "motion"]
     yield "survival_windows", survival_windows(measured, by=by)
     choice = measure_choice(sweep, measures, settings.confidence, job.study.seed)
     yield "measure_choice", choice
     bodies = {one.name: one.body for one in job.study.configurations}
     floors = job.study.floors
-    by_floor = floor_curves(
+    by_floor, floor_shares = floor_curves(
         sweep,
         measures,
         floors,
@@ -39,9 +40,12 @@ def run(job: Job[Study]) -> Results:
         rocks_at_once=not (job.study.slides or job.study.vertical),
     )
     yield "fragility_floors", by_floor
+    yield "fragility_floors_shares", floor_shares
     exports = job.folder / "exports"
     exports.mkdir(parents=True, exist_ok=True)
-    job.log.info("exported %s", ", ".join(export_curves(by_floor, exports)) or "no curve")
+    job.log.info(
+        "exported %s", ", ".join(export_curves(by_floor, exports, floor_shares)) or "no curve"
+    )
     best = choice.loc[choice["recommended"], "im"]
     job.log.info("curves: %d; best measures: %s", len(found.curves), ", ".join(dict.fromkeys(best)))
 
@@ -63,9 +67,11 @@ STAGE = Stage(
         "fragility",
         "fragility_bands",
         "fragility_bins",
+        "fragility_shares",
         "survival_windows",
         "measure_choice",
         "fragility_floors",
+        "fragility_floors_shares",
         "exports/",
     ),
     settings=("fragility", "seed", "bodies", "building", "friction", "vertical"),

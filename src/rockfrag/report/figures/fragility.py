@@ -1,7 +1,7 @@
 """Fragility curves with their limits, the verdicts behind them, and what no curve can show."""
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Hashable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -24,6 +24,7 @@ from rockfrag.figure_style import (
     new_figure,
     plain_log,
 )
+from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.empirical import local_share, share_in_bins
 from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit
 from rockfrag.report.wording import shortened
@@ -47,7 +48,8 @@ def fragility_figure(curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFra
         ``im``, ``unit``, ``theta``, ``beta``; theta is missing where there is no curve.
     bands, bins
         Their points and verdicts, see :mod:`rockfrag.fragility.drawn_curves`. The local share
-        (dashed) may fall where the curve cannot.
+        (dashed) may fall where the curve cannot. Where the lognormal curve is rejected it is dotted, and the
+        curve without a form stands in its place.
     """
     first = curves.iloc[0]
     with figure_style():
@@ -58,20 +60,35 @@ def fragility_figure(curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFra
             own = bins["configuration"] == curve["configuration"]
             _shares(axes, bins[own], colour, 1.0 + 0.02 * (k - 0.5 * (len(curves) - 1)))
             points = bands[bands["configuration"] == curve["configuration"]]
+            rejected = curve.get("p_fit", np.nan) < REJECTED
+            # what is to be used has the band and the thick line
+            ends = ("share_lower", "share_upper") if rejected else ("lower", "upper")
             axes.fill_between(
-                points["x"], points["lower"], points["upper"], color=colour, alpha=0.18, linewidth=0
+                points["x"], *(points[end] for end in ends), color=colour, alpha=0.18, linewidth=0
             )
-            axes.plot(points["x"], points["local"], "--", color=colour, linewidth=0.8)
-            words = "no curve"
-            if np.isfinite(curve["theta"]):
-                words = f"θ = {curve['theta']:.3g} {curve['unit']}, β = {curve['beta']:.2f}"
-            label = f"{shortened(curve['configuration'])}: {words}"
-            axes.plot(points["x"], points["probability"], color=colour, label=label)
+            label = f"{shortened(curve['configuration'])}: {_curve_words(curve, rejected)}"
+            if rejected:
+                axes.plot(points["x"], points["probability"], ":", color=colour, linewidth=0.8)
+                axes.plot(points["x"], points["share"], color=colour, label=label)
+            else:
+                axes.plot(points["x"], points["local"], "--", color=colour, linewidth=0.8)
+                axes.plot(points["x"], points["probability"], color=colour, label=label)
         _probability_axis(axes, np.array([bands["x"].min(), bands["x"].max()]))
         axes.set_ylabel("Probability of overturning")
         axes.set_xlabel(_axis_label(first["im"], first["unit"]))
         figure.legend(loc="outside upper center", ncols=1, handlelength=1.4)
         return figure
+
+
+def _curve_words(curve: Mapping[Hashable, Any], rejected: bool) -> str:
+    """Median and dispersion of the curve that is to be used."""
+    names = ("theta_isotonic", "beta_isotonic") if rejected else ("theta", "beta")
+    theta, beta = (float(curve[name]) for name in names)
+    if not np.isfinite(theta):
+        return "shares without a form" if rejected else "no curve"
+    words = f"θ = {theta:.3g} {curve['unit']}"
+    words += f", β = {beta:.2f}" if np.isfinite(beta) else ""
+    return f"{words}, without a form" if rejected else words
 
 
 def _shares(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> None:

@@ -1,0 +1,123 @@
+"""The curve without a form: what is left to use where a lognormal curve is rejected."""
+
+import numpy as np
+import pytest
+
+from rockfrag.fragility.estimators import fragility_of
+from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.shares import Shares, shares_of_capacities, shares_of_verdicts
+
+RNG = 20261122
+
+
+def swept(log_capacity, events, levels):
+    """Verdicts of motions with one capacity each at common levels."""
+    motions = np.array([f"m{k}" for k in range(log_capacity.size)], dtype=object)
+    fell = np.log(levels)[None, :] > log_capacity[:, None]
+    return Outcomes(
+        np.tile(levels, motions.size),
+        fell.ravel().astype(float),
+        np.ones(fell.size),
+        np.repeat(motions, levels.size),
+        np.repeat(np.array([f"e{k}" for k in events], dtype=object), levels.size),
+    )
+
+
+def test_verdicts_and_capacities_give_the_same_curve():
+    rng = np.random.default_rng(RNG)
+    events = np.repeat(np.arange(6), 3)
+    log_a = 0.3 * rng.normal(size=18)
+    found = swept(log_a, events, np.geomspace(0.2, 5, 1000))
+    tested = shares_of_verdicts(found, found.event, 0.9)
+    exact = shares_of_capacities(log_a, np.array([f"e{k}" for k in events], dtype=object), 0.9)
+    assert tested.theta == pytest.approx(exact.theta, rel=0.02)
+    assert tested.theta_limits == pytest.approx(exact.theta_limits, rel=0.01)
+    assert tested.beta == pytest.approx(exact.beta, rel=0.01)
+    assert tested.beta_limits == pytest.approx(exact.beta_limits, rel=0.03)
+
+
+def test_estimates_lie_in_their_limits_and_the_curve_in_its_band_and_never_falls():
+    rng = np.random.default_rng(RNG)
+    for events, each in ((4, 1), (4, 3), (12, 2)):
+        for _ in range(30):
+            labels = np.repeat(np.arange(events), each)
+            one = swept(rng.standard_t(2, labels.size), labels, np.geomspace(0.05, 20, 60))
+            found = shares_of_verdicts(one, one.event, 0.9)
+            x = np.geomspace(0.01, 100, 200)
+            value, lower, upper = found.at(x)
+            assert (np.diff(value) >= 0).all() and value[0] == 0
+            assert ((lower <= value) & (value <= upper)).all() and (upper > lower).all()
+            if np.isfinite(found.theta):
+                assert found.theta_limits[0] <= found.theta <= found.theta_limits[1]
+            if np.isfinite(found.beta):
+                assert found.beta_limits[0] <= found.beta <= found.beta_limits[1]
+
+
+def test_limits_are_over_events_and_not_over_amplitudes_or_motions_of_one():
+    """Ten motions of one earthquake that agree are worth one motion."""
+    rng = np.random.default_rng(RNG)
+    of_event = 0.4 * rng.normal(size=5)
+    levels = np.geomspace(0.1, 10, 200)
+    lone = swept(of_event, np.arange(5), levels)
+    tenfold = swept(np.repeat(of_event, 10), np.repeat(np.arange(5), 10), levels)
+    one, ten = (shares_of_verdicts(data, data.event, 0.9) for data in (lone, tenfold))
+    assert ten.theta_limits == one.theta_limits
+    assert ten.upper[0] == one.upper[0] < 1
+    careless = shares_of_verdicts(tenfold, tenfold.motion, 0.9)
+    assert careless.upper[0] < 0.5 * one.upper[0]
+
+
+def test_curve_may_stop_below_one_and_then_has_no_more_than_it_knows():
+    """A sixth of the motions overturns nothing: the median is known, the 84 % point is not."""
+    log_a = np.append(np.linspace(-0.5, 0.4, 10), [np.inf, np.inf])
+    found = shares_of_capacities(log_a, np.arange(12).astype(object), 0.9)
+    assert found.theta == pytest.approx(1.05, rel=0.02) and found.theta_limits[1] < np.inf
+    assert np.isnan(found.beta) and np.isnan(found.beta_limits).all()
+    few = shares_of_capacities(np.array([0.1, np.inf, np.inf]), np.arange(3).astype(object), 0.9)
+    assert np.isnan(few.theta) and np.isnan(few.theta_limits).all()
+
+
+def test_one_group_has_a_curve_and_no_limits():
+    found = shares_of_capacities(np.array([0.1, 0.3]), np.array(["e", "e"], dtype=object), 0.9)
+    value, lower, upper = found.at([1.2])
+    assert np.isfinite(value).all() and np.isnan(lower).all() and np.isnan(upper).all()
+
+
+def test_points_rise_strictly_even_where_values_differ_by_rounding():
+    """Programs that read the points refuse any two at one value."""
+    x = np.array([0.5, 0.5 * (1 + 1e-12), 0.7, 0.7 * (1 + 1e-9), 0.9])
+    share = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
+    nan = (float("nan"), float("nan"))
+    at, value = Shares(x, share, share, share, 0.6, nan, 0.3, nan).knots()
+    assert (np.diff(at) > 1e-7).all() and (np.diff(value) > 1e-7).all()
+    assert value[0] == 0 and value[-1] == 1
+
+
+def test_rejected_curve_says_the_median_and_dispersion_to_use_with_their_limits():
+    rng = np.random.default_rng(RNG)
+    low, high = np.log(0.1) + 0.05 * rng.normal(size=20), 0.05 * rng.normal(size=22)
+    data = swept(np.append(low, high), np.arange(42), np.geomspace(0.05, 2, 80))
+    found = fragility_of(data)
+    assert found.checks.rejected
+    (said,) = [note for note in found.warnings if "does not describe" in note]
+    assert "whose median is" in said and said.count("90% limits") == 2
+    assert found.checks.shares.theta == pytest.approx(1.0, rel=0.15)
+
+
+@pytest.mark.parametrize("law", ["normal", "t3"])
+def test_limits_of_the_median_and_the_dispersion_hold_in_few_data_sets(law):
+    """300 data sets tell gross faults only; the validation has the coverage."""
+    rng = np.random.default_rng(RNG)
+    truth = 0.4 if law == "normal" else 0.4 * 0.6914
+    held = []
+    groups = np.repeat(np.arange(6), 2).astype(object)
+    for _ in range(300):
+        drawn = rng.normal(size=12) if law == "normal" else rng.standard_t(3, 12) / np.sqrt(3)
+        found = shares_of_capacities(0.4 * drawn, groups, 0.9)
+        held.append(
+            [
+                found.theta_limits[0] <= 1.0 <= found.theta_limits[1],
+                found.beta_limits[0] <= truth <= found.beta_limits[1],
+            ]
+        )
+    assert (np.mean(held, axis=0) > 0.84).all()
