@@ -248,7 +248,8 @@ def overturns(
         max((np.abs(one).max() * s for one, s in zip(values, largest, strict=True)), default=0.0)
     )
     up = listed_vertical(vertical, values, dts)
-    checked_scales(factors, up or values)
+    if up:
+        checked_scales(factors, up)
     setting = _Setting(values, up, dts, factors, g, step, checked_threads(threads))
     given = _Bodies(body_list, list(restitution or [None] * len(body_list)))
     check_case_count(len(body_list) * factors.size)

@@ -127,13 +127,13 @@ def next_uplift(motions, k, tau, last, factor, interval):
     now, weight = a0 + tau * (a1 - a0), w0 + tau * (w1 - w0)
     rests = low * weight <= now <= high * weight
     if rests and low * w1 <= a1 <= high * w1:
-        # no limit of any later sample is nearer to zero than this
-        lightest, _ = weights_ahead(motions, k, factor)
-        least, most = low * lightest / factor, high * lightest / factor
-        if factor < 0.0:
-            least, most = most, least
         m = k + 1
         while True:
+            # no limit of any later sample is nearer to zero than this
+            lightest, _ = weights_ahead(motions, m, factor)
+            least, most = low * lightest / factor, high * lightest / factor
+            if factor < 0.0:
+                least, most = most, least
             m = _first_outside(motions, m, last, least, most)
             if m < 0:
                 return -1, 0.0, 0.0, 1.0

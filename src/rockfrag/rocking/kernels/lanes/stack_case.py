@@ -283,7 +283,7 @@ def event_of_one(i, case, worker, ensemble, motions, g):
     lane, series = worker.one, worker.series
     if lane.flag[i] == RELEASE and lane.has_before[i] == 1.0:
         # it let go in the sample before
-        stack_one.go_back(lane, i, g)
+        stack_one.go_back(lane, i, g, motions.vertical.size > 0)
         case.k -= 1
     stack_one.take_series(lane, i, series)
     c1, c2 = case.c1, case.c2

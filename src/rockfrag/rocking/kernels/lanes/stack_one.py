@@ -182,8 +182,8 @@ def take_series(lane, i, series):
 
 
 @kernel
-def go_back(lane, i, g):
-    """Put a lane back to where its last step began, and work its series out again."""
+def go_back(lane, i, g, upward):
+    """Put a lane back to where its last step began, and work its series out again, to the same bits."""
     theta, omega, left = lane.before_theta[i], lane.before_omega[i], lane.before_left[i]
     end, a = lane.was_ground[i], lane.before_ground[i]
     lane.was_theta[i], lane.was_omega[i], lane.was_left[i] = theta, omega, left
@@ -193,7 +193,9 @@ def go_back(lane, i, g):
     down = -1.0 / g
     ground = a * down, (end - a) * down
     turn = quick_sine_cosine(theta)
-    rates = _rates((lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u, True))
+    rates = _rates(
+        (lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u, upward)
+    )
     keep_rates(lane.rates, i, rates)
 
 
