@@ -18,6 +18,7 @@ from rockfrag.fragility.intervals import (
     verdict_fitter,
 )
 from rockfrag.fragility.observations import Outcomes
+from rockfrag.fragility.shares import shares_of_capacities
 
 from .documented import document
 
@@ -227,3 +228,32 @@ def test_other_limits_hold_the_truth_or_warn(methods):
     # so few data sets know a coverage to ± 2 %, so only a clear miss must have been warned of
     clear_miss = (methods[["theta", "beta"]] < 0.82).any(axis=1)
     assert (methods.warns | ~clear_miss).all(), methods
+
+
+@pytest.fixture(scope="module")
+def without_form() -> pd.DataFrame:
+    """Coverage of the curve that assumes no form, where capacities are lognormal and where they are not."""
+    rows = []
+    for name, law, spread in (("lognormal", "normal", 1.0), ("heavy tails (t, 3 df)", "t3", 0.691)):
+        for events, each in ((4, 3), (22, 2)):
+            rng = np.random.default_rng([SEED, events])
+            held = []
+            for _ in range(DATA_SETS):
+                labels = np.repeat(np.arange(events), each).astype(object)
+                drawn = rng.normal(size=labels.size)
+                if law == "t3":
+                    drawn = rng.standard_t(3, labels.size) / np.sqrt(3)
+                one = shares_of_capacities(np.log(THETA) + BETA * drawn, labels, 0.90)
+                (low, high), (least, most) = one.theta_limits, one.beta_limits
+                held.append((low <= THETA <= high, least <= BETA * spread <= most))
+            theta, beta = np.mean(held, axis=0)
+            design = {"data sets of": name, "motions": events * each, "events": events}
+            rows.append(design | {"median": theta, "half of 16 to 84 %": beta})
+    found = pd.DataFrame(rows)
+    document("validation-fragility.md", "without a form", found)
+    return found
+
+
+@pytest.mark.slow
+def test_limits_that_assume_no_form_hold_whatever_the_tails(without_form):
+    assert without_form[["median", "half of 16 to 84 %"]].min(axis=None) >= 0.86
