@@ -1,5 +1,7 @@
 """What looks like a mistake of unit: densities no solid has, sizes and accelerations out of range."""
 
+import math
+
 from rockfrag.errors import InputError
 from rockfrag.units import GRAVITY
 
@@ -46,8 +48,11 @@ def check_density(width: float, height: float, mass: float) -> None:
     """
     thin = DEPTHS[0] * width
     thick = DEPTHS[1] * max(width, height)
-    most = mass / (width * height * thin)
-    least = mass / (width * height * thick)
+    # the volume of a size of 1e-300 m is 0 in numbers
+    thinnest = width * height * thin
+    most = mass / thinnest if thinnest else math.inf
+    thickest = width * height * thick
+    least = mass / thickest if thickest else math.inf
     if most < DENSITIES[0]:
         wrong = f"at most {most:.3g} kg/m³ at a depth of {thin:.3g} m, less than any solid"
     elif least > DENSITIES[1]:

@@ -104,6 +104,7 @@ def test_answers_are_json_with_all_that_an_independent_computation_needs(on_plin
         (FIGURE | {"depth": "1 cm"}, "density"),
         (FIGURE | {"cg_height": "130 cm"}, "cg_height"),
         (FIGURE | {"pga": "0.25"}, "without a unit"),
+        ({"width_m": 1e-300, "height_m": 1e-300, "mass_kg": 1.0}, "than any solid"),
         (FIGURE | {"width": 10**400}, "expected a length such as 35 m, found 10000"),
         (FIGURE | {"pga": "25 g"}, "no shaking"),
         (FIGURE | {"pgv": "20 g"}, "velocity"),

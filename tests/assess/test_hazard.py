@@ -84,6 +84,8 @@ def test_one_level_passes_through_its_return_period():
         ("pga_g,return_period_years\n0.1,0\n0.2,475\n", "return period"),
         ("pga_g,poe_50_years\n0.1,1\n0.2,0\n", "0 usable point"),
         (samples.openquake_csv(kind="rlz-003"), "rlz-003"),
+        (samples.openquake_csv() + "9" * 140_000, "damaged as a table"),
+        (samples.efehr_xml().replace('Span="50.0"', 'Span="50 0"'), "time is 2 numbers"),
         (samples.openquake_csv(imt="MMI"), "MMI"),
         (samples.openquake_csv().replace("investigation_time=50.0, ", ""), "investigation_time"),
         (samples.openquake_csv() + samples.openquake_csv().splitlines()[-1] + "\n", "2 sites"),

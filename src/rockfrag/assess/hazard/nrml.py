@@ -81,7 +81,10 @@ def _found(
         raise InputError(f"{path}: the investigation time of the probabilities is not stated.")
     measure = read_measure(imt, path)
     values, shares = (read_numbers(words or "", path) for words in (levels, poes[0].text))
-    (time,) = read_numbers(years, path) or [0.0]
+    times = read_numbers(years, path)
+    if len(times) != 1:
+        raise InputError(f"{path}: the investigation time is {len(times)} numbers; give one.")
+    (time,) = times
     rates = rates_of(shares, time, path)
     return Found(make_curve(measure, values, list(rates), path), read_statistic(kind, path))
 

@@ -24,7 +24,10 @@ def recognise(text: str) -> bool:
 
 def read(text: str, path: str) -> list[Found]:
     """Return the one curve of a file with one site."""
-    rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
+    try:
+        rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise InputError(f"{path}: it is damaged as a table ({error}).") from None
     comment = ",".join(rows[0]) if rows[0][0].lstrip().startswith("#") else ""
     table = rows[1:] if comment else rows
     facts = dict(re.findall(r"(\w+)='?([^',\"]+)'?", comment))
