@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from rockfrag.report.part import Results as ReportedResults
 
 _GENERAL: tuple[Stage[Study], ...] = (
-    motions.STAGE,
-    sweep.STAGE,
     tests.STAGE,
     fragility.STAGE,
     pedestal.STAGE,
@@ -50,7 +48,8 @@ def study_stages(study: AnyStudy) -> list[Stage[Any]]:
     if isinstance(study, CampaignStudy):
         return [campaign.STAGE, CAMPAIGN_REPORT]
     guests = [thesis.STAGE] if study.compare_with == "thesis" else []
-    stages = [one for one in (*_GENERAL, *guests) if one.wanted(study)]
+    before = [motions.STAGE, *sweep.sweep_stages(study)]
+    stages = [one for one in (*before, *_GENERAL, *guests) if one.wanted(study)]
     return [*stages, _report_stage(stages)]
 
 

@@ -4,6 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.fragility import with_measures
+from rockfrag.fragility.sweep_data import TableSweep
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.stages.floor_curves import export_curves, floor_curves, uplift_amplitude
 
@@ -43,7 +45,12 @@ def curves():
                 for a in np.geomspace(0.1, 2.0, 60)
             ]
     sweep, measures = pd.DataFrame(rows), pd.DataFrame(measures)
-    return floor_curves(sweep, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)[0]
+    columns = [name for name in measures if name not in ("name", "floor")]
+    sweeps = {
+        ("statue", str(floor)): TableSweep(with_measures(part, measures, columns))
+        for floor, part in sweep.groupby("floor", sort=False)
+    }
+    return floor_curves(sweeps, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)[0]
 
 
 def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves):

@@ -8,13 +8,20 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.stages.digest import source_digest, source_files
 from rockfrag.stages.pedestal import pedestal_tables
-from rockfrag.stages.sweep import sweep
+from rockfrag.stages.sweep import sweep_table
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
 AMPLITUDES = Amplitudes(0.2, 1.0, 10)
+
+
+def sweep(*about, **options) -> pd.DataFrame:
+    """Return the table of a sweep as its file has it: texts as texts."""
+    table = sweep_table(*about, **options).to_pandas()
+    texts = [name for name in table if isinstance(table[name].dtype, pd.CategoricalDtype)]
+    return table.astype(dict.fromkeys(texts, "str"))
 
 
 def motions() -> list[Motion]:

@@ -228,7 +228,8 @@ def bracket_interval(
     seed
         Seed of the bootstrap.
     """
-    over, notes = population(brackets.motion, brackets.event, over)
+    motions, events = (len(pd.unique(pd.Series(of))) for of in (brackets.motion, brackets.event))
+    over, notes = population(motions, events, over)
     fit, groups = bracket_fitter(brackets, over)
     found = resampled_interval(
         fit,

@@ -164,7 +164,7 @@ def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, fl
     """Group without which θ changes most, from the jackknife's refits, and by what factor."""
     names = pd.factorize(pd.Series(groups))[1]
     refits = interval.replicates
-    if interval.method != "jackknife" or len(refits) != len(names):
+    if interval.method != "jackknife" or not len(refits) == len(names) == interval.groups:
         return "", float("nan")
     slope = np.where(refits[:, 1] > 0, refits[:, 1], np.nan)
     change = -refits[:, 0] / slope + interval.estimate[0] / interval.estimate[1]

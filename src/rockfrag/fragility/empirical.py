@@ -4,12 +4,15 @@ Rocking bodies overturn at one amplitude and survive a larger one; a fitted curv
 these stand beside it.
 """
 
+from collections.abc import Iterable
+
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, Outcomes, positive, verdicts
+from rockfrag.shaketable.swept import Swept
 
 
 def wilson_interval(
@@ -70,8 +73,8 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
     rows, independent = [], []
     for k in np.unique(code):
         inside = code == k
-        largest = pd.Series(outcomes.trials[inside]).groupby(outcomes.motion[inside]).max()
-        independent.append(largest.sum())
+        motions, alone = outcomes.independent(inside)
+        independent.append(alone)
         n = outcomes.trials[inside].sum()
         rows.append(
             {
@@ -79,7 +82,7 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
                 "im_lower": outcomes.im[inside].min(),
                 "im_upper": outcomes.im[inside].max(),
                 "tests": int(n),
-                "motions": int(pd.Series(outcomes.motion[inside]).nunique()),
+                "motions": motions,
                 "overturned": int(outcomes.overturned[inside].sum()),
                 "share": outcomes.overturned[inside].sum() / n,
             }
@@ -128,9 +131,10 @@ def local_share(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = Non
         Standard deviation of the kernel in ln IM; by default 0.53 s n^(-1/5), half of Silverman's,
         which would flatten a steep rise.
     """
-    x = outcomes.log_im
     if bandwidth is None:
-        bandwidth = 0.53 * float(np.std(x)) * outcomes.n ** (-0.2)
+        bandwidth = 0.53 * outcomes.log_spread * outcomes.n ** (-0.2)
+    outcomes = outcomes.by_value()
+    x = outcomes.log_im
     if not bandwidth > 0:
         raise InputError(
             f"bandwidth: the kernel needs a width above zero in ln IM, got {bandwidth:g}; give "
@@ -190,6 +194,29 @@ def survival_windows(
         found = _windows(ordered["amplitude"].to_numpy(), ordered["overturned"].to_numpy())
         rows.append({**dict(zip(keys, name, strict=True)), **found})
     return pd.DataFrame(rows)
+
+
+def windows_of_swept(parts: Iterable[Swept]) -> pd.DataFrame:
+    """Survival windows of sweeps, part after part, by configuration, event, floor and motion.
+
+    Parameters
+    ----------
+    parts
+        Sweeps, see :func:`rockfrag.shaketable.swept.read_swept`.
+
+    Returns
+    -------
+    As :func:`survival_windows` with these columns for ``by``.
+    """
+    keys = ["configuration", "event", "floor", "motion"]
+    rows = [
+        {**about, **_windows(part.amplitude_g, overturned)}
+        for part in parts
+        for about, overturned in zip(
+            part.about[keys].to_dict("records"), part.overturned, strict=True
+        )
+    ]
+    return pd.DataFrame(rows).sort_values(keys, ignore_index=True)
 
 
 def _windows(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, float | int]:

@@ -210,6 +210,32 @@ def fit_incremental(
     """
     keys = [motion] if event is None else [motion, event]
     windows = survival_windows(sweep, amplitude=amplitude, by=keys)
+    outcomes = outcomes_from_table(sweep, amplitude, motion=motion, event=event)
+    return incremental_of(
+        windows, outcomes, amplitude=amplitude, motion=motion, event=event, level=level
+    )
+
+
+def incremental_of(
+    windows: pd.DataFrame,
+    outcomes: Outcomes,
+    *,
+    amplitude: str = "amplitude_g",
+    motion: str = "motion",
+    event: str | None = None,
+    level: float = 0.90,
+) -> IncrementalFragility:
+    """Fit as :func:`fit_incremental` does, to survival windows and verdicts.
+
+    Parameters
+    ----------
+    windows
+        Of the sweeps by ``motion`` and ``event``.
+    outcomes
+        All verdicts with the amplitude.
+    amplitude, motion, event, level
+        As of :func:`fit_incremental`.
+    """
     readings = {}
     for reading in ("first", "always"):
         brackets = brackets_from_table(
@@ -221,7 +247,6 @@ def fit_incremental(
             measure=amplitude,
         )
         readings[reading] = fragility_of_brackets(brackets, level)
-    outcomes = outcomes_from_table(sweep, amplitude, motion=motion, event=event)
     fell = windows["first_upper"].notna()
     share = float((windows.loc[fell, "windows"] > 0).mean()) if fell.any() else float("nan")
     return IncrementalFragility(

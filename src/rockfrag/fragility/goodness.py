@@ -86,7 +86,7 @@ def goodness_of_fit(
     if not np.isfinite(fit.theta):
         raise InputError(f"goodness of fit: there is no curve to judge ({fit.method}).")
     if dependence is None:
-        dependence = "motions" if outcomes.n_motions < outcomes.im.size else "tests"
+        dependence = "motions" if outcomes.is_swept else "tests"
     code = np.unique(bin_codes(outcomes, bins), return_inverse=True)[1]
     probability = fit.probability(outcomes.im)
 
@@ -99,7 +99,12 @@ def goodness_of_fit(
     deviance = float(_deviance(observed, expected, trials))
     rng = np.random.default_rng(seed)
     # cells within the bins: what is simulated and refitted, however many tests there are
-    cell, values = cells(outcomes.log_im + code * 1e3, CELLS)
+    shifted = outcomes.log_im + code * 1e3
+    cell, values = cells(shifted, CELLS)
+    apart = np.unique(code * values.size + cell, return_inverse=True)[1]
+    if apart.max() >= values.size:
+        # a cell reached over the end of a bin
+        cell, values = apart, np.bincount(apart, shifted) / np.bincount(apart)
     home = np.asarray(np.rint(values / 1e3), dtype=np.intp)
     pooled = _Pooled(
         values - 1e3 * home, np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64), home
@@ -110,7 +115,9 @@ def goodness_of_fit(
             pooled.trials.astype(np.int64), np.minimum(share, 1.0), size=(replicates, share.size)
         ).astype(np.float64)
     else:
-        drawn = _swept(outcomes, fit, cell, replicates, rng)
+        size = (replicates, outcomes.n_motions)
+        draw = rng.normal(size=size) if fit.link == "probit" else rng.logistic(size=size)
+        drawn = outcomes.drawn(np.log(fit.theta) + fit.beta * draw, cell)
     simulated = _refitted_deviance(pooled, fit, drawn)
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
     lower, upper = wilson_interval(observed, trials)
@@ -153,24 +160,6 @@ class _Pooled:
     log_im: Floats
     trials: Floats
     bin: NDArray[np.intp]
-
-
-def _swept(
-    outcomes: Outcomes,
-    fit: FragilityFit,
-    cell: NDArray[np.intp],
-    replicates: int,
-    rng: np.random.Generator,
-) -> Floats:
-    """Verdicts by cell where each motion has one capacity, shape (replicates, cells)."""
-    codes, names = pd.factorize(pd.Series(outcomes.motion))
-    size = (replicates, len(names))
-    draw = rng.normal(size=size) if fit.link == "probit" else rng.logistic(size=size)
-    capacity = np.log(fit.theta) + fit.beta * draw
-    log_im = outcomes.log_im
-    return np.array(
-        [np.bincount(cell, (log_im > one[codes]) * outcomes.trials) for one in capacity]
-    )
 
 
 def _refitted_deviance(pooled: _Pooled, fit: FragilityFit, drawn: Floats) -> Floats:

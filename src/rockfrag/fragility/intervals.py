@@ -95,11 +95,8 @@ class Interval:
         return np.asarray(function(lower)), np.asarray(function(upper))
 
 
-def population(
-    motion: NDArray[np.object_], event: NDArray[np.object_], over: Over | None
-) -> tuple[Over, tuple[str, ...]]:
+def population(motions: int, events: int, over: Over | None) -> tuple[Over, tuple[str, ...]]:
     """Choose what to resample, and warn where motions stand in for the few events they share."""
-    motions, events = len(pd.unique(pd.Series(motion))), len(pd.unique(pd.Series(event)))
     if over is None:
         over = "event" if events < motions else "motion"
     if over == "motion" and events < motions:
@@ -147,6 +144,7 @@ def verdict_fitter(
     start = whole.coefficients[0] if np.isfinite(whole.coefficients).all() else None
 
     def fit(weights: Floats) -> Floats:
+        weights = outcomes.group_weights(weights)
         y, m = weights @ fell, weights @ total
         apart = separated(values, y, m)
         result = np.empty((len(weights), 2))
@@ -191,9 +189,10 @@ def interval_over_motions(
     link
         ``probit`` (lognormal curve) or ``logit``.
     """
-    over, notes = population(outcomes.motion, outcomes.event, over)
+    over, notes = population(outcomes.n_motions, outcomes.n_events, over)
     labels = outcomes.motion if over == "motion" else outcomes.event
-    fit, groups = verdict_fitter(outcomes, labels, link)
+    fit = verdict_fitter(outcomes, labels, link)[0]
+    groups = outcomes.n_motions if over == "motion" else outcomes.n_events
     found = resampled_interval(
         fit,
         groups,
@@ -369,8 +368,15 @@ def all_but_one(groups: int, seed: int) -> Floats:
     """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups."""
     if groups <= MOST_BLOCKS:
         return np.asarray(1.0 - np.eye(groups))
-    block = np.random.default_rng(seed).permutation(groups) % MOST_BLOCKS
+    block = blocks_of(groups, seed)
     return np.asarray(block != np.arange(MOST_BLOCKS)[:, None], dtype=np.float64)
+
+
+def blocks_of(groups: int, seed: int = 0) -> NDArray[np.intp]:
+    """Block of each group, shape (groups,): itself, or one of ``MOST_BLOCKS`` of many groups."""
+    if groups <= MOST_BLOCKS:
+        return np.arange(groups)
+    return np.asarray(np.random.default_rng(seed).permutation(groups) % MOST_BLOCKS)
 
 
 def student(level: float, groups: int) -> float:

@@ -142,7 +142,14 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     if outcomes.im.size > MOST_ROWS:
         whole, outcomes = outcomes, _pooled(outcomes)
         found = fit_lognormal(outcomes, link=link)
-        return replace(found, n_motions=whole.n_motions, warnings=(*notes, *found.warnings))
+        # cells are not tests: which of a cell's tests overturned is known
+        likelihood = found.log_likelihood + float(whole.ways().sum() - outcomes.ways().sum())
+        return replace(
+            found,
+            n_motions=whole.n_motions,
+            log_likelihood=likelihood,
+            warnings=(*notes, *found.warnings),
+        )
     if outcomes.n_overturned in (0, outcomes.n):
         return _fit(outcomes, link, "none: all tests agree", (*notes, _all_agree(outcomes)))
     if np.ptp(outcomes.log_im) == 0:
@@ -228,12 +235,7 @@ def _log_likelihood(outcomes: Outcomes, coefficients: Floats, link: Link) -> flo
         terms = fell * special.log_ndtr(eta) + stood * special.log_ndtr(-eta)
     else:
         terms = -fell * np.logaddexp(0.0, -eta) - stood * np.logaddexp(0.0, eta)
-    ways = (
-        special.gammaln(outcomes.trials + 1)
-        - special.gammaln(fell + 1)
-        - special.gammaln(stood + 1)
-    )
-    return float((terms + ways).sum())
+    return float((terms + outcomes.ways()).sum())
 
 
 def _notes(outcomes: Outcomes) -> tuple[str, ...]:

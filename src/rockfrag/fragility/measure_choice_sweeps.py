@@ -18,7 +18,6 @@ from rockfrag.fragility.censored import (
     brackets_from_table,
     fit_brackets,
 )
-from rockfrag.fragility.empirical import survival_windows
 from rockfrag.fragility.held_out import capacity_scores
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.measure_choice import (
@@ -28,7 +27,8 @@ from rockfrag.fragility.measure_choice import (
     ranked,
     recommendation,
 )
-from rockfrag.fragility.observations import Floats, outcomes_from_table, positive
+from rockfrag.fragility.observations import Floats, positive
+from rockfrag.fragility.sweep_data import SweepData, TableSweep
 from rockfrag.fragility.sweeps import scale_power, with_measures
 
 
@@ -76,6 +76,39 @@ def recommend_sweep_measure(
     """
     if not columns:
         raise InputError("columns: name at least one intensity measure.")
+    data = TableSweep(with_measures(sweep, measures, columns), event)
+    return recommend_measure_of(
+        data,
+        measures,
+        columns,
+        given=given,
+        event=event,
+        level=level,
+        replicates=replicates,
+        seed=seed,
+    )
+
+
+def recommend_measure_of(
+    sweep: SweepData,
+    measures: pd.DataFrame,
+    columns: Sequence[str],
+    *,
+    given: Sequence[str] = (),
+    event: str | None = "event",
+    level: float = 0.90,
+    replicates: int = 200,
+    seed: int = 0,
+) -> MeasureChoice:
+    """Compare as :func:`recommend_sweep_measure` does, on sweeps in any form.
+
+    Parameters
+    ----------
+    sweep
+        Sweeps of one body.
+    measures, columns, given, event, level, replicates, seed
+        As of :func:`recommend_sweep_measure`.
+    """
     powers = {column: scale_power(column) for column in columns}
     fixed = [column for column, power in powers.items() if power == 0]
     if fixed:
@@ -84,18 +117,17 @@ def recommend_sweep_measure(
             "it; name it among the given columns instead."
         )
     keys = ["motion"] if event is None else ["motion", event]
-    windows = survival_windows(sweep, by=keys)
+    windows = sweep.windows("amplitude_g", keys)
     amplitude = brackets_from_table(
         windows, lower="first_lower", upper="first_upper", event=event, measure="amplitude_g"
     )
     known = measures.set_index("name")
-    verdicts = with_measures(sweep, measures, columns)
     extra = {column: _of_motions(known, windows, column) for column in given}
     pga = positive(known.loc[windows["motion"]], "pga_g", "measures")
     rows, brackets = [], []
     for column, power in powers.items():
         unit_value = positive(known.loc[windows["motion"]], column, "measures") / pga**power
-        outcomes = outcomes_from_table(verdicts, column, event=event, source="sweep")
+        outcomes = sweep.outcomes(column)
         scaled = Brackets(
             unit_value * amplitude.lower**power,
             unit_value * amplitude.upper**power,

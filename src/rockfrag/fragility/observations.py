@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy import special
 
 from rockfrag.errors import InputError
 
@@ -99,6 +100,51 @@ class Outcomes:
         """Number of rows that repeat the motion, the value and the verdict of an earlier row."""
         rows = pd.DataFrame({"m": self.motion, "x": self.im, "y": self.overturned / self.trials})
         return int(rows.duplicated().sum())
+
+    @property
+    def is_swept(self) -> bool:
+        """Whether motions have more than one row."""
+        return self.n_motions < self.im.size
+
+    @property
+    def log_spread(self) -> float:
+        """Standard deviation of ln IM of the rows."""
+        return float(np.std(self.log_im))
+
+    def ways(self) -> Floats:
+        """Logarithm of the number of ways in which so many of a row's tests can overturn, shape (n,)."""
+        stood = self.trials - self.overturned
+        ways = special.gammaln(self.trials + 1) - special.gammaln(self.overturned + 1)
+        return np.asarray(ways - special.gammaln(stood + 1))
+
+    def by_value(self) -> "Outcomes":
+        """The same tests in no more rows than a kernel estimate needs."""
+        return self
+
+    def group_weights(self, weights: Floats) -> Floats:
+        """Weights of the groups that rows are labelled with from those of motions or events."""
+        return weights
+
+    def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
+        """How many motions have tests in some rows, and tests of which a motion's several rows count once."""
+        largest = pd.Series(self.trials[inside]).groupby(self.motion[inside]).max()
+        return int(pd.Series(self.motion[inside]).nunique()), float(largest.sum())
+
+    def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
+        """Verdicts by cell where each motion has one capacity [ln IM], shape (replicates, cells).
+
+        Parameters
+        ----------
+        capacity
+            Of the motions in the order in which they first appear, shape (replicates, motions).
+        cell
+            Cell of each row, shape (n,).
+        """
+        codes = pd.factorize(pd.Series(self.motion))[0]
+        log_im = self.log_im
+        return np.array(
+            [np.bincount(cell, (log_im > one[codes]) * self.trials) for one in capacity]
+        )
 
 
 def name_and_unit(column: str) -> tuple[str, str]:

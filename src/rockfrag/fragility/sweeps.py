@@ -11,8 +11,9 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.drawn_curves import curve_points, share_points, verdict_bins
-from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
-from rockfrag.fragility.observations import outcomes_from_table, positive
+from rockfrag.fragility.estimators import Fragility, fragility_of, incremental_of
+from rockfrag.fragility.observations import positive
+from rockfrag.fragility.sweep_data import SweepData, TableSweep
 from rockfrag.records.motion import Motion
 
 _SCALE_LINEARLY = (
@@ -286,14 +287,41 @@ def fragility_tables(
     for column in by:
         if column not in sweep:
             raise InputError(f"sweep: there is no column {column!r}; correct the name.")
+    parts = (
+        (dict(zip(by, key, strict=True)), TableSweep(part, event))
+        for key, part in sweep.groupby(list(by), sort=True)
+    )
+    return tables_of_sweeps(parts, columns, event=event, record_set=record_set, level=level)
+
+
+def tables_of_sweeps(
+    sweeps: Iterable[tuple[Mapping[str, Any], SweepData]],
+    columns: Sequence[str],
+    *,
+    event: str | None = "event",
+    record_set: str = "",
+    level: float = 0.90,
+) -> FragilityTables:
+    """Fit as :func:`fragility_tables` does, to sweeps in any form, each with the labels of its curves.
+
+    Parameters
+    ----------
+    sweeps
+        Labels and sweeps of each configuration.
+    columns, event, record_set, level
+        As of :func:`fragility_tables`.
+    """
     rows: list[dict[str, Any]] = []
     bands, bins, shares = [], [], []
-    for key, part in sweep.groupby(list(by), sort=True):
-        labels = dict(zip(by, key, strict=True))
+    keys = ["motion"] if event is None else ["motion", event]
+    for labels, sweep in sweeps:
         for column in columns:
-            outcomes = outcomes_from_table(part, column, event=event, source="sweep")
+            outcomes = sweep.outcomes(column)
             if column in ("amplitude_g", "pga_g"):
-                result = fit_incremental(part, amplitude=column, event=event, level=level)
+                windows = sweep.windows(column, keys)
+                result = incremental_of(
+                    windows, outcomes, amplitude=column, event=event, level=level
+                )
                 readings = {
                     "mean_probability": result.probability,
                     "first_overturning": result.first,

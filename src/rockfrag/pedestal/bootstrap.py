@@ -1,6 +1,6 @@
 """Bootstrap over motions or events: intervals that bend with the data, and rank probabilities."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,9 @@ from scipy import special
 from rockfrag.pedestal.cluster_means import ROUNDING, Array
 
 DRAWS = 9_999
+
+DRAWN_AT_ONCE = 2_000_000
+"""Numbers drawn at a time; the stream of random numbers does not depend on it."""
 
 
 def bca_interval(
@@ -44,8 +47,8 @@ def bca_interval(
     if np.ptp(x) < ROUNDING:
         return np.nan, np.nan
     observed = float(statistic(x))
-    indices = np.random.default_rng(seed).integers(0, n, size=(draws, n))
-    drawn = np.sort(statistic(x[indices]))
+    samples = _samples(np.random.default_rng(seed), n, draws)
+    drawn = np.sort(np.concatenate([statistic(x[chosen]) for chosen in samples]))
     below = (np.sum(drawn < observed) + 0.5 * np.sum(drawn == observed)) / draws
     bias = special.ndtri(np.clip(below, 0.5 / draws, 1 - 0.5 / draws))
     left_out = np.array([float(statistic(np.delete(x, i))) for i in range(n)])
@@ -101,8 +104,8 @@ def rank_probabilities(
     else:
         cells = table.pivot_table(index=cluster, columns=factor, values=value, aggfunc="mean")
         grid = cells[levels].dropna().to_numpy()
-        chosen = rng.integers(0, len(grid), size=(draws, len(grid)))
-        drawn = grid[chosen].mean(axis=1)
+        samples = _samples(rng, len(grid), draws)
+        drawn = np.concatenate([grid[chosen].mean(axis=1) for chosen in samples])
     return pd.DataFrame(
         {
             "level": levels,
@@ -119,8 +122,15 @@ def share_largest(ranks: pd.DataFrame, level: str) -> float:
 
 
 def _resampled(means: Array, rng: np.random.Generator, draws: int) -> Array:
-    chosen = rng.integers(0, len(means), size=(draws, len(means)))
-    return np.asarray(means[chosen].mean(axis=1), dtype=np.float64)
+    samples = _samples(rng, len(means), draws)
+    return np.concatenate([means[chosen].mean(axis=1) for chosen in samples])
+
+
+def _samples(rng: np.random.Generator, n: int, draws: int) -> Iterator[npt.NDArray[np.int64]]:
+    """Draw ``draws`` samples of n out of n with replacement, some at a time so that memory stays small."""
+    at_once = max(1, DRAWN_AT_ONCE // max(n, 1))
+    for begin in range(0, draws, at_once):
+        yield rng.integers(0, n, size=(min(at_once, draws - begin), n))
 
 
 def _share_of(extreme: npt.NDArray[np.bool_]) -> Array:

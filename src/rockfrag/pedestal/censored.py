@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 from scipy import optimize
 from scipy.special import ndtr
@@ -19,8 +20,16 @@ from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import ROUNDING, Array, Estimate, t_beyond, t_estimate
 from rockfrag.pedestal.paired_tests import KEY, check_tests, pedestals_apart
 
+Rows = npt.NDArray[np.intp]
+
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 """Gauss-Legendre quadrature on (-1, 1)."""
+MOST_REFITTED = 50
+"""Events up to which the likelihood is fitted anew without each; of more, each one's pull on the effect is linear."""
+MOST_PAIRS = 2_000
+"""More pairs than this are put together where they are alike."""
+STEP = 1e-4
+"""Step of parameters for derivatives [-]."""
 FAR = 9.0
 """Standard deviations beyond which the normal density is nothing."""
 
@@ -51,14 +60,22 @@ class CensoredFit:
 
 @dataclass(frozen=True)
 class _Design:
-    """Bounds and regressors: per test, and which two tests form a pair."""
+    """Bounds and regressors: per test, and which two tests form a pair.
+
+    Of many pairs those with the same bounds and regressors are one with their number as its weight.
+    """
 
     lower: Array
     upper: Array
     x: Array
-    first: Array
-    second: Array
-    single: Array
+    first: Rows
+    second: Rows
+    weight: Array
+    single: Rows
+    pairs: Rows
+    """First test of each pair."""
+    place: Rows
+    """Where each pair is among ``first``."""
 
 
 def fit_censored(tests: pd.DataFrame) -> CensoredFit:
@@ -94,7 +111,8 @@ def fit_censored(tests: pd.DataFrame) -> CensoredFit:
             "scatter to model; the ratio is 1."
         )
     best, design = _maximum(clean)
-    effect = _jackknife(clean, best.x)
+    many = clean["event"].nunique() > MOST_REFITTED
+    effect = _linear(clean, best.x, design) if many else _jackknife(clean, best.x)
     return CensoredFit(
         effect=effect,
         sd_pair=math.exp(best.x[-2]),
@@ -125,8 +143,41 @@ def _jackknife(clean: pd.DataFrame, start: Array) -> Estimate:
         exact = rest[rest["censored"] == "none"]
         if set(exact["pedestal"]) != {"P", "NP"}:
             return Estimate(delta, math.nan, k, math.nan, math.nan, math.nan)
-        values.append(k * delta - (k - 1) * float(_maximum(rest, start)[0].x[0]))
-    spread = t_estimate(values)
+        values.append(float(_maximum(rest, start)[0].x[0]))
+    return _from_pseudo_values(delta, np.array(values))
+
+
+def _linear(clean: pd.DataFrame, best: Array, design: _Design) -> Estimate:
+    """Infinitesimal jackknife over events: what each pulls at the effect, from derivatives at the maximum."""
+    codes, names = pd.factorize(clean["event"], sort=True)
+    k, size = len(names), len(best)
+
+    def by_event(parameters: Array) -> Array:
+        pairs, single = _of_each(parameters, design)
+        found = np.bincount(codes[design.pairs], pairs[design.place], minlength=k)
+        return np.asarray(found + np.bincount(codes[design.single], single, minlength=k))
+
+    steps = STEP * np.eye(size)
+    score = np.column_stack([by_event(best + h) - by_event(best - h) for h in steps]) / (2 * STEP)
+    hessian = np.empty((size, size))
+    for i, one in enumerate(steps):
+        for j, other in enumerate(steps[: i + 1]):
+            corners = (
+                _loglik(best + one + other, design)
+                - _loglik(best + one - other, design)
+                - _loglik(best - one + other, design)
+                + _loglik(best - one - other, design)
+            )
+            hessian[i, j] = hessian[j, i] = corners / (4 * STEP**2)
+    # an event left out takes its share of the information with it
+    without = best[0] + k / (k - 1) * (score @ np.linalg.pinv(hessian)[:, 0])
+    return _from_pseudo_values(float(best[0]), without)
+
+
+def _from_pseudo_values(delta: float, without: Array) -> Estimate:
+    """Effect with the interval of the jackknife, from the effects without each event."""
+    k = len(without)
+    spread = t_estimate(k * delta - (k - 1) * without)
     shift = delta - spread.mean
     p = spread.p
     if spread.se > 0:
@@ -146,7 +197,15 @@ def _design(clean: pd.DataFrame) -> _Design:
     rows = [np.sort(index) for index in members.values()]
     two = np.array([index for index in rows if len(index) == 2], dtype=int).reshape(-1, 2)
     one = np.array([index[0] for index in rows if len(index) == 1], dtype=int)
-    return _Design(lower, upper, x, two[:, 0], two[:, 1], one)
+    first, second = two[:, 0], two[:, 1]
+    place, weight = np.arange(len(two)), np.ones(len(two))
+    if len(two) > MOST_PAIRS:
+        bounds = [side[rows] for rows in (first, second) for side in (lower, upper)]
+        alike = np.column_stack([*bounds, x[first], x[second]])
+        found = np.unique(alike, axis=0, return_index=True, return_inverse=True, return_counts=True)
+        place, weight = found[2].ravel(), found[3].astype(float)
+        first, second = first[found[1]], second[found[1]]
+    return _Design(lower, upper, x, first, second, weight, one, two[:, 0], place)
 
 
 def _maximum(
@@ -175,30 +234,34 @@ def _start(design: _Design) -> Array:
 
 def _loglik(parameters: Array, design: _Design) -> float:
     """Log-likelihood of (β, ln τ, ln σ)."""
+    pairs, single = _of_each(parameters, design)
+    return float(np.sum(single)) + float(np.sum(design.weight * pairs))
+
+
+def _of_each(parameters: Array, design: _Design) -> tuple[Array, Array]:
+    """Log-likelihood of each pair and of each single test."""
     tau, sigma = np.exp(parameters[-2:])
     sd = math.hypot(tau, sigma)
     rho = float(tau**2 / sd**2)
     mean = design.x @ parameters[:-2]
     low, high = (design.lower - mean) / sd, (design.upper - mean) / sd
-    total = 0.0
-    if design.single.size:
-        total += float(np.sum(_log_single(low[design.single], high[design.single], sd)))
+    single = _log_single(low[design.single], high[design.single], sd)
     one, two = design.first, design.second
     # the axis integrated by quadrature is the one with the exact figure, if there is one
     swap = (low[two] == high[two]) & (low[one] != high[one])
     first, second = np.where(swap, two, one), np.where(swap, one, two)
     exact = low[first] == high[first]
     residual = math.sqrt(1 - rho**2)
+    pairs = np.zeros(len(first))
     if exact.any():
         z, a, b = low[first][exact], low[second][exact], high[second][exact]
-        total += float(np.sum(_log_density(z) - math.log(sd)))
         conditional = _log_single((a - rho * z) / residual, (b - rho * z) / residual, residual * sd)
-        total += float(np.sum(conditional))
+        pairs[exact] = _log_density(z) - math.log(sd) + conditional
     if (~exact).any():
         a, b = low[first][~exact], high[first][~exact]
         c, d = low[second][~exact], high[second][~exact]
-        total += float(np.sum(np.log(_rectangle(a, b, c, d, rho, residual))))
-    return total
+        pairs[~exact] = np.log(_rectangle(a, b, c, d, rho, residual))
+    return pairs, single
 
 
 def _log_density(z: Array) -> Array:

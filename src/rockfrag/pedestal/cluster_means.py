@@ -246,6 +246,38 @@ def mean_effects(
     return found
 
 
+def without_each_event(table: pd.DataFrame) -> dict[str, Estimate]:
+    """`mean_effect` of the rows of all events but one, for each event in turn."""
+    names = sorted(table["event"].unique())
+    if len(names) < 2:
+        return {}
+    if len(names) == 2:
+        # what is sampled of the one that is left are its motions
+        return {name: mean_effect(table[table["event"] != name]) for name in names}
+    d, known = table["d"].to_numpy(dtype=float), _resolution_of(table)
+    _different, place = np.unique(np.round(d, 9) + 0.0, return_inverse=True)
+    event = pd.Categorical(table["event"], names).codes.astype(np.intp)
+    count = np.bincount(place)
+    own = pd.DataFrame({"event": event, "place": place}).groupby(["event", "place"]).size()
+    of_event = own.reset_index(name="n").groupby("event")
+    work = table[["event", "motion", "d"]]
+    d_means = work.groupby(["event", "motion"])["d"].mean().groupby(level="event").mean()
+    hidden_means: dict[int, pd.Series] = {}
+    found = {}
+    for number, name in enumerate(names):
+        rest = count.copy()
+        mine = of_event.get_group(number)
+        rest[mine["place"]] -= mine["n"]
+        tied = int(rest.argmax())
+        if tied not in hidden_means:
+            hidden = work.assign(d=np.where(place == tied, known, 0.0))
+            motions = hidden.groupby(["event", "motion"])["d"].mean()
+            hidden_means[tied] = motions.groupby(level="event").mean()
+        resolution = float(hidden_means[tied].drop(name).mean())
+        found[name] = t_estimate(d_means.drop(name), CONFIDENCE, resolution)
+    return found
+
+
 def slope_effect(
     table: pd.DataFrame, x: str = "s_c", value: str = "d", confidence: float = CONFIDENCE
 ) -> Estimate:

@@ -6,13 +6,16 @@ ln(1 + step) where both sides climbed the same ladder.  A test that never overtu
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+
+MOST_NAMED = 100
+"""Pairs and tests that notes call by their names; of more the number."""
 
 KEY = ["object", "event", "floor", "motion"]
 _NEEDED = ("object", "pedestal", "event", "floor", "amplitude_g")
@@ -51,7 +54,7 @@ class Pairs:
         notes = []
         bounded = self.table[self.table["bound"] != ""]
         if len(bounded):
-            names = ", ".join(
+            names = _some(
                 f"{name}/{motion} {bound} {math.exp(d):.3g}"
                 for name, motion, bound, d in zip(
                     bounded["object"],
@@ -70,12 +73,12 @@ class Pairs:
             np.isneginf(self.censored["d_lower"]) & np.isposinf(self.censored["d_upper"])
         ]
         if len(lost):
-            names = ", ".join("/".join(row) for row in lost[["object", "motion"]].to_numpy())
+            names = _some("/".join(row) for row in lost[["object", "motion"]].to_numpy())
             notes.append(
                 f"{_counted(len(lost), 'pair')} left out because both tests are unfinished ({names})"
             )
         if len(self.unpaired):
-            names = ", ".join(
+            names = _some(
                 f"{row.object}/{row.motion} without {row.missing}"
                 for row in self.unpaired.itertuples()
             )
@@ -83,6 +86,13 @@ class Pairs:
                 f"{_counted(len(self.unpaired), 'test')} without a partner left out ({names})"
             )
         return notes
+
+
+def _some(names: Iterable[str]) -> str:
+    """List names, of very many the first ones."""
+    listed = list(names)
+    rest = len(listed) - MOST_NAMED
+    return ", ".join(listed) if rest <= 0 else f"{', '.join(listed[:MOST_NAMED])} and {rest} more"
 
 
 def _counted(n: int, noun: str) -> str:

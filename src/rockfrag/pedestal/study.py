@@ -10,7 +10,13 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
 from rockfrag.pedestal.censored import CensoredFit, fit_censored
-from rockfrag.pedestal.cluster_means import ROUNDING, mean_effect, sampled_unit, unit_means
+from rockfrag.pedestal.cluster_means import (
+    ROUNDING,
+    mean_effect,
+    mean_effects,
+    sampled_unit,
+    unit_means,
+)
 from rockfrag.pedestal.equivalence import equivalence
 from rockfrag.pedestal.mixed import (
     AMPLITUDE,
@@ -121,8 +127,10 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     table = table.assign(floor=pd.Categorical(table["floor"], known))
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns), observed=True) if columns else [((), table)]
-        for key, part in groups:
-            effect = mean_effect(part)
+        number = table.groupby(list(columns), observed=True).ngroup() if columns else 0
+        effects = mean_effects(table.assign(group=number), "group")
+        for place, (key, part) in enumerate(groups):
+            effect = effects[place]
             unit = sampled_unit(part)
             flips = sign_flip_test(unit_means(part, unit))
             same = equivalence(effect)

@@ -8,13 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.files import write_table
+from rockfrag.files import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+MOTIONS_AT_ONCE = 64
+"""Motions of a row group of a file, which can be read by themselves."""
 
 
 @dataclass(frozen=True)
@@ -115,12 +119,34 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
             ],
         }
     )
-    write_table(table, path)
+    with whole_file(path) as file:
+        table.to_parquet(file, index=False, engine="pyarrow", row_group_size=MOTIONS_AT_ONCE)
 
 
-def read_motion_set(path: str | os.PathLike[str]) -> list[Motion]:
-    """Read what :func:`write_motion_set` wrote."""
-    table = pd.read_parquet(path)
+def read_motion_set(path: str | os.PathLike[str], part: tuple[int, int] = (0, 1)) -> list[Motion]:
+    """Read what :func:`write_motion_set` wrote, or part k of n of it, in order.
+
+    Parameters
+    ----------
+    path
+        The file.
+    part
+        Number of the part, from 0, and of parts in all.
+    """
+    with pq.ParquetFile(path) as file:
+        total, (number, parts) = file.metadata.num_rows, part
+        first, last = number * total // parts, (number + 1) * total // parts
+        found, begin = [], 0
+        for group in range(file.num_row_groups):
+            end = begin + file.metadata.row_group(group).num_rows
+            if begin < last and end > first:
+                rows = file.read_row_group(group).slice(max(first - begin, 0))
+                found += _motions(rows.slice(0, last - max(first, begin)).to_pandas())
+            begin = end
+    return found
+
+
+def _motions(table: pd.DataFrame) -> list[Motion]:
     return [
         Motion(
             acceleration=np.asarray(row["acceleration_m_s2"], dtype=np.float64),

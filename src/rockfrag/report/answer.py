@@ -145,7 +145,7 @@ def could_overturn(results: Results) -> list[str]:
     if results.study.vertical and not results.study.slides:
         from rockfrag.rocking.ensemble import LIGHT
 
-        lightest = results.verdicts["lightest"]
+        lightest = results.lightest
         light = int((lightest < LIGHT).sum())
         if light:
             words.append(

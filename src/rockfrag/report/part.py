@@ -9,13 +9,20 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 from markupsafe import Markup
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_set
 from rockfrag.shaketable.readings import READING
+from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
+
+MOST_MOTIONS = 50
+"""Motions of which a report shows every verdict; of a larger study it shows the first."""
 
 
 @dataclass(frozen=True)
@@ -142,13 +149,31 @@ class Results:
 
     @cached_property
     def verdicts(self) -> pd.DataFrame:
-        """Verdicts of every configuration at every amplitude: the sweeps without their responses."""
-        columns = ["configuration", "object", "motion", "amplitude_g", "overturned"]
-        if self.study.vertical and not self.study.slides:
-            columns.append("lightest")
-        paths = [self.folder / "sweep" / f"{one.slug}.parquet" for one in self.study.configurations]
-        parts = [pd.read_parquet(path, columns=columns) for path in paths]
+        """Verdicts of every configuration at every amplitude, under no more motions than a page shows."""
+        parts = []
+        for one in self.study.configurations:
+            jobs = range(self.study.sweep_jobs)
+            shown = 0
+            for part in read_swept(self.folder / self.study.sweep_file(one, job) for job in jobs):
+                rows = part.about.index.repeat(part.amplitude_g.size)
+                table = part.about.loc[rows, ["configuration", "object", "motion"]]
+                parts.append(
+                    table.assign(
+                        amplitude_g=np.tile(part.amplitude_g, len(part.about)),
+                        overturned=part.overturned.ravel(),
+                    )
+                )
+                shown += len(part.about)
+                if shown >= MOST_MOTIONS:
+                    break
         return pd.concat(parts, ignore_index=True)
+
+    @cached_property
+    def lightest(self) -> NDArray[np.float64]:
+        """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
+        paths = [self.folder / path for path in self.study.sweep_files]
+        parts = [pq.read_table(path, columns=["lightest"])["lightest"].to_numpy() for path in paths]
+        return np.concatenate(parts)
 
     @property
     def objects(self) -> list[str]:

@@ -11,7 +11,14 @@ from rockfrag.files import write_text
 from rockfrag.processes import in_processes
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import Picture, read_picture, render
-from rockfrag.report.part import Answer, FigureSpec, Part, Results, Section
+from rockfrag.report.part import (
+    MOST_MOTIONS,
+    Answer,
+    FigureSpec,
+    Part,
+    Results,
+    Section,
+)
 from rockfrag.report.provenance import provenance
 from rockfrag.report.wording import counted
 from rockfrag.study.study import Study
@@ -114,7 +121,7 @@ def _live(results: Results) -> Markup:
     if not study.simulated_in_page:
         return Markup()
     bodies = {one.name: one.body for one in study.configurations}
-    return live_kernel(bodies, results.floors, results.verdicts)
+    return live_kernel(bodies, results.floors[:MOST_MOTIONS], results.verdicts)
 
 
 def _lead(results: Results) -> str:

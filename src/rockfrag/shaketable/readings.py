@@ -5,14 +5,15 @@ specimen always overturns are three different figures; between the last two lie 
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.shaketable.protocols import Outcome, Protocol, climb, measured
+from rockfrag.shaketable.protocols import Outcome, Protocol, measured
+from rockfrag.shaketable.swept import ABOUT, FALLEN, Swept, swept_of
 from rockfrag.shaketable.tests_table import as_tests_table
 
 Floats = NDArray[np.float64]
@@ -35,8 +36,6 @@ _NEEDED = (
     "overturned_body",
 )
 
-_ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
-
 
 def first_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
     """Bounds of the least amplitude that overturns.
@@ -49,7 +48,17 @@ def first_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
         Whether each overturned, shape (n,).
     """
     _check_sweep(amplitudes, overturned, "sweep")
-    return climb(amplitudes, dict(zip(amplitudes, overturned, strict=True)).__getitem__)
+    return _climbed(amplitudes, overturned)
+
+
+def _climbed(amplitudes: Floats, overturned: Verdicts) -> Outcome:
+    """Bounds of the first overturning, as :func:`rockfrag.shaketable.protocols.climb` finds them."""
+    first = int(overturned.argmax()) if overturned.any() else overturned.size
+    survived = float(amplitudes[first - 1]) if first else 0.0
+    if first == overturned.size:
+        return Outcome(survived, math.nan, "limit reached" if first else "no step fits")
+    remark = "" if first else "overturned at the first step"
+    return Outcome(survived, float(amplitudes[first]), remark)
 
 
 def always_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
@@ -65,6 +74,10 @@ def always_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
         Whether each overturned, shape (n,).
     """
     _check_sweep(amplitudes, overturned, "sweep")
+    return _always(amplitudes, overturned)
+
+
+def _always(amplitudes: Floats, overturned: Verdicts) -> Outcome:
     survived = np.flatnonzero(~overturned)
     if survived.size == 0:
         return Outcome(0.0, float(amplitudes[0]), "overturned at the first step")
@@ -95,6 +108,14 @@ def step_protocol(
         Number of the repetition, from 1.
     """
     _check_sweep(amplitudes, overturned, "sweep")
+    climbed = _rungs(amplitudes, protocol, limit_g, repetition)
+    return _climbed(amplitudes[climbed], overturned[climbed])
+
+
+def _rungs(
+    amplitudes: Floats, protocol: Protocol, limit_g: float | None, repetition: int
+) -> NDArray[np.intp]:
+    """Which amplitudes of a sweep the protocol's ladder takes."""
     rungs = protocol.amplitudes(limit_g, repetition)
     spacing = float(np.diff(amplitudes[-2:])[0]) if amplitudes.size > 1 else 0.0
     rungs = rungs[rungs <= amplitudes[-1] + spacing / 2]
@@ -105,9 +126,7 @@ def step_protocol(
         above -= rungs - amplitudes[above - 1] < amplitudes[above] - rungs
     nearest = np.unique(above)
     limit = protocol.limit_g if limit_g is None else min(limit_g, protocol.limit_g)
-    nearest = nearest[amplitudes[nearest] <= limit * (1 + 1e-9)]
-    verdict = dict(zip(amplitudes, overturned, strict=True))
-    return climb(amplitudes[nearest], verdict.__getitem__)
+    return np.asarray(nearest[amplitudes[nearest] <= limit * (1 + 1e-9)])
 
 
 def tests_from_sweep(
@@ -149,44 +168,80 @@ def tests_from_sweep(
     for reading in readings:
         if reading not in READINGS:
             raise InputError(f"protocol: reading {reading!r} is not one of {', '.join(READINGS)}.")
+    return tests_from_swept(
+        swept_of(sweep, ["configuration", "motion"], list(ABOUT)),
+        protocol,
+        readings=readings,
+        limits_g=limits_g,
+    )
+
+
+def tests_from_swept(
+    parts: Iterable[Swept],
+    protocol: Protocol,
+    *,
+    readings: Sequence[str] = READINGS,
+    limits_g: Mapping[str, float] | None = None,
+) -> pd.DataFrame:
+    """Read sweeps as tests, part after part, as :func:`tests_from_sweep` does those of a table.
+
+    Parameters
+    ----------
+    parts
+        Sweeps, see :func:`rockfrag.shaketable.swept.read_swept`.
+    protocol, readings, limits_g
+        As of :func:`tests_from_sweep`.
+    """
     rows: list[dict[str, object]] = []
-    for _, group in sweep.groupby(["configuration", "motion"], sort=False):
-        one = group.sort_values("amplitude_g")
-        limit = None if limits_g is None else limits_g.get(str(one["motion"].iloc[0]))
-        for reading in readings:
-            rows.extend(_rows(one, protocol, reading, limit))
+    for part in parts:
+        ladders: dict[tuple[float | None, int], NDArray[np.intp]] = {}
+        for place, about in enumerate(part.about.to_dict("records")):
+            limit = None if limits_g is None else limits_g.get(about["motion"])
+            _check_sweep(
+                part.amplitude_g,
+                part.overturned[place],
+                f"{about['configuration']} {about['motion']}",
+            )
+            for repetition in range(1, protocol.repetitions + 1):
+                if (limit, repetition) not in ladders:
+                    ladder = _rungs(part.amplitude_g, protocol, limit, repetition)
+                    ladders[limit, repetition] = ladder
+            climbed = [ladders[limit, number + 1] for number in range(protocol.repetitions)]
+            for reading in readings:
+                rows.extend(_rows(part, place, about, protocol, reading, climbed))
     return as_tests_table(rows)
 
 
 def _rows(
-    one: pd.DataFrame, protocol: Protocol, reading: str, limit_g: float | None
+    part: Swept,
+    place: int,
+    about: Mapping[Hashable, object],
+    protocol: Protocol,
+    reading: str,
+    ladders: Sequence[NDArray[np.intp]],
 ) -> list[dict[str, object]]:
-    amplitudes = one["amplitude_g"].to_numpy(dtype=np.float64)
-    overturned = one["overturned"].to_numpy(dtype=bool)
-    bodies = dict(zip(amplitudes, one["overturned_body"], strict=True))
-    head = one.iloc[0]
-    name = f"{head['configuration']} {head['motion']}"
-    _check_sweep(amplitudes, overturned, name)
-    outcomes = []
+    amplitudes, overturned = part.amplitude_g, part.overturned[place]
     if reading == "step_protocol":
-        for repetition in range(1, protocol.repetitions + 1):
-            outcomes.append(step_protocol(amplitudes, overturned, protocol, limit_g, repetition))
+        outcomes = [_climbed(amplitudes[rungs], overturned[rungs]) for rungs in ladders]
     elif reading == "first_overturning":
-        outcomes.append(first_overturning(amplitudes, overturned))
+        outcomes = [_climbed(amplitudes, overturned)]
     else:
-        outcomes.append(always_overturning(amplitudes, overturned))
+        outcomes = [_always(amplitudes, overturned)]
     rows = []
     for repetition, true in enumerate(outcomes, start=1):
-        shown = measured(true, protocol.measurement, str(head["configuration"]))
+        shown = measured(true, protocol.measurement, str(about["configuration"]))
+        body = ""
+        if not true.censored:
+            body = FALLEN[part.fallen[place, int(np.searchsorted(amplitudes, true.upper_g))]]
         rows.append(
             {
-                "test": name,
-                **{key: head[key] for key in _ABOUT},
+                "test": f"{about['configuration']} {about['motion']}",
+                **{key: about[key] for key in ABOUT},
                 "lower_g": shown.lower_g,
                 "upper_g": shown.upper_g,
                 "amplitude_g": protocol.report(shown),
                 "censored": "right" if shown.censored else "none",
-                "overturned_body": bodies.get(true.upper_g, ""),
+                "overturned_body": body,
                 "repetition": repetition,
                 "remark": shown.remark,
                 "reading": reading,

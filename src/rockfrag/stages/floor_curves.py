@@ -9,6 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.files import file_name
+from rockfrag.fragility.sweep_data import SweepData
 from rockfrag.rocking.bodies import Block, Body
 
 GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
@@ -33,8 +34,13 @@ def uplift_amplitude(body: Body) -> float:
     return min(-pole * arm.x / arm.y for pole, arm in arms)
 
 
+def floor_measures(level: int) -> tuple[str, ...]:
+    """Measures of the curves on a floor, by its level; 0 moves as the ground does."""
+    return GROUND_MEASURES if level == 0 else FLOOR_MEASURES
+
+
 def floor_curves(
-    sweep: pd.DataFrame,
+    sweeps: Mapping[tuple[str, str], SweepData],
     measures: pd.DataFrame,
     floors: Mapping[str, int],
     bodies: Mapping[str, Body],
@@ -46,8 +52,8 @@ def floor_curves(
 
     Parameters
     ----------
-    sweep
-        Sweeps of all configurations.
+    sweeps
+        Sweeps of each configuration on each floor, which know the measures of that floor.
     measures
         Intensity measures of the motions as recorded.
     floors
@@ -77,23 +83,23 @@ def floor_curves(
     """
     from rockfrag.fragility import fragility_of, fragility_row, outcomes_from_table, with_measures
     from rockfrag.fragility.drawn_curves import share_points
+    from rockfrag.fragility.sweep_data import TableSweep
     from rockfrag.fragility.states import fit_uplift
 
     shares = []
     rows = []
-    for (name, floor), part in sweep.groupby(["configuration", "floor"], sort=False):
-        height = floors[str(floor)]
-        columns = GROUND_MEASURES if height == 0 else FLOOR_MEASURES
-        measured = with_measures(part, measures, [*columns])
-        motions = part.drop_duplicates("motion")
-        threshold = uplift_amplitude(bodies[str(name)])
+    for (name, floor), sweep in sweeps.items():
+        height = floors[floor]
+        columns = floor_measures(height)
+        motions = sweep.motions()
+        threshold = uplift_amplitude(bodies[name])
         at_uplift = with_measures(motions.assign(amplitude_g=threshold), measures, [*columns])
         for column in columns:
             labels = {"configuration": name, "floor": floor, "floor_level": height}
-            outcomes = outcomes_from_table(measured, column, event="event", source="sweep")
-            states = {"overturned": fragility_of(outcomes, level=level)}
-            if set(SLIPS) <= set(measured):
-                moved = measured.assign(overturned=displaced(measured))
+            states = {"overturned": fragility_of(sweep.outcomes(column), level=level)}
+            # of counted sweeps the slips are not known
+            if isinstance(sweep, TableSweep) and set(SLIPS) <= set(sweep.table):
+                moved = sweep.table.assign(overturned=displaced(sweep.table))
                 outcomes = outcomes_from_table(moved, column, event="event", source="sweep")
                 states = {"slides": fragility_of(outcomes, level=level), **states}
             if rocks_at_once:

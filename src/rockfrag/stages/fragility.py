@@ -1,40 +1,44 @@
 """Fragility: curves of every configuration, the measure that foretells overturning best, exports."""
 
+from dataclasses import dataclass
+
 import pandas as pd
 
-from rockfrag.stages.floor_curves import export_curves, floor_curves
-from rockfrag.stages.measure_choice import measure_choice
+from rockfrag.fragility.sweep_data import SweepData
+from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
+from rockfrag.stages.measure_choice import CANDIDATES, measure_choice
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 
 
 def run(job: Job[Study]) -> Results:
     """Yield curves, survival windows and the comparison of measures; write curves for export."""
-    from rockfrag.fragility.empirical import survival_windows
-    from rockfrag.fragility.sweeps import fragility_tables, record_set_hash, with_measures
+    from rockfrag.fragility.sweeps import record_set_hash, tables_of_sweeps
 
     settings, measures = job.study.fragility, job.table("measures")
-    sweep = pd.concat([job.table(name) for name in job.study.sweep_tables], ignore_index=True)
     record_set = record_set_hash(job.motions("motions/records"))
     columns = list(settings.measures)
-    measured = with_measures(sweep, measures, columns)
-    found = fragility_tables(measured, columns, record_set=record_set, level=settings.confidence)
-    several = len(set(measured["floor"])) > 1
+    data = _counted(job, measures) if job.study.is_large else _rows(job, measures)
+    of_all = data.of_all
+    found = tables_of_sweeps(
+        (({"configuration": name}, of_all[name]) for name in sorted(of_all)),
+        columns,
+        record_set=record_set,
+        level=settings.confidence,
+    )
+    several = len(set(measures["floor"])) > 1
     yield "fragility", _at_the_base(found.curves, several)
     yield "fragility_bands", _at_the_base(found.bands, several)
     yield "fragility_bins", _at_the_base(found.bins, several)
     yield "fragility_shares", _at_the_base(found.shares, several)
-    by = ["configuration", "event", "floor", "motion"]
-    yield "survival_windows", survival_windows(measured, by=by)
-    choice = measure_choice(sweep, measures, settings.confidence, job.study.seed)
+    yield "survival_windows", data.windows
+    choice = measure_choice(of_all, measures, settings.confidence, job.study.seed)
     yield "measure_choice", choice
-    bodies = {one.name: one.body for one in job.study.configurations}
-    floors = job.study.floors
     by_floor, floor_shares = floor_curves(
-        sweep,
+        data.of_floors,
         measures,
-        floors,
-        bodies,
+        job.study.floors,
+        {one.name: one.body for one in job.study.configurations},
         record_set,
         settings.confidence,
         rocks_at_once=not (job.study.slides or job.study.vertical),
@@ -50,6 +54,59 @@ def run(job: Job[Study]) -> Results:
     job.log.info("curves: %d; best measures: %s", len(found.curves), ", ".join(dict.fromkeys(best)))
 
 
+BY = ["configuration", "event", "floor", "motion"]
+
+
+@dataclass(frozen=True)
+class _Sweeps:
+    """Sweeps by configuration, and by configuration and floor; survival windows of all."""
+
+    of_all: dict[str, SweepData]
+    of_floors: dict[tuple[str, str], SweepData]
+    windows: pd.DataFrame
+
+
+def _rows(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
+    """Sweeps as tables, every verdict a row."""
+    from rockfrag.fragility.empirical import survival_windows
+    from rockfrag.fragility.sweep_data import TableSweep
+    from rockfrag.fragility.sweeps import with_measures
+
+    sweep = pd.concat(
+        [pd.read_parquet(job.file(path)) for path in job.study.sweep_files], ignore_index=True
+    )
+    wanted = list(dict.fromkeys([*job.study.fragility.measures, *CANDIDATES]))
+    measured = with_measures(sweep, measures, wanted)
+    of_all: dict[str, SweepData] = {
+        str(name): TableSweep(part) for name, part in measured.groupby("configuration", sort=False)
+    }
+    of_floors: dict[tuple[str, str], SweepData] = {}
+    for (name, floor), part in sweep.groupby(["configuration", "floor"], sort=False):
+        columns = floor_measures(job.study.floors[str(floor)])
+        of_floors[str(name), str(floor)] = TableSweep(with_measures(part, measures, columns))
+    return _Sweeps(of_all, of_floors, survival_windows(measured, by=BY))
+
+
+def _counted(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
+    """Sweeps as counts, read part by part."""
+    from rockfrag.fragility.counted import CountedSweep
+
+    wanted = list(dict.fromkeys([*job.study.fragility.measures, *CANDIDATES]))
+    floors = {name: floor_measures(level) for name, level in job.study.floors.items()}
+    found = {}
+    for configuration in job.study.configurations:
+        found[configuration.name] = CountedSweep(
+            job.swept(configuration), job.swept(configuration), measures, {"": wanted, **floors}
+        )
+    return _Sweeps(
+        {name: one.of_floor("") for name, one in found.items()},
+        {(name, floor): one.of_floor(floor) for name, one in found.items() for floor in floors},
+        pd.concat([one.windows("") for one in found.values()], ignore_index=True).sort_values(
+            BY, ignore_index=True
+        ),
+    )
+
+
 def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
     """Name peaks for what they are where motions of several floors share a curve: of the base."""
     if not several_floors:
@@ -62,7 +119,7 @@ def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
 STAGE = Stage(
     name="fragility",
     run=run,
-    inputs=lambda study: ("measures", "motions/records.parquet", *study.sweep_tables),
+    inputs=lambda study: ("measures", "motions/records.parquet", *study.sweep_files),
     outputs=(
         "fragility",
         "fragility_bands",

@@ -2,6 +2,7 @@
 
 import errno
 import logging
+import math
 import os
 import re
 import sys
@@ -13,7 +14,7 @@ from pathlib import Path
 from rockfrag.errors import InputError
 
 _LINE = re.compile(r"\S+ \S+ INFO (.*)")
-_TOOK = re.compile(r"took ([0-9.]+) s, ([0-9.]+) s of processors")
+_TOOK = re.compile(r"took ([0-9.]+) s, ([0-9.]+) s of processors, (\d+|nan) MiB")
 
 
 @contextmanager
@@ -36,7 +37,7 @@ def logged(path: str, name: str) -> Iterator[logging.Logger]:
         _log_to(path, log)
         yield log
         took = time.monotonic() - start
-        log.info("took %.1f s, %.1f s of processors", took, time.process_time())
+        log.info("took %.1f s, %.1f s of processors, %.0f MiB", took, *_used())
     except InputError as error:
         log.error("%s", error)
         _fail(name, str(error), path)
@@ -51,6 +52,18 @@ def logged(path: str, name: str) -> Iterator[logging.Logger]:
             # what a full disk has not taken is flushed once more, in vain
             with suppress(OSError):
                 handler.close()
+
+
+def _used() -> tuple[float, float]:
+    """Processor time of this process and its children [s], and the largest memory of any of them [MiB]."""
+    if sys.platform == "win32":
+        return time.process_time(), math.nan
+    import resource
+
+    both = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    unit = 2**20 if sys.platform == "darwin" else 2**10
+    seconds = sum(one.ru_utime + one.ru_stime for one in both)
+    return seconds, max(one.ru_maxrss for one in both) / unit
 
 
 def _log_to(path: str, log: logging.Logger) -> None:

@@ -1,6 +1,10 @@
 """Which intensity measure foretells the overturning of each configuration."""
 
+from collections.abc import Mapping
+
 import pandas as pd
+
+from rockfrag.fragility.sweep_data import SweepData
 
 CANDIDATES = (
     *("pga_g", "pgv_cm_s", "pgd_cm", "sa_0_3s_g", "sa_1_0s_g"),
@@ -13,14 +17,14 @@ GIVEN = ("mean_period_s", "d5_95_s")
 
 
 def measure_choice(
-    sweep: pd.DataFrame, measures: pd.DataFrame, level: float, seed: int
+    sweeps: Mapping[str, SweepData], measures: pd.DataFrame, level: float, seed: int
 ) -> pd.DataFrame:
     """Compare measures for every configuration.
 
     Parameters
     ----------
-    sweep
-        Sweeps of all configurations.
+    sweeps
+        Sweeps of each configuration, which know the candidates.
     measures
         Intensity measures of the motions as recorded.
     level, seed
@@ -32,12 +36,12 @@ def measure_choice(
     :class:`rockfrag.fragility.measure_choice.MeasureChoice`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.
     """
-    from rockfrag.fragility import recommend_sweep_measure
+    from rockfrag.fragility.measure_choice_sweeps import recommend_measure_of
 
     parts = []
-    for name, rows in sweep.groupby("configuration", sort=False):
-        choice = recommend_sweep_measure(
-            rows, measures, CANDIDATES, given=GIVEN, level=level, seed=seed
+    for name, sweep in sweeps.items():
+        choice = recommend_measure_of(
+            sweep, measures, CANDIDATES, given=GIVEN, level=level, seed=seed
         )
         table = choice.table.copy()
         table.insert(0, "configuration", name)

@@ -1,11 +1,12 @@
 """The step protocol as far as a shaker's limits allow, beside the one without limits."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import pandas as pd
 
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.swept import Swept
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
 
@@ -28,7 +29,9 @@ def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
     return shaker_table(study.more.shaker, motions, heaviest(study.configurations))
 
 
-def limited_tests(sweeps: pd.DataFrame, protocol: Protocol, limits: pd.DataFrame) -> pd.DataFrame:
+def limited_tests(
+    sweeps: Iterable[Swept], protocol: Protocol, limits: pd.DataFrame
+) -> pd.DataFrame:
     """Read the step protocol with the shaker's limits.
 
     Parameters
@@ -44,14 +47,14 @@ def limited_tests(sweeps: pd.DataFrame, protocol: Protocol, limits: pd.DataFrame
     -------
     Table of tests whose reading is ``LIMITED``; the remark of a test that the shaker ended says so.
     """
-    from rockfrag.shaketable.readings import READING, tests_from_sweep
+    from rockfrag.shaketable.readings import READING, tests_from_swept
 
-    known = limits.set_index("motion")
+    known = limits.set_index("motion").to_dict("index")
     largest = dict(zip(limits["motion"], limits["limit_g"].astype(float), strict=True))
-    tests = tests_from_sweep(sweeps, protocol, readings=[READING], limits_g=largest)
+    tests = tests_from_swept(sweeps, protocol, readings=[READING], limits_g=largest)
     remarks = []
     for test in tests.to_dict("records"):
-        limit = known.loc[test["motion"]]
+        limit = known[test["motion"]]
         ended = test["censored"] == "right" and limit["limit_g"] < protocol.limit_g
         remarks.append(
             f"shaker's {limit['limited_by']} reached at {limit['limit_g']:.3f} g"

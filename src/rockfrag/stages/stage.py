@@ -17,6 +17,8 @@ from rockfrag.stages.digest import source_digest
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
+    from rockfrag.shaketable.swept import Swept
+    from rockfrag.study.configurations import Configuration
 
 
 class Named(Protocol):
@@ -38,8 +40,8 @@ Results = Iterator[tuple[str, "pd.DataFrame | list[Motion]"]]
 _LIBRARIES_MB = 1500
 """Memory of a process that has loaded and compiled all that a stage uses [MiB]."""
 
-_BYTES_A_HISTORY = 600
-"""Memory for a row of a sweep while it is read and grouped: three copies of it."""
+_BYTES_A_SWEEP = 20_000
+"""Memory for what statistics know of a configuration under a motion, whatever the number of amplitudes."""
 
 
 @dataclass(frozen=True)
@@ -94,8 +96,8 @@ class Stage(Generic[S]):
         return max(1, cores // 2) if self.leaves_half else cores
 
     def memory_mb(self, study: S) -> int:
-        """Memory that a cluster should lend [MiB]: libraries, and the sweeps as tables."""
-        return _LIBRARIES_MB + int(getattr(study, "histories", 0) * _BYTES_A_HISTORY / 2**20)
+        """Memory that a cluster should lend [MiB]: libraries, and what is known of every sweep."""
+        return _LIBRARIES_MB + int(getattr(study, "sweeps", 0) * _BYTES_A_SWEEP / 2**20)
 
     def output_files(self, study: S) -> list[str]:
         """Paths of the results in the study's folder, those of a table in both forms."""
@@ -153,16 +155,31 @@ class Job(Generic[S]):
         """Read a table of another stage by its name."""
         return pd.read_parquet(self._declared(f"{name}.parquet"))
 
-    def motions(self, name: str) -> "list[Motion]":
-        """Read a set of motions of another stage, such as ``motions/ground``."""
+    def motions(self, name: str, part: tuple[int, int] = (0, 1)) -> "list[Motion]":
+        """Read a set of motions of another stage, such as ``motions/ground``, or part k of n of it."""
         from rockfrag.records.motion import read_motion_set
 
-        return read_motion_set(self._declared(f"{name}.parquet"))
+        return read_motion_set(self._declared(f"{name}.parquet"), part)
+
+    def file(self, path: str) -> Path:
+        """Return the whole path of another stage's file."""
+        return self._declared(path)
+
+    def swept(self, configuration: "Configuration") -> "Iterator[Swept]":
+        """Read the verdicts of a configuration's sweeps, part by part."""
+        from rockfrag.shaketable.swept import read_swept
+
+        jobs = range(self.study.sweep_jobs)
+        yield from read_swept(
+            self._declared(self.study.sweep_file(configuration, one)) for one in jobs
+        )
 
     def write(self, name: str, result: "pd.DataFrame | list[Motion]") -> None:
         """Write a result in the forms that its stage declares."""
         declared = _of(self.stage.outputs, self.study)
-        if isinstance(result, pd.DataFrame) and name in declared:
+        if isinstance(result, pd.DataFrame) and f"{name}.parquet" in declared:
+            write_table(result, self.folder / f"{name}.parquet")
+        elif isinstance(result, pd.DataFrame) and name in declared:
             write_table(result, self.folder / f"{name}.csv", self.folder / f"{name}.parquet")
         elif isinstance(result, list) and f"{name}.parquet" in declared:
             from rockfrag.records.motion import write_motion_set

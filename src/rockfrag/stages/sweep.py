@@ -1,15 +1,20 @@
 """Every configuration under every motion at every amplitude: what all statistics start from."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from rockfrag.files import whole_file
 from rockfrag.records.motion import Motion
+from rockfrag.shaketable.swept import FALLEN
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
@@ -19,60 +24,134 @@ from rockfrag.units import GRAVITY
 if TYPE_CHECKING:
     from rockfrag.rocking import EnsembleResult
 
-FALLEN = ("", "pedestal", "statue")
-
 NEAR = 1 + 0.01 * np.arange(-10, 11)
 """Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""
 
 SLIPS = ("slip_ground", "slip_interface", "peak_slip_ground", "peak_slip_interface")
 """What an ensemble says of sliding [m]."""
 
-BATCH = 12
-"""Motions shaken at a time: few enough for little memory, enough to keep every core busy."""
+ROWS_AT_ONCE = 131_072
+"""Histories in memory at a time, and of a row group of a file."""
+
+FEWEST_AT_ONCE = 12
+"""Motions shaken at a time are no fewer, to keep every core busy."""
+
+LONG_JOB = 2_000_000
+"""A job of more histories than this gets all cores that a machine has."""
 
 
-def run(job: Job[Study]) -> Results:
-    """Yield the sweep of every configuration."""
-    from rockfrag.rocking.ensemble import LIGHT
+def sweep_stages(study: Study) -> list[Stage[Study]]:
+    """Return the stages of the sweeps: one, or for many histories several that share the motions."""
+    jobs = study.sweep_jobs
+    if jobs == 1:
+        return [_stage("sweep", 0, [*study.sweep_files, "as_recorded"])]
+    parts = [
+        _stage(
+            f"sweep_{job:03d}",
+            job,
+            [study.sweep_file(one, job) for one in study.configurations],
+            parallel=study.histories > jobs * LONG_JOB,
+        )
+        for job in range(jobs)
+    ]
+    return [*parts, _stage("as_recorded", None, ["as_recorded"])]
 
-    motions = job.motions("motions/floors")
-    ups = job.motions("motions/vertical") if job.study.vertical else None
-    histories, recorded = 0, []
-    for configuration in job.study.configurations:
-        parts = [
-            sweep(
-                configuration,
-                motions[i : i + BATCH],
-                job.study.amplitudes,
-                job.threads,
-                None if ups is None else ups[i : i + BATCH],
+
+def _stage(
+    name: str, part: int | None, outputs: Sequence[str], parallel: bool = True
+) -> Stage[Study]:
+    """Return the stage of a part of the motions, or of the motions as recorded where it is None."""
+
+    def run(job: Job[Study]) -> Results:
+        if part is not None:
+            _sweep_part(job, part)
+        if "as_recorded" in outputs:
+            yield "as_recorded", _all_as_recorded(job)
+
+    return Stage(
+        name=name,
+        run=run,
+        inputs=lambda study: study.motion_sets,
+        files=lambda study: study.body_files,
+        outputs=outputs,
+        settings=("bodies", "amplitudes", "friction", "vertical"),
+        parallel=parallel,
+    )
+
+
+def _sweep_part(job: Job[Study], number: int) -> None:
+    """Write the sweep of every configuration under part of the motions, a few motions at a time."""
+    study = job.study
+    part = (number, study.sweep_jobs)
+    motions = job.motions("motions/floors", part)
+    ups = job.motions("motions/vertical", part) if study.vertical else None
+    batch = max(FEWEST_AT_ONCE, ROWS_AT_ONCE // len(study.amplitudes.values_g))
+    histories = 0
+    for configuration in study.configurations:
+        with whole_file(job.folder / study.sweep_file(configuration, number)) as path:
+            tables = (
+                sweep_table(
+                    configuration,
+                    motions[i : i + batch],
+                    study.amplitudes,
+                    job.threads,
+                    None if ups is None else ups[i : i + batch],
+                )
+                for i in range(0, len(motions), batch)
             )
-            for i in range(0, len(motions), BATCH)
-        ]
-        table = pd.concat(parts, ignore_index=True)
-        yield f"sweep/{configuration.slug}", table
+            histories += _write(tables, path)
         if ups is not None and configuration.friction is None:
-            light = int((table["lightest"] < LIGHT).sum())
-            job.log.info(
-                "%s: the ground takes more than half of all weight in %d of %d histories",
-                configuration.name,
-                light,
-                len(table),
-            )
-        recorded.append(as_recorded(configuration, motions, job.threads, ups))
-        histories += len(table)
+            _say_how_light(job, configuration, number)
         job.log.info("%s: %d histories so far", configuration.name, histories)
-    yield "as_recorded", pd.concat(recorded, ignore_index=True)
     job.log.info("response histories: %d", histories)
 
 
-def sweep(
+def _say_how_light(job: Job[Study], configuration: Configuration, number: int) -> None:
+    """Log in how many histories the ground takes more than half of all weight."""
+    from rockfrag.rocking.ensemble import LIGHT
+
+    path = job.folder / job.study.sweep_file(configuration, number)
+    lightest = pq.read_table(path, columns=["lightest"])["lightest"].to_numpy()
+    job.log.info(
+        "%s: the ground takes more than half of all weight in %d of %d histories",
+        configuration.name,
+        int((lightest < LIGHT).sum()),
+        lightest.size,
+    )
+
+
+def _write(tables: Iterable[pa.Table], path: Path) -> int:
+    """Write tables to one Parquet file, a row group each, and return the number of rows."""
+    writer, rows = None, 0
+    try:
+        for table in tables:
+            # texts are read as texts, however compactly they are handed on here
+            if writer is None:
+                writer = pq.ParquetWriter(
+                    path, table.schema, compression="zstd", store_schema=False
+                )
+            writer.write_table(table)
+            rows += table.num_rows
+    finally:
+        if writer is not None:
+            writer.close()
+    return rows
+
+
+def _all_as_recorded(job: Job[Study]) -> pd.DataFrame:
+    motions = job.motions("motions/floors")
+    ups = job.motions("motions/vertical") if job.study.vertical else None
+    each = [as_recorded(one, motions, job.threads, ups) for one in job.study.configurations]
+    return pd.concat(each, ignore_index=True)
+
+
+def sweep_table(
     configuration: Configuration,
     motions: Sequence[Motion],
     amplitudes: Amplitudes,
     threads: int = 1,
     vertical: Sequence[Motion] | None = None,
-) -> pd.DataFrame:
+) -> pa.Table:
     """Shake one configuration by every motion, scaled to every amplitude.
 
     Parameters
@@ -104,34 +183,44 @@ def sweep(
     scales = np.array([factors_to_pga(motion, values) for motion in motions])
     result = _shaken(configuration, motions, scales, threads, vertical)
     each = len(values)
-    table = pd.DataFrame(
-        {
-            "configuration": configuration.name,
-            "object": configuration.object,
-            "pedestal": configuration.label,
-            "motion": np.repeat([motion.name for motion in motions], each),
-            "event": np.repeat(
-                [motion.metadata.get("event") or motion.name for motion in motions], each
-            ),
-            "floor": np.repeat([motion.metadata["floor"] for motion in motions], each),
-            "amplitude_g": np.tile(values, len(motions)),
-            "overturned": result.overturned[0].ravel(),
-            "overturned_body": np.take(FALLEN, result.overturned_body[0].ravel()),
-            "overturning_time_s": result.overturning_time[0].ravel(),
-            "peak_rotation_statue": result.peak_rotation[0].ravel(),
-            "peak_rotation_pedestal": result.peak_rotation_pedestal[0].ravel(),
-            "impacts": result.impacts[0].ravel(),
-            "closest_approach": result.closest_approach[0].ravel(),
-        }
-    )
-    if configuration.friction is None:
-        return table if vertical is None else table.assign(lightest=result.lightest[0].ravel())
-    rough = _shaken(replace(configuration, friction=None), motions, scales, threads, vertical)
-    return table.assign(
-        **{f"{name}_m": getattr(result, name)[0].ravel() for name in SLIPS},
-        flights=result.flights[0].ravel(),
-        overturned_without_sliding=rough.overturned[0].ravel(),
-    )
+
+    def of_all(text: str) -> pa.DictionaryArray:
+        return _texts([text], np.zeros(each * len(motions), dtype=np.int32))
+
+    def of_motions(texts: Sequence[str]) -> pa.DictionaryArray:
+        return _texts(texts, np.repeat(np.arange(len(motions), dtype=np.int32), each))
+
+    columns = {
+        "configuration": of_all(configuration.name),
+        "object": of_all(configuration.object),
+        "pedestal": of_all(configuration.label),
+        "motion": of_motions([motion.name for motion in motions]),
+        "event": of_motions([motion.metadata.get("event") or motion.name for motion in motions]),
+        "floor": of_motions([motion.metadata["floor"] for motion in motions]),
+        "amplitude_g": np.tile(values, len(motions)),
+        "overturned": result.overturned[0].ravel(),
+        "overturned_body": _texts(FALLEN, result.overturned_body[0].ravel().astype(np.int32)),
+        "overturning_time_s": result.overturning_time[0].ravel(),
+        "peak_rotation_statue": result.peak_rotation[0].ravel(),
+        "peak_rotation_pedestal": result.peak_rotation_pedestal[0].ravel(),
+        "impacts": result.impacts[0].ravel(),
+        "closest_approach": result.closest_approach[0].ravel(),
+    }
+    if configuration.friction is None and vertical is not None:
+        columns["lightest"] = result.lightest[0].ravel()
+    if configuration.friction is not None:
+        rough = _shaken(replace(configuration, friction=None), motions, scales, threads, vertical)
+        columns |= {f"{name}_m": getattr(result, name)[0].ravel() for name in SLIPS}
+        columns["flights"] = result.flights[0].ravel()
+        columns["overturned_without_sliding"] = rough.overturned[0].ravel()
+    return pa.table(columns)
+
+
+def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray:
+    different = list(dict.fromkeys(texts))
+    place = {text: number for number, text in enumerate(different)}
+    numbers = np.array([place[text] for text in texts], dtype=np.int32)
+    return pa.DictionaryArray.from_arrays(numbers[which], pa.array(different, pa.string()))
 
 
 def _shaken(
@@ -207,14 +296,3 @@ def as_recorded(
         return table
     peaks = np.maximum(result.peak_slip_ground, result.peak_slip_interface)
     return table.assign(peak_slip_m=peaks[0, :, itself])
-
-
-STAGE = Stage(
-    name="sweep",
-    run=run,
-    inputs=lambda study: study.motion_sets,
-    files=lambda study: study.body_files,
-    outputs=lambda study: [*study.sweep_tables, "as_recorded"],
-    settings=("bodies", "amplitudes", "friction", "vertical"),
-    parallel=True,
-)

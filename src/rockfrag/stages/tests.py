@@ -1,7 +1,10 @@
 """Tests: the sweeps read as a laboratory would and in two other ways, within the limits of a shaker."""
 
+from collections.abc import Iterator
+
 import pandas as pd
 
+from rockfrag.shaketable.swept import Swept
 from rockfrag.stages.shaker import limited_tests, limits_table
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.stages.validity import sliding_table, validity_table
@@ -11,19 +14,23 @@ from rockfrag.study.study import Study
 def run(job: Job[Study]) -> Results:
     """Yield the tests in every reading, their means, the shaker's limits, bodies and forces."""
     from rockfrag.shaketable.mean_amplitudes import mean_amplitudes
-    from rockfrag.shaketable.readings import READING, tests_from_sweep
+    from rockfrag.shaketable.readings import READING, tests_from_swept
     from rockfrag.stages.bodies import bodies_table
     from rockfrag.stages.protocol import protocol_of
 
     study = job.study
     protocol = protocol_of(study)
     motions = job.motions("motions/floors")
-    sweeps = pd.concat([job.table(name) for name in study.sweep_tables], ignore_index=True)
-    tests = tests_from_sweep(sweeps, protocol)
+
+    def sweeps() -> Iterator[Swept]:
+        for configuration in study.configurations:
+            yield from job.swept(configuration)
+
+    tests = tests_from_swept(sweeps(), protocol)
     if study.more.shaker is not None:
         limits = limits_table(study, motions)
         yield "shaker", limits
-        tests = pd.concat([tests, limited_tests(sweeps, protocol, limits)], ignore_index=True)
+        tests = pd.concat([tests, limited_tests(sweeps(), protocol, limits)], ignore_index=True)
     yield "tests", tests
     laboratory = tests[tests["reading"] == READING]
     yield "mean_amplitudes", mean_amplitudes(laboratory)
@@ -36,7 +43,8 @@ def run(job: Job[Study]) -> Results:
     )
     yield "validity", validity_table(laboratory, study.configurations, by_name, ups)
     if study.slides:
-        yield "sliding", sliding_table(sweeps)
+        files = (job.file(path) for path in study.sweep_files)
+        yield "sliding", sliding_table(files)
     censored = int((laboratory["censored"] != "none").sum())
     job.log.info("tests: %d, not overturned: %d", len(laboratory), censored)
 
@@ -44,7 +52,7 @@ def run(job: Job[Study]) -> Results:
 STAGE = Stage(
     name="tests",
     run=run,
-    inputs=lambda study: (*study.motion_sets, *study.sweep_tables),
+    inputs=lambda study: (*study.motion_sets, *study.sweep_files),
     files=lambda study: [
         *study.body_files,
         *([] if study.more.shaker is None else [str(study.more.shaker_file)]),

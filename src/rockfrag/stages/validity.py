@@ -1,6 +1,7 @@
 """What surfaces were asked for in every test, and what sliding and flight did where friction is limited."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -75,19 +76,36 @@ def validity_table(
     return pd.concat([known[keys].reset_index(drop=True), found], axis=1)
 
 
-def sliding_table(sweeps: pd.DataFrame) -> pd.DataFrame:
+def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
     """Count what friction did in the sweeps of a study.
 
     Parameters
     ----------
-    sweeps
-        Sweeps of all configurations, with slip.
+    files
+        Files of the sweeps of all configurations, with slip; one is in memory at a time.
 
     Returns
     -------
     One row per configuration: ``configuration``, ``cases``, ``slid``, ``flew`` (cases), ``largest_slip_m``,
     ``saved`` and ``felled`` (cases that overturn only without, and only with, sliding and flight).
     """
+    parts = [_sliding(pd.read_parquet(path, columns=list(_SLIDING))) for path in files]
+    how = dict.fromkeys(parts[0].columns[1:], "sum") | {"largest_slip_m": "max"}
+    both = pd.concat(parts, ignore_index=True)
+    return both.groupby("configuration", sort=False, as_index=False).agg(how)
+
+
+_SLIDING = (
+    "configuration",
+    "overturned",
+    "overturned_without_sliding",
+    "peak_slip_ground_m",
+    "peak_slip_interface_m",
+    "flights",
+)
+
+
+def _sliding(sweeps: pd.DataFrame) -> pd.DataFrame:
     fell, fell_rough = sweeps["overturned"], sweeps["overturned_without_sliding"]
     peak = sweeps[["peak_slip_ground_m", "peak_slip_interface_m"]].max(axis=1)
     each = pd.DataFrame(

@@ -1,5 +1,6 @@
 """A study: what its configuration says, read once, checked, and as the stages need it."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,15 @@ from rockfrag.study.supplementary import Supplementary
 
 GROUND = "ground"
 """Label of the only floor of a study without a building."""
+
+MOST_ROWS = 100_000
+"""Most verdicts of a configuration that are kept as rows of a table; more are counted."""
+
+HISTORIES_A_JOB = 1_000_000
+"""Response histories of a job: minutes of one core."""
+
+MOST_JOBS = 200
+"""Most jobs of the sweeps: what Snakemake plans in a second or two. A larger study has larger jobs."""
 
 RECORDS_FOLDER = "resources/records"
 """Where fetched records are kept, from the folder in which the workflow runs."""
@@ -106,8 +116,12 @@ class Study:
     @property
     def histories(self) -> int:
         """Number of response histories of its sweeps."""
-        motions = len(self.catalogue) * len(self.floors)
-        return motions * len(self.configurations) * len(self.amplitudes.values_g)
+        return self.sweeps * len(self.amplitudes.values_g)
+
+    @property
+    def sweeps(self) -> int:
+        """Number of its sweeps: configurations under motions."""
+        return len(self.catalogue) * len(self.floors) * len(self.configurations)
 
     def doubts(self) -> list[str]:
         """Warnings about sizes that look as if they were in another unit."""
@@ -147,9 +161,29 @@ class Study:
         return [str(path) for path in (self.specimens_file, self.configurations_file) if path]
 
     @property
-    def sweep_tables(self) -> list[str]:
-        """Name of the table of each configuration's sweep."""
-        return [f"sweep/{one.slug}" for one in self.configurations]
+    def is_large(self) -> bool:
+        """Whether the verdicts of a configuration are counted, as they are too many for a table in memory."""
+        return self.histories > MOST_ROWS * len(self.configurations)
+
+    @property
+    def sweep_jobs(self) -> int:
+        """Number of jobs that share the motions of the sweeps."""
+        motions = len(self.catalogue) * len(self.floors)
+        return max(1, min(math.ceil(self.histories / HISTORIES_A_JOB), MOST_JOBS, motions))
+
+    def sweep_file(self, configuration: Configuration, job: int) -> str:
+        """Path of a configuration's sweep under the motions of a job."""
+        folder = "sweep" if self.sweep_jobs == 1 else f"sweep/{job:03d}"
+        return f"{folder}/{configuration.slug}.parquet"
+
+    @property
+    def sweep_files(self) -> list[str]:
+        """Paths of all sweeps."""
+        return [
+            self.sweep_file(one, job)
+            for job in range(self.sweep_jobs)
+            for one in self.configurations
+        ]
 
     @property
     def tested_blocks(self) -> dict[str, Block]:

@@ -54,15 +54,15 @@ def _wide(tests: pd.DataFrame) -> pd.DataFrame:
 
 
 def _maps(results: Results) -> list[FigureSpec]:
-    verdicts = results.verdicts
+    verdicts, windows = results.verdicts, results.table("survival_windows")
     specs = []
     for name in results.objects:
         own = verdicts[verdicts["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
-        sweeps = own.groupby(["configuration", "motion"])["overturned"].any()
-        fallen = of_all(int(sweeps.sum()), len(sweeps), "sweep")
+        sweeps = windows[windows["configuration"].isin(configurations)]
+        fallen = of_all(int(sweeps["first_upper"].notna().sum()), len(sweeps), "sweep")
         caption = f"{name}: every amplitude that overturns it, per motion."
-        motions = own["motion"].nunique()
+        motions = sweeps["motion"].nunique()
         if motions > MOST_ROWS:
             caption += f" The first {MOST_ROWS} of {motions} motions."
         alt = f"Map of the amplitudes that overturn {name}; it overturns in {fallen}."

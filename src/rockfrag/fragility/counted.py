@@ -1,0 +1,286 @@
+"""Verdicts of large sweeps as counts: what curves are fitted to, in memory that does not grow with the amplitudes.
+
+A motion raised through n amplitudes gives n verdicts. Estimates and their limits need only how many of them lie in
+each narrow cell of the measure and how many of those overturned, by what is resampled together; the goodness of fit
+needs the motions' own scales as well. Cells are a two-thousandth of the range wide, which moves ln θ and β by
+less than 1e-4 of β.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.fragility.empirical import windows_of_swept
+from rockfrag.fragility.intervals import blocks_of
+from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit, positive
+from rockfrag.fragility.sweeps import scale_power
+from rockfrag.shaketable.swept import Swept
+
+CELLS = 2000
+"""Cells of equal width in the logarithm of a measure."""
+
+
+@dataclass(frozen=True)
+class CountedOutcomes(Outcomes):
+    """Outcomes whose rows are the cells of each block of motions (events), see :class:`Outcomes`.
+
+    Attributes
+    ----------
+    motions, events
+        How many there are.
+    block
+        Block of each motion or event, whichever is resampled, shape (groups,).
+    edges
+        Ends of the cells in ln IM, shape (cells + 1,).
+    scale
+        ln IM of each motion at an amplitude of 1 g, shape (motions,).
+    rise
+        What each amplitude adds to it, rising, shape (n,).
+    """
+
+    motions: int = 0
+    events: int = 0
+    block: NDArray[np.intp] | None = None
+    edges: Floats | None = None
+    scale: Floats | None = None
+    rise: Floats | None = None
+
+    @property
+    def n_motions(self) -> int:
+        """Number of different motions."""
+        return self.motions
+
+    @property
+    def n_events(self) -> int:
+        """Number of different events."""
+        return self.events
+
+    @property
+    def n_repeated(self) -> int:
+        """No sweep repeats an amplitude."""
+        return 0
+
+    @property
+    def is_swept(self) -> bool:
+        """Every motion has several rows."""
+        return True
+
+    @property
+    def log_spread(self) -> float:
+        """Standard deviation of ln IM of the tests."""
+        mean = np.average(self.log_im, weights=self.trials)
+        return float(np.sqrt(np.average((self.log_im - mean) ** 2, weights=self.trials)))
+
+    def ways(self) -> Floats:
+        """Nothing: each test is told from the others."""
+        return np.zeros(1)
+
+    def by_value(self) -> Outcomes:
+        """Cells of all blocks together."""
+        values, cell = np.unique(self.im, return_inverse=True)
+        trials = np.bincount(cell, self.trials)
+        labels = np.full(values.size, "", dtype=object)
+        fell = np.bincount(cell, self.overturned)
+        return Outcomes(values, fell, trials, labels, labels, self.name, self.unit)
+
+    def group_weights(self, weights: Floats) -> Floats:
+        """Weights of the blocks from those of motions or events, which are equal within a block."""
+        assert self.block is not None
+        first = np.unique(self.block, return_index=True)[1]
+        found = weights[:, first]
+        if not np.array_equal(found[:, self.block], weights):
+            raise ValueError("counts are kept by block, whose motions cannot be weighted apart")
+        return found
+
+    def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
+        """Motions with a test in the rows ``inside``, which are neighbours."""
+        low, high = self._steps(np.array([self.im[inside].min(), self.im[inside].max()])).T
+        count = int((high > low).sum())
+        return count, float(count)
+
+    def drawn(self, capacity: Floats, cell: NDArray[np.intp]) -> Floats:
+        """Verdicts by cell where each motion has one capacity [ln IM], shape (replicates, cells).
+
+        Parameters
+        ----------
+        capacity
+            Shape (replicates, motions).
+        cell
+            Cell of each row, rising with the measure.
+        """
+        assert self.scale is not None and self.rise is not None and self.edges is not None
+        values, first = np.unique(self.im, return_index=True)
+        starts = np.flatnonzero(np.diff(cell[first], prepend=-1))
+        ends = np.append(self._edge_below(values[starts[1:]]), np.inf)
+        below = np.column_stack(
+            [
+                np.zeros(self.scale.size, dtype=np.int64),
+                *(np.searchsorted(self.rise, end - self.scale) for end in ends),
+            ]
+        )
+        total = np.diff(below.sum(axis=0))
+        found = np.empty((len(capacity), starts.size))
+        for row, one in enumerate(capacity):
+            survived = np.searchsorted(self.rise, one - self.scale, side="right")
+            found[row] = total - np.diff(np.minimum(below, survived[:, None]).sum(axis=0))
+        return found
+
+    def _edge_below(self, im: Floats) -> Floats:
+        """Lower end of the cell that holds each value [ln IM]."""
+        assert self.edges is not None
+        return np.asarray(self.edges[np.searchsorted(self.edges, np.log(im), side="right") - 1])
+
+    def _steps(self, im: Floats) -> NDArray[np.intp]:
+        """First amplitude of each motion from the cell of one value and after that of the other, (motions, 2)."""
+        assert self.scale is not None and self.rise is not None and self.edges is not None
+        low = self._edge_below(im[:1])[0]
+        high = self.edges[np.searchsorted(self.edges, np.log(im[1]), side="right")]
+        return np.column_stack(
+            [np.searchsorted(self.rise, one - self.scale) for one in (low, high)]
+        )
+
+
+class CountedSweep:
+    """Sweeps of one configuration, counted part by part.
+
+    Parameters
+    ----------
+    parts
+        Reads the sweeps anew each time it is called.
+    measures
+        One row per motion as recorded, with ``name`` and ``pga_g``.
+    columns
+        Measures that will be asked for, by floor; those under the empty name are of all floors together.
+    """
+
+    def __init__(
+        self,
+        parts: Iterable[Swept],
+        again: Iterable[Swept],
+        measures: pd.DataFrame,
+        columns: Mapping[str, Sequence[str]],
+    ) -> None:
+        self._windows = windows_of_swept(parts)
+        self.motions = self._windows[["configuration", "event", "floor", "motion"]]
+        known = measures.set_index("name").loc[self.motions["motion"]].reset_index()
+        self._counts: dict[tuple[str, str], _Counts] = {}
+        place = {name: row for row, name in enumerate(self.motions["motion"])}
+        for part in again:
+            rows = np.array([place[name] for name in part.about["motion"]])
+            if not self._counts:
+                self._counts = {
+                    (floor, column): _Counts(known, self.motions, floor, column, part.amplitude_g)
+                    for floor, some in columns.items()
+                    for column in some
+                }
+            for count in self._counts.values():
+                count.add(rows, part.overturned)
+
+    def of_floor(self, floor: str) -> "FloorSweep":
+        """Sweeps on one floor, or on all of them with the empty name."""
+        return FloorSweep(self, floor)
+
+    def windows(self, floor: str) -> pd.DataFrame:
+        """Survival windows of the sweeps on a floor, a row a motion."""
+        rows = self._windows
+        return rows if not floor else rows[rows["floor"] == floor]
+
+    def outcomes(self, floor: str, column: str) -> Outcomes:
+        """Verdicts on a floor with a measure."""
+        return self._counts[floor, column].outcomes()
+
+
+@dataclass(frozen=True)
+class FloorSweep:
+    """Sweeps of one configuration on one floor, or on all of them where its name is empty."""
+
+    sweep: CountedSweep
+    floor: str
+
+    def windows(self, amplitude: str, by: list[str]) -> pd.DataFrame:
+        """See :func:`rockfrag.fragility.empirical.survival_windows`; ``amplitude`` is the one in g."""
+        found = self.sweep.windows(self.floor)
+        others = [name for name in ("configuration", "event", "floor", "motion") if name not in by]
+        others += by
+        return found[[*by, *found.columns.drop(others)]].sort_values(by, ignore_index=True)
+
+    def outcomes(self, column: str) -> Outcomes:
+        """Verdicts with a measure."""
+        return self.sweep.outcomes(self.floor, column)
+
+    def motions(self) -> pd.DataFrame:
+        """One row per motion: ``configuration``, ``event``, ``floor``, ``motion``."""
+        rows = self.sweep.motions
+        return rows if not self.floor else rows[rows["floor"] == self.floor]
+
+
+class _Counts:
+    """Tests and those that overturned, by block and cell of one measure."""
+
+    def __init__(
+        self,
+        known: pd.DataFrame,
+        motions: pd.DataFrame,
+        floor: str,
+        column: str,
+        amplitude_g: Floats,
+    ) -> None:
+        power = scale_power(column)
+        here = np.flatnonzero(motions["floor"] == floor) if floor else np.arange(len(motions))
+        value = positive(known.iloc[here], column, "measures")
+        pga = positive(known.iloc[here], "pga_g", "measures")
+        self.column, self.here = column, here
+        self.scale = np.log(value) - power * np.log(pga)
+        self.rise = power * np.log(amplitude_g)
+        event = pd.factorize(motions["event"].iloc[here])[0]
+        self.events = int(event.max()) + 1
+        # what is resampled: events where some have several motions
+        group = event if self.events < here.size else np.arange(here.size)
+        self.block = blocks_of(int(group.max()) + 1)
+        self.of_motion = np.full(len(motions), -1)
+        self.of_motion[here] = np.arange(here.size)
+        self.row = self.block[group]
+        low = self.scale.min() + self.rise[0]
+        high = self.scale.max() + self.rise[-1]
+        # a hair more on either side, so that rounding puts no test outside
+        self.edges = np.linspace(low - 1e-9, high + 1e-9, CELLS + 1)
+        shape = int(self.block.max()) + 1, CELLS
+        self.trials, self.fell, self.total = np.zeros(shape), np.zeros(shape), np.zeros(CELLS)
+
+    def add(self, rows: NDArray[np.intp], overturned: NDArray[np.bool_]) -> None:
+        own = self.of_motion[rows]
+        used = own >= 0
+        if not used.any():
+            return
+        own, fell = own[used], overturned[used]
+        log_im = self.scale[own][:, None] + self.rise
+        width = (self.edges[-1] - self.edges[0]) / CELLS
+        cell = ((log_im - self.edges[0]) / width).astype(np.intp).clip(0, CELLS - 1)
+        flat = self.row[own][:, None] * CELLS + cell
+        size = self.trials.size
+        self.trials += np.bincount(flat.ravel(), minlength=size).reshape(self.trials.shape)
+        self.fell += np.bincount(flat[fell], minlength=size).reshape(self.trials.shape)
+        self.total += np.bincount(cell.ravel(), log_im.ravel(), minlength=CELLS)
+
+    def outcomes(self) -> CountedOutcomes:
+        block, cell = np.nonzero(self.trials)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            middle = np.exp(self.total / self.trials.sum(axis=0))
+        labels = np.array([f"block {one + 1}" for one in block], dtype=object)
+        return CountedOutcomes(
+            middle[cell],
+            self.fell[block, cell],
+            self.trials[block, cell],
+            labels,
+            labels,
+            *name_and_unit(self.column),
+            motions=self.here.size,
+            events=self.events,
+            block=self.block,
+            edges=self.edges,
+            scale=self.scale,
+            rise=self.rise,
+        )

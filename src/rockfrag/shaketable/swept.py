@@ -1,0 +1,109 @@
+"""Verdicts of amplitude sweeps as matrices, motion by amplitude, read from files of any size in little memory.
+
+A file of a sweep has a row per motion and amplitude, motion after motion, each raised through the same
+amplitudes. What statistics need of it is a byte a history.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+
+FALLEN = ("", "pedestal", "statue")
+"""Which body overturned, by its number in a matrix of verdicts."""
+
+ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
+"""Columns that are the same for all amplitudes of a motion."""
+
+
+@dataclass(frozen=True)
+class Swept:
+    """Verdicts of some motions, each at the same amplitudes.
+
+    Attributes
+    ----------
+    about
+        One row a motion: the columns ``ABOUT``.
+    amplitude_g
+        Amplitudes [g], rising, shape (n,).
+    overturned
+        Verdicts, shape (motions, n).
+    fallen
+        Number in ``FALLEN`` of what overturned, shape (motions, n).
+    """
+
+    about: pd.DataFrame
+    amplitude_g: NDArray[np.float64]
+    overturned: NDArray[np.bool_]
+    fallen: NDArray[np.uint8]
+
+
+def read_swept(paths: Iterable[Path]) -> Iterator[Swept]:
+    """Yield the verdicts of sweeps in parts of some motions, so that memory holds one part.
+
+    Parameters
+    ----------
+    paths
+        Files of sweeps, each of one configuration or of some motions of it.
+
+    Raises
+    ------
+    InputError
+        If a part does not hold whole motions that rose through the same amplitudes.
+    """
+    columns = [*ABOUT, "amplitude_g", "overturned", "overturned_body"]
+    texts = [*ABOUT, "overturned_body"]
+    for path in paths:
+        with pq.ParquetFile(path, read_dictionary=texts) as file:
+            for group in range(file.num_row_groups):
+                yield _swept(file.read_row_group(group, columns=columns), path)
+
+
+def _swept(part: pa.Table, path: Path) -> Swept:
+    amplitude = part["amplitude_g"].to_numpy()
+    motion = part["motion"].combine_chunks()
+    code = motion.indices.to_numpy()
+    ends = np.flatnonzero(np.diff(code)) + 1
+    each = int(ends[0]) if ends.size else code.size
+    if code.size % each or not np.array_equal(ends, np.arange(each, code.size, each)):
+        raise InputError(f"{path}: its motions have not equally many amplitudes; make it anew.")
+    grid = amplitude.reshape(-1, each)
+    if not (grid == grid[0]).all() or (np.diff(grid[0]) <= 0).any():
+        raise InputError(f"{path}: its motions have not the same rising amplitudes; make it anew.")
+    first = part.select(list(ABOUT)).take(pa.array(np.arange(0, code.size, each)))
+    about = pd.DataFrame({name: first[name].to_pylist() for name in ABOUT}, dtype="str")
+    body = part["overturned_body"].combine_chunks()
+    number = np.array([FALLEN.index(name) for name in body.dictionary.to_pylist()], dtype=np.uint8)
+    fallen = number[body.indices.to_numpy()].reshape(-1, each)
+    overturned = part["overturned"].to_numpy().reshape(-1, each)
+    return Swept(about, grid[0].copy(), overturned, fallen)
+
+
+def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
+    """Yield each sweep of a table by itself, in the order in which they first appear.
+
+    Parameters
+    ----------
+    sweep
+        Rows in any order, with ``amplitude_g`` and ``overturned_body``.
+    keys
+        Columns that tell sweeps apart.
+    about
+        Columns to keep.
+    """
+    number = np.zeros(len(sweep), dtype=np.uint8)
+    for code, name in enumerate(FALLEN):
+        number[(sweep["overturned_body"] == name).to_numpy()] = code
+    overturned = sweep["overturned"].to_numpy(dtype=bool)
+    amplitude = sweep["amplitude_g"].to_numpy(dtype=np.float64)
+    for rows in sweep.groupby(keys, sort=False).indices.values():
+        ordered = rows[np.argsort(amplitude[rows], kind="stable")]
+        head = sweep[about].iloc[rows[:1]].reset_index(drop=True)
+        yield Swept(head, amplitude[ordered], overturned[None, ordered], number[None, ordered])
