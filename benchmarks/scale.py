@@ -1,9 +1,9 @@
 """What a study costs against its size: synthetic motions, lone blocks and stacks, through the workflow.
 
-``python benchmarks/scale.py 300 1000 3000`` runs studies of so many motions of 20 s, a third as many events, the thesis's six
-configurations (three lone blocks, three stacks) and 200 amplitudes; ``--amplitudes 2000`` takes more.  Each stage's processor time,
-its largest memory and the wall time of the whole are printed as the tables of ``docs/reliability.md``, and go to
-``results/bench/scale.csv``.
+``python benchmarks/scale.py 300 1000 3000`` runs studies of so many motions of 20 s, a third as many events,
+the thesis's six configurations (three lone blocks, three stacks) and 200 amplitudes; ``--amplitudes 2000``
+takes more.  Each stage's processor time, the largest memory and the wall time of the whole are printed as the
+table of ``docs/reliability.md``, and go to ``results/bench/scale.csv``.
 """
 
 import argparse

@@ -1,9 +1,8 @@
 """Verdicts of large sweeps as counts: what curves are fitted to, in memory that does not grow with the amplitudes.
 
-A motion raised through n amplitudes gives n verdicts. Estimates and their limits need only how many of them lie in
-each narrow cell of the measure and how many of those overturned, by what is resampled together; the goodness of fit
-needs the motions' own scales as well. Cells are a two-thousandth of the range wide, which moves ln θ and β by
-less than 1e-4 of β.
+A motion raised through n amplitudes gives n verdicts. Estimates and their limits need only how many of them lie
+in each narrow cell of the measure and how many of those overturned, by what is resampled together; the
+goodness of fit needs the motions' own scales as well. Cells are a two-thousandth of the range wide.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -81,9 +80,9 @@ class CountedOutcomes(Outcomes):
     def by_value(self) -> Outcomes:
         """Cells of all blocks together."""
         values, cell = np.unique(self.im, return_inverse=True)
-        trials = np.bincount(cell, self.trials)
+        trials = np.bincount(cell, self.trials).astype(np.float64)
         labels = np.full(values.size, "", dtype=object)
-        fell = np.bincount(cell, self.overturned)
+        fell = np.bincount(cell, self.overturned).astype(np.float64)
         return Outcomes(values, fell, trials, labels, labels, self.name, self.unit)
 
     def group_weights(self, weights: Floats) -> Floats:
@@ -148,8 +147,8 @@ class CountedSweep:
 
     Parameters
     ----------
-    parts
-        Reads the sweeps anew each time it is called.
+    parts, again
+        The sweeps, read twice: once for their windows, once to be counted.
     measures
         One row per motion as recorded, with ``name`` and ``pga_g``.
     columns

@@ -73,8 +73,8 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
     rows, independent = [], []
     for k in np.unique(code):
         inside = code == k
-        motions, alone = outcomes.independent(inside)
-        independent.append(alone)
+        motions, counted_once = outcomes.independent(inside)
+        independent.append(counted_once)
         n = outcomes.trials[inside].sum()
         rows.append(
             {

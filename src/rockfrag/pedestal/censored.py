@@ -25,7 +25,7 @@ Rows = npt.NDArray[np.intp]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 """Gauss-Legendre quadrature on (-1, 1)."""
 MOST_REFITTED = 50
-"""Events up to which the likelihood is fitted anew without each; of more, each one's pull on the effect is linear."""
+"""Events up to which the likelihood is fitted anew without each; of more, each one's pull is linear."""
 MOST_PAIRS = 2_000
 """More pairs than this are put together where they are alike."""
 STEP = 1e-4

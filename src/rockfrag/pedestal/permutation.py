@@ -15,7 +15,7 @@ DRAWS = 9_999
 
 
 MOST_EXACT = 500
-"""Units up to which signed ranks have their exact distribution; of more the normal one differs by less than 1e-4."""
+"""Units up to which signed ranks have their exact distribution, and beyond which the normal one."""
 
 WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
 """Columns of `leave_one_event_out`."""

@@ -7,6 +7,7 @@ import pandas as pd
 from rockfrag.fragility.sweep_data import SweepData
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
 from rockfrag.stages.measure_choice import CANDIDATES, measure_choice
+from rockfrag.stages.read_sweeps import sweeps_of
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 
@@ -96,7 +97,7 @@ def _counted(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
     found = {}
     for configuration in job.study.configurations:
         found[configuration.name] = CountedSweep(
-            job.swept(configuration), job.swept(configuration), measures, {"": wanted, **floors}
+            *(sweeps_of(job, configuration) for _ in range(2)), measures, {"": wanted, **floors}
         )
     return _Sweeps(
         {name: one.of_floor("") for name, one in found.items()},

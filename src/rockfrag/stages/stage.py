@@ -17,8 +17,6 @@ from rockfrag.stages.digest import source_digest
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
-    from rockfrag.shaketable.swept import Swept
-    from rockfrag.study.configurations import Configuration
 
 
 class Named(Protocol):
@@ -164,15 +162,6 @@ class Job(Generic[S]):
     def file(self, path: str) -> Path:
         """Return the whole path of another stage's file."""
         return self._declared(path)
-
-    def swept(self, configuration: "Configuration") -> "Iterator[Swept]":
-        """Read the verdicts of a configuration's sweeps, part by part."""
-        from rockfrag.shaketable.swept import read_swept
-
-        jobs = range(self.study.sweep_jobs)
-        yield from read_swept(
-            self._declared(self.study.sweep_file(configuration, one)) for one in jobs
-        )
 
     def write(self, name: str, result: "pd.DataFrame | list[Motion]") -> None:
         """Write a result in the forms that its stage declares."""

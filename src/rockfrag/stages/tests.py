@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pandas as pd
 
 from rockfrag.shaketable.swept import Swept
+from rockfrag.stages.read_sweeps import sweeps_of
 from rockfrag.stages.shaker import limited_tests, limits_table
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.stages.validity import sliding_table, validity_table
@@ -24,7 +25,7 @@ def run(job: Job[Study]) -> Results:
 
     def sweeps() -> Iterator[Swept]:
         for configuration in study.configurations:
-            yield from job.swept(configuration)
+            yield from sweeps_of(job, configuration)
 
     tests = tests_from_swept(sweeps(), protocol)
     if study.more.shaker is not None:

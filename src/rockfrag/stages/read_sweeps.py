@@ -1,0 +1,15 @@
+"""Reading the sweeps of a study for the stages behind them, part by part."""
+
+from collections.abc import Iterator
+
+from rockfrag.shaketable.swept import Swept, read_swept
+from rockfrag.stages.stage import Job
+from rockfrag.study.configurations import Configuration
+from rockfrag.study.study import Study
+
+
+def sweeps_of(job: Job[Study], configuration: Configuration) -> Iterator[Swept]:
+    """Yield the verdicts of a configuration."""
+    study = job.study
+    jobs = range(study.sweep_jobs)
+    yield from read_swept(job.file(study.sweep_file(configuration, one)) for one in jobs)
