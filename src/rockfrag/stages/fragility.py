@@ -97,7 +97,10 @@ def _counted(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
     found = {}
     for configuration in job.study.configurations:
         found[configuration.name] = CountedSweep(
-            *(sweeps_of(job, configuration) for _ in range(2)), measures, {"": wanted, **floors}
+            sweeps_of(job, configuration),
+            sweeps_of(job, configuration),
+            measures,
+            {"": wanted, **floors},
         )
     return _Sweeps(
         {name: one.of_floor("") for name, one in found.items()},
