@@ -92,7 +92,13 @@ def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path
     names = ["pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g"]
     measures = pd.DataFrame({"name": [f"m{k}" for k in range(8)]} | dict.fromkeys(names, 0.3))
     curves, _ = floor_curves(
-        pd.DataFrame(rows), measures, FLOORS, {"statue": STATUE}, "abc", 0.90, rocks_at_once=False
+        {("statue", "hall"): TableSweep(with_measures(pd.DataFrame(rows), measures, names))},
+        measures,
+        FLOORS,
+        {"statue": STATUE},
+        "abc",
+        0.90,
+        rocks_at_once=False,
     )
     peak = curves[curves["measure"] == "pga_g"].set_index("state")
     assert set(peak.index) == {"slides", "overturned"}

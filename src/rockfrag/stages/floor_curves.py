@@ -83,8 +83,8 @@ def floor_curves(
     """
     from rockfrag.fragility import fragility_of, fragility_row, outcomes_from_table, with_measures
     from rockfrag.fragility.drawn_curves import share_points
-    from rockfrag.fragility.sweep_data import TableSweep
     from rockfrag.fragility.states import fit_uplift
+    from rockfrag.fragility.sweep_data import TableSweep
 
     shares = []
     rows = []
