@@ -27,6 +27,12 @@ LARGEST_PEAK = 50.0
 LARGEST_IN_G = 2.0
 """Peaks of more than this many g are rare: a number above it is hardly one of g."""
 
+SHORTEST_STEP = 1e-5
+"""Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
+
+LONGEST_STEP = 1.0
+"""Longest sampling interval [s] of a record; slower channels are not of strong motion."""
+
 LEAST_PEAK = 0.05
 """A motion whose peak is below this [m/s²] moves nothing that stands."""
 

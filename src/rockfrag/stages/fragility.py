@@ -1,15 +1,19 @@
 """Fragility: curves of every configuration, the measure that foretells overturning best, exports."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from rockfrag.fragility.sweep_data import SweepData
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
 from rockfrag.stages.measure_choice import CANDIDATES, measure_choice
 from rockfrag.stages.read_sweeps import sweeps_of
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
+
+if TYPE_CHECKING:
+    # every job reads this module for the list of stages; only curves need scipy
+    from rockfrag.fragility.sweep_data import SweepData
 
 
 def run(job: Job[Study]) -> Results:
@@ -62,8 +66,8 @@ BY = ["configuration", "event", "floor", "motion"]
 class _Sweeps:
     """Sweeps by configuration, and by configuration and floor; survival windows of all."""
 
-    of_all: dict[str, SweepData]
-    of_floors: dict[tuple[str, str], SweepData]
+    of_all: dict[str, "SweepData"]
+    of_floors: dict[tuple[str, str], "SweepData"]
     windows: pd.DataFrame
 
 

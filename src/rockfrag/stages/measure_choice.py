@@ -1,10 +1,13 @@
 """Which intensity measure foretells the overturning of each configuration."""
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from rockfrag.fragility.sweep_data import SweepData
+if TYPE_CHECKING:
+    # every job reads this module for the list of stages; only curves need scipy
+    from rockfrag.fragility.sweep_data import SweepData
 
 CANDIDATES = (
     *("pga_g", "pgv_cm_s", "pgd_cm", "sa_0_3s_g", "sa_1_0s_g"),
@@ -17,7 +20,7 @@ GIVEN = ("mean_period_s", "d5_95_s")
 
 
 def measure_choice(
-    sweeps: Mapping[str, SweepData], measures: pd.DataFrame, level: float, seed: int
+    sweeps: Mapping[str, "SweepData"], measures: pd.DataFrame, level: float, seed: int
 ) -> pd.DataFrame:
     """Compare measures for every configuration.
 

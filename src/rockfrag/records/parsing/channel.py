@@ -10,12 +10,7 @@ from obspy import Trace, UTCDateTime
 from obspy.core import AttribDict
 
 from rockfrag.errors import InputError
-
-SHORTEST_STEP = 1e-5
-"""Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
-
-LONGEST_STEP = 1.0
-"""Longest sampling interval [s] of a record; slower channels are not of strong motion."""
+from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
 

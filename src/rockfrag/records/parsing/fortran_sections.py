@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.records.parsing.channel import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.text_file import TextFile
 
 QUANTITIES = {"ACCEL": "acceleration", "VELOC": "velocity", "DISPL": "displacement"}
