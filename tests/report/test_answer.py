@@ -19,6 +19,10 @@ def curves(**medians: tuple[float, float, float]) -> pd.DataFrame:
             "theta": theta,
             "theta_lower": lower,
             "theta_upper": upper,
+            "p_fit": 0.5,
+            "theta_isotonic": 1.1 * theta,
+            "theta_isotonic_lower": 1.1 * lower,
+            "theta_isotonic_upper": 1.1 * upper,
         }
         for name, (lower, theta, upper) in medians.items()
     ]
@@ -38,6 +42,16 @@ def test_how_strong_it_must_be_names_the_least_and_the_largest_median_with_limit
     assert "with 90 % intervals" in found.text
     assert "bust 0.52 [0.41, 0.67], urn 0.80 [0.70, 0.90] g" in found.text
     assert numbers(found.said) == {"0.52", "0.80", "90", "0.41", "0.67", "0.70", "0.90"}
+
+
+def test_where_the_lognormal_curve_is_rejected_the_median_is_that_of_the_curve_without_a_form():
+    table = curves(bust=(0.4, 0.5, 0.6), urn=(0.7, 0.8, 0.9))
+    found = strength_found(table.assign(p_fit=[0.01, 0.5]), "90 %")
+    assert "bust 0.55 [0.44, 0.66], urn 0.80 [0.70, 0.90] g" in found.text
+    assert found.text.endswith(
+        "For bust a lognormal curve does not describe the tests: the median is that of a curve without a form."
+    )
+    assert "of 0.55 (bust) to 0.80 g (urn)" in found.headline
 
 
 def test_without_limits_no_interval_is_spoken_of():

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.report.part import Finding
 from rockfrag.report.wording import (
     counted,
@@ -37,7 +38,8 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     Parameters
     ----------
     curves
-        Rows of :func:`rockfrag.fragility.fragility_table` with a median, of any measures and readings.
+        Rows of :func:`rockfrag.fragility.fragility_table` with a median, of any measures and readings. Where the
+        lognormal curve is rejected the median of the curve without a form is told.
     level
         Level of the intervals in words, such as ``90 %``.
     """
@@ -49,6 +51,10 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     if rows.empty:
         return None
     measure, unit = rows["im"].iloc[0], rows["unit"].iloc[0]
+    rejected = (rows["p_fit"] < REJECTED) & rows["theta_isotonic"].notna()
+    for name in ("theta", "theta_lower", "theta_upper"):
+        without_form = rows[name.replace("theta", "theta_isotonic")]
+        rows = rows.assign(**{name: rows[name].mask(rejected, without_form)})
     decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
     texts = estimates(rows, ("theta", "theta_lower", "theta_upper"), decimals)
     named = [f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)]
@@ -68,7 +74,22 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     sure = f", with {level} intervals" if any("[" in text for text in texts) else ""
     return Finding(
         f"It takes a {measure} of {span} to overturn in half of the cases",
-        f"Medians{sure}: {', '.join(shown)}{rest} {unit}.",
+        f"Medians{sure}: {', '.join(shown)}{rest} {unit}.{_formless(rows, rejected)}",
+    )
+
+
+def _formless(rows: pd.DataFrame, rejected: pd.Series) -> str:
+    """Whose median is that of a curve without a form, as the lognormal one does not describe the tests."""
+    if not rejected.any():
+        return ""
+    if rejected.all():
+        return (
+            " No lognormal curve describes the tests: these are medians of curves without a form."
+        )
+    names = listed(rows.loc[rejected, "configuration"].tolist())
+    return (
+        f" For {names} a lognormal curve does not describe the tests: the median is that of a curve without "
+        "a form."
     )
 
 
