@@ -50,6 +50,20 @@ def test_western_european_labels_are_read(tmp_path):
     assert table["overturned"].tolist() == [1, 0]
 
 
+@pytest.mark.parametrize(("yes", "no"), [("sì", "no"), ("VRAI", "FAUX"), ("Verdadero", "Falso")])
+def test_verdicts_in_the_words_of_spreadsheets_of_other_languages(tmp_path, yes, no):
+    path = tmp_path / "t.csv"
+    path.write_text(f"pga_g,overturned\n0.3,{yes}\n0.2,{no}\n", encoding="utf-8")
+    assert read_tests(path, ["pga_g"])["overturned"].tolist() == [1, 0]
+
+
+def test_peaks_that_no_table_shakes_are_doubted(tmp_path):
+    path = tmp_path / "t.csv"
+    path.write_text("pga_g,sa_0_3s_g,overturned\n549,9,1\n212,8,0\n")
+    with pytest.warns(UserWarning, match=r"t\.csv, column 'pga_g': the largest is 549, more than"):
+        read_tests(path, ["pga_g", "sa_0_3s_g"])
+
+
 def test_workbook_is_refused_with_the_cure(tmp_path):
     path = tmp_path / "t.xlsx"
     path.write_bytes(b"PK\x03\x04" + bytes(100))

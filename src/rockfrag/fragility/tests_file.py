@@ -18,6 +18,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.plain_text import table_encoding
+from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.units import DIMENSIONS, convert
 
 ROWS = 100_000
 """Rows that are read at a time."""
@@ -25,8 +27,14 @@ ROWS = 100_000
 Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
 """Columns with measures, or for each new column the columns and numbers whose product it is."""
 
-_YES = {"1", "true", "yes", "y", "overturned", "toppled", "fell", "ja", "oui", "si", "sí"}
-_NO = {"0", "false", "no", "n", "survived", "stood", "nein", "non"}
+_YES = {
+    *("1", "true", "yes", "y", "overturned", "toppled", "fell"),
+    *("ja", "wahr", "oui", "vrai", "si", "sì", "vero", "sí", "verdadero"),
+}
+_NO = {
+    *("0", "false", "no", "n", "survived", "stood"),
+    *("nein", "falsch", "non", "faux", "falso"),
+}
 _DIMENSIONLESS = ("uplift_ratio", "velocity_ratio")
 
 
@@ -101,7 +109,24 @@ def read_tests(
             first += len(piece)
     if not first:
         raise InputError(f"{source}: there is no row below the header; give at least one test.")
-    return pd.concat(parts, ignore_index=True)
+    table = pd.concat(parts, ignore_index=True)
+    for name in recipes:
+        _warn_of_peaks(table, name, source)
+    return table
+
+
+def _warn_of_peaks(table: pd.DataFrame, name: str, source: str) -> None:
+    """Warn if peaks of acceleration look as if they were given in another unit than their title says."""
+    measure, _, unit = name.partition("_")
+    if measure not in ("pga", "pfa") or unit not in DIMENSIONS["acceleration"]:
+        return
+    peak = float(table[name].max())
+    if convert(peak, unit, "m_s2") > LARGEST_PEAK:
+        warnings.warn(
+            f"{source}, column {name!r}: the largest is {peak:.4g}, more than any table or earthquake has "
+            "shaken; mend the unit in the title.",
+            stacklevel=3,
+        )
 
 
 def read_columns(
