@@ -15,12 +15,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rockfrag.building.masonry import MasonryLaw
 from rockfrag.building.model import ShearBuilding
 from rockfrag.errors import InputError
+from rockfrag.machine_code import cached_njit
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -132,7 +132,7 @@ def push_storey(building: ShearBuilding, storey: int, displacements: Sequence[fl
     )
 
 
-@njit(cache=True)
+@cached_njit()
 def envelope(x: float, corner: Any, strength: Any) -> float:
     """Force of the envelope at a displacement x ≥ 0."""
     if x <= corner[0]:
@@ -144,14 +144,14 @@ def envelope(x: float, corner: Any, strength: Any) -> float:
     return float(strength[-1])
 
 
-@njit(cache=True)
+@cached_njit()
 def unloading_stiffness(aim: float, corner: Any, strength: Any, exponent: float) -> float:
     """Stiffness of unloading from the side whose largest displacement is ``aim``."""
     ductility = max(aim / corner[0], 1.0)
     return float(strength[0] / corner[0] / ductility**exponent)
 
 
-@njit(cache=True)
+@cached_njit()
 def _area(corner: Any, strength: Any) -> float:
     """Area under both sides of the envelope."""
     total = corner[0] * strength[0]
@@ -160,7 +160,7 @@ def _area(corner: Any, strength: Any) -> float:
     return float(total)
 
 
-@njit(cache=True)
+@cached_njit()
 def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: Any) -> None:
     """Move a storey from the state ``memory`` to a displacement; its new state is ``moved``.
 
@@ -202,7 +202,7 @@ def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: An
     moved[WORK] = memory[WORK] + 0.5 * (f0 + force) * (x - x0)
 
 
-@njit(cache=True)
+@cached_njit()
 def _reload(x: float, zero: float, aim: float, force: float, stiffness: float, law: Any) -> float:
     """Force at x on the two lines from (zero, 0) through the pinching point to (aim, force)."""
     pinch = zero + (aim - (1.0 - law[0]) * force / stiffness - zero) * law[1]
@@ -213,7 +213,7 @@ def _reload(x: float, zero: float, aim: float, force: float, stiffness: float, l
     return float(force * (law[0] + (1.0 - law[0]) * (x - pinch) / (aim - pinch)))
 
 
-@njit(cache=True)
+@cached_njit()
 def _push(path: Any, corner: Any, strength: Any, law: Any) -> Any:
     memory, moved = np.zeros(MEMORY), np.zeros(MEMORY)
     forces = np.zeros(path.size)

@@ -10,7 +10,6 @@ in it shows an equilibrium that was missed.
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rockfrag.building.hysteresis import (
@@ -27,6 +26,7 @@ from rockfrag.building.hysteresis import (
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.modes import damping_matrix, find_modes
 from rockfrag.building.response import BuildingResponse, EnergyLedger
+from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -83,7 +83,7 @@ def respond_hysteretically(
     )
 
 
-@njit(cache=True)
+@cached_njit()
 def _shears(
     u: Any, memory: Any, moved: Any, corner: Any, strength: Any, law: Any, force: Any
 ) -> None:
@@ -98,7 +98,7 @@ def _shears(
         force[i] = moved[i, FORCE] - above
 
 
-@njit(cache=True)
+@cached_njit()
 def _integrate(
     ground: Any,
     step: float,

@@ -17,9 +17,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from rockfrag.machine_code import cached_njit
 from rockfrag.motions.spectra import (
     checked_damping,
     oscillator_matrix,
@@ -202,12 +202,12 @@ def _still_to_come(acceleration: Floats) -> Floats:
     return np.maximum.accumulate(np.abs(acceleration[::-1]))[::-1]
 
 
-@njit(cache=True, error_model="numpy", inline="always")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy", inline="always")
 def _sample(acceleration: Floats, i: int) -> float:
     return acceleration[i] if i < acceleration.size else 0.0
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def _march(
     acceleration: Floats,
     to_come: Floats,
@@ -255,7 +255,7 @@ def _march(
                         _look_between(x, lane, a, s, step)
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def _settled(x: Floats, to_come: float) -> bool:
     """Whether no lane can exceed its largest displacement any more."""
     for i in range(LANES):
@@ -267,7 +267,7 @@ def _settled(x: Floats, to_come: float) -> bool:
     return True
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
     """Whether a peak between two steps of a stretch can be the largest displacement of a lane."""
     may = False
@@ -276,7 +276,7 @@ def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
     return may
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def _advance(x: Floats, a: float, s: float) -> None:
     """One step of all lanes."""
     for i in range(LANES):
@@ -288,7 +288,7 @@ def _advance(x: Floats, a: float, s: float) -> None:
         x[_U + i], x[_V + i] = u1, v1
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
     """Let the peak of lane i between the last two steps count, if it can be the largest."""
     u, v, u1, v1 = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i]
@@ -298,7 +298,7 @@ def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def _march_free(acceleration: Floats, to_come: Floats, quiet: int, step: float, x: Floats) -> None:
     """Take all lanes through a motion and find the largest amplitudes of their free vibration."""
     for i in range(acceleration.size - 1 + quiet):
@@ -309,7 +309,7 @@ def _march_free(acceleration: Floats, to_come: Floats, quiet: int, step: float, 
         _advance_free(x, a, s)
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def _advance_free(x: Floats, a: float, s: float) -> None:
     for i in range(LANES):
         u, v = x[_U + i], x[_V + i]

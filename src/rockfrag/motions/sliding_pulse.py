@@ -13,19 +13,20 @@ holds less than is explained elsewhere need no look.
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from rockfrag.machine_code import cached_njit
 
 Floats = NDArray[np.float64]
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit()
 def half_length(length: float, dt: float) -> int:
     """Samples to either side of the middle of a pulse of a length [s]."""
     return math.floor(length / 2 / dt)
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit(error_model="numpy")
 def best_place(
     velocity: Floats, energy: Floats, dt: float, period: float, cycles: float, known: float
 ) -> tuple[float, int, float, float]:
@@ -96,6 +97,6 @@ def best_place(
     return gain, place, best.real / even_norm, best.imag / odd_norm
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator,unused-ignore]
+@cached_njit()
 def _phasor(angle: float) -> complex:
     return complex(math.cos(angle), math.sin(angle))

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -84,7 +84,7 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
     return np.hstack([free, after - free @ before])
 
 
-@njit(cache=True)
+@cached_njit()
 def _histories(acceleration: Floats, step: float, matrix: Floats) -> tuple[Floats, Floats]:
     """Relative displacement and velocity at the samples, from rest."""
     n = acceleration.size
@@ -97,7 +97,7 @@ def _histories(acceleration: Floats, step: float, matrix: Floats) -> tuple[Float
     return u, v
 
 
-@njit(cache=True)
+@cached_njit()
 def turning_time(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
     """Time in (0, h) at which the cubic with values x0, x1 and slopes m0, m1 of unlike sign turns."""
     rise = x1 - x0
@@ -111,7 +111,7 @@ def turning_time(x0: float, m0: float, x1: float, m1: float, h: float) -> float:
     return h * min(max(c / q, 0.0), 1.0) if q != 0.0 else 0.0
 
 
-@njit(cache=True)
+@cached_njit()
 def state_after(
     u: float, v: float, a: float, s: float, c: float, k: float, t: float
 ) -> tuple[float, float]:
@@ -129,7 +129,7 @@ def state_after(
     return u1, v1
 
 
-@njit(cache=True)
+@cached_njit()
 def _peaks(
     acceleration: Floats, step: float, parts: int, matrix: Floats, omega: float, damping: float
 ) -> tuple[float, float, float]:

@@ -32,7 +32,8 @@ def package_digest() -> str:
     """Return a digest of the whole package's source and data, which says what made a report."""
     digest = hashlib.sha256()
     for path in sorted(ROOT.rglob("*")):
-        if path.is_file() and path.suffix != ".pyc":
+        # what Python and numba keep there of a run is no source
+        if path.is_file() and path.parent.name != "__pycache__":
             digest.update(path.relative_to(ROOT).as_posix().encode())
             digest.update(b"\0")
             digest.update(path.read_bytes())

@@ -36,6 +36,7 @@ from filelock import FileLock
 from numba import types
 from numba.extending import intrinsic, register_jitable
 
+from rockfrag.machine_code import cached_njit
 from rockfrag.rocking.kernels import elementary, geometry
 
 TESTED_NUMBA = ("0.68.",)
@@ -50,17 +51,7 @@ if KNOWN:
 def entry_kernel(function: Callable[..., Any]) -> Any:
     """Compile ``function``, which Python calls, without the interpreter's lock, and cache the machine code."""
     own = {"pipeline_class": WholeCompiler} if KNOWN else {}
-    try:
-        compiled = _compiled(function, cache=True, **own)
-    except RuntimeError:
-        # numba finds no folder it may write its cache to: compile for this process alone
-        return _compiled(function, **own)
-    # numba looks at a function's own file only, and would keep machine code with an old copy of another kernel
-    index = getattr(getattr(compiled, "_cache", None), "_cache_file", None)
-    if index is None or not hasattr(index, "_source_stamp"):
-        return _compiled(function, **own)
-    index._source_stamp = (index._source_stamp, _digest())
-    return compiled
+    return cached_njit(_digest, **_EVERY, **own)(function)
 
 
 def kernel(function: Callable[..., Any]) -> Any:

@@ -1,0 +1,57 @@
+"""Machine code that numba keeps between processes, and what becomes of it when its files are damaged."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numba
+
+
+def cached_njit(stamp: Callable[[], str] | None = None, **options: Any) -> Callable[[Any], Any]:
+    """Compile a function with numba and keep its machine code where that can be written.
+
+    Parameters
+    ----------
+    stamp
+        Gives a digest of all sources that the machine code is made of; numba looks at the function's own file
+        only, and would keep code with an old copy of another function.
+    **options
+        Options of ``numba.njit``.
+
+    Returns
+    -------
+    A decorator. A file of machine code that cannot be read is made anew, as if it were not there; without
+    a folder for it the function is compiled for this process alone.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        try:
+            compiled: Any = numba.njit(cache=True, **options)(function)
+        except RuntimeError:
+            # numba finds no folder that it may write to
+            return numba.njit(**options)(function)
+        # numba does not document these: with a version that lacks them the cache is as it was, or is not used
+        file: Any = getattr(getattr(compiled, "_cache", None), "_cache_file", None)
+        if stamp is not None:
+            if not hasattr(file, "_source_stamp"):
+                return numba.njit(**options)(function)
+            file._source_stamp = (file._source_stamp, stamp())
+        if hasattr(file, "load") and hasattr(file, "flush"):
+            file.load = _whole_or_nothing(file.load, file.flush)
+        return compiled
+
+    return decorate
+
+
+def _whole_or_nothing(
+    load: Callable[[Any], Any], forget: Callable[[], None]
+) -> Callable[[Any], Any]:
+    def load_whole(signature: Any) -> Any:
+        try:
+            return load(signature)
+        except OSError:
+            raise
+        except Exception:  # half a pickle raises nearly anything
+            forget()
+            return None
+
+    return load_whole
