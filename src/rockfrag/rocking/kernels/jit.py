@@ -1,4 +1,4 @@
-"""How kernels are compiled, and the one place that uses numba's private parts.
+"""How kernels are compiled, and the one place that uses the private parts of numba's compiler.
 
 ``kernel`` marks a function that other kernels call, ``entry_kernel`` one that Python calls.  Machine code is
 made for entry kernels alone, once per machine, and cached where the installation (or the user's cache) can be
