@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from scipy import stats
 
 from rockfrag.pedestal.cluster_means import mean_effect, t_estimate, tied_resolution
 
@@ -155,3 +156,15 @@ def test_fast_estimate_is_that_of_the_package():
         assert (ours.lower, ours.upper, ours.p) == pytest.approx(
             (theirs.lower, theirs.upper, theirs.p), nan_ok=True
         )
+
+
+@pytest.mark.parametrize(("rate", "level"), [(0.10, 0.004), (0.05, 0.0002)])
+def test_no_exact_test_of_signs_comes_near_5_percent_where_nearly_all_pairs_agree(rate, level):
+    """The level that docs/validation-pedestal.md quotes: over the number of pairs that differ."""
+    attained = 0.0
+    for k in range(37):
+        ups = np.arange(k + 1)
+        p = 2 * np.minimum(stats.binom.cdf(ups, k, 0.5), stats.binom.sf(ups - 1, k, 0.5))
+        size = stats.binom.pmf(ups, k, 0.5)[p <= 0.05].sum()
+        attained += stats.binom.pmf(k, 36, rate) * size
+    assert attained == pytest.approx(level, rel=0.15)
