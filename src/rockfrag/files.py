@@ -28,6 +28,14 @@ _RESERVED = {
 """Names of devices, which no file may bear on Windows, whatever its ending."""
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; there is none where the name is too long for one."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
 def check_name(name: str) -> None:
     """Check that a name which a user gave can stand in tables, figures and file names.
 

@@ -192,6 +192,16 @@ def test_a_wrong_count_in_the_header_is_refused(builders, tmp_path, name, count,
         read_motion(path, unit="g" if "plain" in name else None, channel="1")
 
 
+def test_uneven_times_that_lie_far_apart_are_refused_before_they_are_filled_in(builders, tmp_path):
+    path = builders["csmip_v1_pairs"](tmp_path).path
+    content = path.read_text()
+    last = f"{990 + 42 * 0.02:7.3f}"
+    assert content.count(last) == 1
+    path.write_text(content.replace(last, " 1e+12 "))
+    with pytest.raises(InputError, match=r"old\.V1.* apart on average"):
+        read_motion(path)
+
+
 def test_empty_folder_and_dangling_link_say_what_they_are(tmp_path):
     empty = tmp_path / "empty.AT2"
     empty.touch()

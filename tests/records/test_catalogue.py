@@ -135,6 +135,12 @@ def test_a_file_that_is_not_the_one_of_its_digest_is_refused(tmp_path, builders)
         load_motions(path)
 
 
+def test_a_file_s_name_that_is_too_long_for_one_is_a_file_that_is_not_there(tmp_path):
+    path = write_catalogue(tmp_path, ROW | {"file": "a" * 5000, "sha256": "0" * 64})
+    with pytest.raises(InputError, match=r"there is no such file"):
+        load_motions(path)
+
+
 def test_the_catalogues_of_the_study_are_valid():
     thesis = read_catalogue(ROOT / "config/motions/thesis.csv")
     assert thesis["name"].tolist() == ["Friuli", "Kobe", "Loma Prieta", "Northridge"]

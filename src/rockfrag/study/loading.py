@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
-from rockfrag.files import distinct_file_names, file_name
+from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.contact.friction import check_impacts_follow
@@ -34,7 +34,7 @@ from rockfrag.study.measured_table import (
     is_measured_table,
     measured_table_from,
 )
-from rockfrag.study.paths import check_file, existing_file, is_file
+from rockfrag.study.paths import check_file, existing_file
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from

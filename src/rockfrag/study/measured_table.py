@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from rockfrag.errors import InputError
+from rockfrag.files import is_file
 from rockfrag.schema import checked
-from rockfrag.study.paths import is_file
 from rockfrag.tabular import read_cells
 
 TABLE_KEY = "table"

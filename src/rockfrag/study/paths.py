@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 from rockfrag.errors import InputError
+from rockfrag.files import is_file
 
 
 def existing_file(source: Path, key: str, name: str) -> Path:
@@ -26,14 +27,6 @@ def existing_file(source: Path, key: str, name: str) -> Path:
     path = Path(os.path.normpath(source.parent / name))
     check_file(path, f"{source}: key {key}")
     return path
-
-
-def is_file(path: Path) -> bool:
-    """Whether there is such a file; there is none where the name is too long for one."""
-    try:
-        return path.is_file()
-    except OSError:
-        return False
 
 
 def check_file(path: Path, where: str) -> None:

@@ -9,12 +9,12 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.building.model import ShearBuilding
+from rockfrag.files import is_file
 from rockfrag.plausibility import size_warning
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
-from rockfrag.study.paths import is_file
 from rockfrag.study.supplementary import Supplementary
 
 GROUND = "ground"

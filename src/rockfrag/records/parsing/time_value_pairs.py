@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.plausibility import LONGEST_STEP
 from rockfrag.records.parsing.channel import Channel
 from rockfrag.records.parsing.fortran_sections import reals
 from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
@@ -106,7 +107,8 @@ def pairs_of(
     Raises
     ------
     InputError
-        If there are fewer than two pairs, or a time is before the one above it.
+        If there are fewer than two pairs, a time is before the one above it, or times lie further apart
+        than those of any record.
     """
     if text.cut_short:
         values = values[: 2 * (values.size // 2)]
@@ -120,6 +122,12 @@ def pairs_of(
         step = step_of_times(times, text, line)
         return Pairs(times, accelerations, step, True, unit, promised)
     except InputError:
+        mean = float(times[-1] - times[0]) / (times.size - 1)
+        if mean > LONGEST_STEP:
+            text.fail(
+                f"times lie {mean:.3g} s apart on average, those of a record at most {LONGEST_STEP:g} s",
+                line,
+            )
         return Pairs(times, accelerations, even_step(times), False, unit, promised)
 
 
