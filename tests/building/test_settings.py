@@ -40,6 +40,7 @@ def replace(key, value):
         ),
         (replace("storey_heights_m", []), "storey_heights_m: expected a list"),
         (replace("masses_kg", ["heavy"] * 6), r"masses_kg\[0\]: expected a mass such as"),
+        (replace("first_period_s", 1e-300), "first_period must be positive numbers of s"),
         (replace("first_period_s", -0.3), "first_period_s: expected .* found -0.3"),
         (
             replace("first_period_s", float("nan")),

@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 MOST_STOREYS = 100
 """More storeys than this are a slip of the keyboard and not a masonry building."""
 
+_LEAST, _MOST = 1e-9, 1e21
+
 
 def _check_ratio(ratio: float) -> None:
     if not (math.isfinite(ratio) and 0 <= ratio < 1):
@@ -216,14 +218,18 @@ def stiffnesses_for_period(
 
 
 def check_positive(owner: str, what: str, unit: str, values: Sequence[float]) -> None:
-    """Raise an InputError unless there are one to ``MOST_STOREYS`` values, each positive."""
+    """Raise an InputError unless there are one to ``MOST_STOREYS`` values, each positive.
+
+    Limits beyond all buildings keep their frequencies finite.
+    """
     if not 1 <= len(values) <= MOST_STOREYS:
         raise InputError(
             f"{owner}: {what} has {len(values)} entries, but a building has 1 to {MOST_STOREYS} "
             "storeys."
         )
     for number, value in enumerate(values, start=1):
-        if not (math.isfinite(value) and value > 0):
+        if not _LEAST <= value <= _MOST:
             raise InputError(
-                f"{owner}: {what} must be positive numbers of {unit}, entry {number} is {value}."
+                f"{owner}: {what} must be positive numbers of {unit} (from {_LEAST:g} to {_MOST:g}), "
+                f"entry {number} is {value}."
             )
