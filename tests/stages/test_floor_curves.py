@@ -7,6 +7,7 @@ import pytest
 from rockfrag.fragility import with_measures
 from rockfrag.fragility.sweep_data import TableSweep
 from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.shaketable.swept import displaced
 from rockfrag.stages.floor_curves import export_curves, floor_curves, uplift_amplitude
 
 STATUE, PEDESTAL = Block(0.2, 0.8, 50.0), Block(0.4, 0.4, 60.0)
@@ -50,7 +51,7 @@ def curves():
         ("statue", str(floor)): TableSweep(with_measures(part, measures, columns))
         for floor, part in sweep.groupby("floor", sort=False)
     }
-    return floor_curves(sweeps, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)[0]
+    return floor_curves(sweeps, {}, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)[0]
 
 
 def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves):
@@ -91,8 +92,10 @@ def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path
         ]
     names = ["pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g"]
     measures = pd.DataFrame({"name": [f"m{k}" for k in range(8)]} | dict.fromkeys(names, 0.3))
+    sweep = with_measures(pd.DataFrame(rows), measures, names)
     curves, _ = floor_curves(
-        {("statue", "hall"): TableSweep(with_measures(pd.DataFrame(rows), measures, names))},
+        {("statue", "hall"): TableSweep(sweep)},
+        {("statue", "hall"): TableSweep(sweep.assign(overturned=displaced(sweep)))},
         measures,
         FLOORS,
         {"statue": STATUE},

@@ -22,6 +22,12 @@ FALLEN = ("", "pedestal", "statue")
 ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
 """Columns that are the same for all amplitudes of a motion."""
 
+SLIPS = ("peak_slip_ground_m", "peak_slip_interface_m")
+"""Columns of a sweep with friction: largest slips at the two interfaces [m]."""
+
+SLIDES = 0.001
+"""Slip above which a body counts as having slid [m]: a displacement that one sees."""
+
 
 @dataclass(frozen=True)
 class Swept:
@@ -34,7 +40,7 @@ class Swept:
     amplitude_g
         Amplitudes [g], rising, shape (n,).
     overturned
-        Verdicts, shape (motions, n).
+        Verdicts, shape (motions, n); also whether anything was displaced, where that was asked for.
     fallen
         Number in ``FALLEN`` of what overturned, shape (motions, n).
     """
@@ -45,20 +51,36 @@ class Swept:
     fallen: NDArray[np.uint8]
 
 
-def read_swept(paths: Iterable[Path]) -> Iterator[Swept]:
+def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:
+    """Whether each run slid by more than `SLIDES` at either interface, or overturned, shape (n,).
+
+    Parameters
+    ----------
+    sweep
+        With ``overturned`` and the columns `SLIPS`.
+    """
+    slip = sweep[list(SLIPS)].to_numpy(dtype=float).max(axis=1)
+    return np.asarray((slip > SLIDES) | sweep["overturned"].to_numpy(dtype=bool))
+
+
+def read_swept(paths: Iterable[Path], *, slid: bool = False) -> Iterator[Swept]:
     """Yield the verdicts of sweeps in parts of some motions, so that memory holds one part.
 
     Parameters
     ----------
     paths
         Files of sweeps, each of one configuration or of some motions of it.
+    slid
+        Whether the verdict is that something was :func:`displaced`, of sweeps with friction, and not that it
+        overturned.
 
     Raises
     ------
     InputError
         If a part does not hold whole motions that rose through the same amplitudes.
     """
-    columns = [*ABOUT, "amplitude_g", "overturned", "overturned_body"]
+    slips = list(SLIPS) if slid else []
+    columns = [*ABOUT, "amplitude_g", "overturned", "overturned_body", *slips]
     texts = [*ABOUT, "overturned_body"]
     for path in paths:
         with pq.ParquetFile(path, read_dictionary=texts) as file:
@@ -82,8 +104,11 @@ def _swept(part: pa.Table, path: Path) -> Swept:
     body = part["overturned_body"].combine_chunks()
     number = np.array([FALLEN.index(name) for name in body.dictionary.to_pylist()], dtype=np.uint8)
     fallen = number[body.indices.to_numpy()].reshape(-1, each)
-    overturned = part["overturned"].to_numpy().reshape(-1, each)
-    return Swept(about, grid[0].copy(), overturned, fallen)
+    if set(SLIPS) <= set(part.column_names):
+        verdicts = displaced(part.select(["overturned", *SLIPS]).to_pandas())
+    else:
+        verdicts = part["overturned"].to_numpy()
+    return Swept(about, grid[0].copy(), verdicts.reshape(-1, each), fallen)
 
 
 def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:

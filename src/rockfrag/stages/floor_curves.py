@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from rockfrag.files import file_name
 from rockfrag.rocking.bodies import Block, Body
@@ -18,12 +17,6 @@ if TYPE_CHECKING:
 
 GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
 FLOOR_MEASURES = ("pga_g", "pgv_cm_s")
-SLIPS = ("peak_slip_ground_m", "peak_slip_interface_m")
-"""Columns of a sweep with friction: largest slips at the two interfaces [m]."""
-
-SLIDES = 0.001
-"""Slip above which a body counts as having slid [m]: a displacement that one sees."""
-
 FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
 """What peaks are called where the motion is that of a floor above the ground."""
 
@@ -45,6 +38,7 @@ def floor_measures(level: int) -> tuple[str, ...]:
 
 def floor_curves(
     sweeps: Mapping[tuple[str, str], "SweepData"],
+    slid: Mapping[tuple[str, str], "SweepData"],
     measures: pd.DataFrame,
     floors: Mapping[str, int],
     bodies: Mapping[str, Body],
@@ -58,6 +52,8 @@ def floor_curves(
     ----------
     sweeps
         Sweeps of each configuration on each floor, which know the measures of that floor.
+    slid
+        The same with the verdict that something was displaced, where friction is limited; else empty.
     measures
         Intensity measures of the motions as recorded.
     floors
@@ -78,17 +74,16 @@ def floor_curves(
         One row per configuration, floor, measure and limit state: ``configuration``, ``floor``,
         ``floor_level``, ``measure`` (column of ``measures``), ``state`` (``rocks``, ``slides``, ``overturned``)
         and the columns of :func:`rockfrag.fragility.sweeps.fragility_table`. Overturning is the mean probability
-        over all verdicts; so is sliding, where the sweep tells it: slipping by more than `SLIDES` or worse.
+        over all verdicts; so is sliding, where friction is limited: a visible slip, or worse.
         Rocking starts at an exact peak acceleration, whose value in another measure varies from motion to
         motion.
     shares
         Points of the curves without a form, of those that are rejected: see
         :func:`rockfrag.fragility.drawn_curves.share_points`.
     """
-    from rockfrag.fragility import fragility_of, fragility_row, outcomes_from_table, with_measures
+    from rockfrag.fragility import fragility_of, fragility_row, with_measures
     from rockfrag.fragility.drawn_curves import share_points
     from rockfrag.fragility.states import fit_uplift
-    from rockfrag.fragility.sweep_data import TableSweep
 
     shares = []
     rows = []
@@ -101,11 +96,9 @@ def floor_curves(
         for column in columns:
             labels = {"configuration": name, "floor": floor, "floor_level": height}
             states = {"overturned": fragility_of(sweep.outcomes(column), level=level)}
-            # of counted sweeps the slips are not known
-            if isinstance(sweep, TableSweep) and set(SLIPS) <= set(sweep.table):
-                moved = sweep.table.assign(overturned=displaced(sweep.table))
-                outcomes = outcomes_from_table(moved, column, event="event", source="sweep")
-                states = {"slides": fragility_of(outcomes, level=level), **states}
+            if slid:
+                moved = fragility_of(slid[name, floor].outcomes(column), level=level)
+                states = {"slides": moved, **states}
             if rocks_at_once:
                 rocks = fit_uplift(at_uplift, column, level=level)
                 states = {"rocks": rocks, **states}
@@ -120,12 +113,6 @@ def floor_curves(
                 rows.append(row)
                 shares.append(points)
     return pd.DataFrame(rows), pd.concat(shares, ignore_index=True)
-
-
-def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:
-    """Whether each run slid by more than `SLIDES` at either interface, or overturned, shape (n,)."""
-    slip = sweep[list(SLIPS)].to_numpy(dtype=float).max(axis=1)
-    return np.asarray((slip > SLIDES) | sweep["overturned"].to_numpy(dtype=bool))
 
 
 def export_curves(

@@ -1,5 +1,6 @@
 """Fragility: curves of every configuration, the measure that foretells overturning best, exports."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -41,6 +42,7 @@ def run(job: Job[Study]) -> Results:
     yield "measure_choice", choice
     by_floor, floor_shares = floor_curves(
         data.of_floors,
+        data.slid,
         measures,
         job.study.floors,
         {one.name: one.body for one in job.study.configurations},
@@ -64,10 +66,14 @@ BY = ["configuration", "event", "floor", "motion"]
 
 @dataclass(frozen=True)
 class _Sweeps:
-    """Sweeps by configuration, and by configuration and floor; survival windows of all."""
+    """Sweeps by configuration, and by configuration and floor; survival windows of all.
+
+    Of ``slid`` the verdict is that something was displaced; it is empty where nothing can slide.
+    """
 
     of_all: dict[str, "SweepData"]
     of_floors: dict[tuple[str, str], "SweepData"]
+    slid: dict[tuple[str, str], "SweepData"]
     windows: pd.DataFrame
 
 
@@ -76,6 +82,7 @@ def _rows(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
     from rockfrag.fragility.empirical import survival_windows
     from rockfrag.fragility.sweep_data import TableSweep
     from rockfrag.fragility.sweeps import with_measures
+    from rockfrag.shaketable.swept import displaced
 
     sweep = pd.concat(
         [pd.read_parquet(job.file(path)) for path in job.study.sweep_files], ignore_index=True
@@ -86,10 +93,14 @@ def _rows(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
         str(name): TableSweep(part) for name, part in measured.groupby("configuration", sort=False)
     }
     of_floors: dict[tuple[str, str], SweepData] = {}
+    slid: dict[tuple[str, str], SweepData] = {}
     for (name, floor), part in sweep.groupby(["configuration", "floor"], sort=False):
         columns = floor_measures(job.study.floors[str(floor)])
-        of_floors[str(name), str(floor)] = TableSweep(with_measures(part, measures, columns))
-    return _Sweeps(of_all, of_floors, survival_windows(measured, by=BY))
+        here = with_measures(part, measures, columns)
+        of_floors[str(name), str(floor)] = TableSweep(here)
+        if job.study.slides:
+            slid[str(name), str(floor)] = TableSweep(here.assign(overturned=displaced(here)))
+    return _Sweeps(of_all, of_floors, slid, survival_windows(measured, by=BY))
 
 
 def _counted(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
@@ -98,17 +109,25 @@ def _counted(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
 
     wanted = list(dict.fromkeys([*job.study.fragility.measures, *CANDIDATES]))
     floors = {name: floor_measures(level) for name, level in job.study.floors.items()}
-    found = {}
-    for configuration in job.study.configurations:
-        found[configuration.name] = CountedSweep(
-            sweeps_of(job, configuration),
-            sweeps_of(job, configuration),
-            measures,
-            {"": wanted, **floors},
-        )
+
+    def counted(columns: Mapping[str, Sequence[str]], slid: bool) -> dict[str, CountedSweep]:
+        return {
+            one.name: CountedSweep(
+                sweeps_of(job, one, slid=slid), sweeps_of(job, one, slid=slid), measures, columns
+            )
+            for one in job.study.configurations
+        }
+
+    def by_floor(sweeps: dict[str, CountedSweep]) -> dict[tuple[str, str], "SweepData"]:
+        return {
+            (name, floor): one.of_floor(floor) for name, one in sweeps.items() for floor in floors
+        }
+
+    found = counted({"": wanted, **floors}, False)
     return _Sweeps(
         {name: one.of_floor("") for name, one in found.items()},
-        {(name, floor): one.of_floor(floor) for name, one in found.items() for floor in floors},
+        by_floor(found),
+        by_floor(counted(floors, True)) if job.study.slides else {},
         pd.concat([one.windows("") for one in found.values()], ignore_index=True).sort_values(
             BY, ignore_index=True
         ),

@@ -8,8 +8,11 @@ from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
 
 
-def sweeps_of(job: Job[Study], configuration: Configuration) -> Iterator[Swept]:
-    """Yield the verdicts of a configuration."""
+def sweeps_of(
+    job: Job[Study], configuration: Configuration, *, slid: bool = False
+) -> Iterator[Swept]:
+    """Yield the verdicts of a configuration, see :func:`rockfrag.shaketable.swept.read_swept`."""
     study = job.study
     jobs = range(study.sweep_jobs)
-    yield from read_swept(job.file(study.sweep_file(configuration, one)) for one in jobs)
+    files = (job.file(study.sweep_file(configuration, one)) for one in jobs)
+    yield from read_swept(files, slid=slid)
