@@ -16,6 +16,7 @@ from rockfrag.fragility.empirical import windows_of_swept
 from rockfrag.fragility.intervals import blocks_of
 from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit, positive
 from rockfrag.fragility.sweeps import scale_power
+from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.swept import Swept
 
 CELLS = 2000
@@ -120,12 +121,7 @@ class CountedOutcomes(Outcomes):
                 *(np.searchsorted(self.rise, end - self.scale) for end in ends),
             ]
         )
-        total = np.diff(below.sum(axis=0))
-        found = np.empty((len(capacity), starts.size))
-        for row, one in enumerate(capacity):
-            survived = np.searchsorted(self.rise, one - self.scale, side="right")
-            found[row] = total - np.diff(np.minimum(below, survived[:, None]).sum(axis=0))
-        return found
+        return np.asarray(_fallen(capacity - self.scale, self.rise, below))
 
     def _edge_below(self, im: Floats) -> Floats:
         """Lower end of the cell that holds each value [ln IM]."""
@@ -140,6 +136,47 @@ class CountedOutcomes(Outcomes):
         return np.column_stack(
             [np.searchsorted(self.rise, one - self.scale) for one in (low, high)]
         )
+
+
+@cached_njit(error_model="numpy")
+def _fallen(capacity: Floats, rise: Floats, below: NDArray[np.intp]) -> Floats:
+    """Verdicts by cell, (replicates, cells), of motions that fall above a capacity each, (replicates, motions).
+
+    ``below`` has the number of each motion's amplitudes below the beginning of every cell and, last, in all.
+    """
+    motions, ends = below.shape
+    found = np.zeros((len(capacity), ends - 1))
+    for row in range(len(capacity)):
+        for motion in range(motions):
+            survived = np.searchsorted(rise, capacity[row, motion], side="right")
+            for cell in range(ends - 1):
+                begin = max(below[motion, cell], survived)
+                found[row, cell] += max(below[motion, cell + 1] - begin, 0)
+    return found
+
+
+@cached_njit(error_model="numpy")
+def _count(
+    scale: Floats,
+    rise: Floats,
+    overturned: NDArray[np.bool_],
+    block: NDArray[np.intp],
+    edges: Floats,
+    trials: Floats,
+    fell: Floats,
+    total: Floats,
+) -> None:
+    """Add verdicts of motions, (motions, n), to those of blocks, (blocks, cells), and ln IM to its sum."""
+    cells = total.size
+    width = (edges[-1] - edges[0]) / cells
+    for motion in range(scale.size):
+        row = block[motion]
+        for j in range(rise.size):
+            log_im = scale[motion] + rise[j]
+            cell = min(max(int((log_im - edges[0]) / width), 0), cells - 1)
+            trials[row, cell] += 1.0
+            fell[row, cell] += overturned[motion, j]
+            total[cell] += log_im
 
 
 class CountedSweep:
@@ -255,20 +292,17 @@ class _Counts:
         if not used.any():
             return
         own, fell = own[used], overturned[used]
-        log_im = self.scale[own][:, None] + self.rise
-        width = (self.edges[-1] - self.edges[0]) / CELLS
-        cell = ((log_im - self.edges[0]) / width).astype(np.intp).clip(0, CELLS - 1)
-        flat = self.row[own][:, None] * CELLS + cell
-        size = self.trials.size
-        self.trials += np.bincount(flat.ravel(), minlength=size).reshape(self.trials.shape)
-        self.fell += np.bincount(flat[fell], minlength=size).reshape(self.trials.shape)
-        self.total += np.bincount(cell.ravel(), log_im.ravel(), minlength=CELLS)
+        _count(
+            *(self.scale[own], self.rise, fell, self.row[own], self.edges),
+            *(self.trials, self.fell, self.total),
+        )
 
     def outcomes(self) -> CountedOutcomes:
         block, cell = np.nonzero(self.trials)
         with np.errstate(invalid="ignore", divide="ignore"):
             middle = np.exp(self.total / self.trials.sum(axis=0))
-        labels = np.array([f"block {one + 1}" for one in block], dtype=object)
+        names = [f"block {one + 1}" for one in range(len(self.trials))]
+        labels = np.array(names, dtype=object)[block]
         return CountedOutcomes(
             middle[cell],
             self.fell[block, cell],

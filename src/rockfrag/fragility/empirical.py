@@ -140,12 +140,15 @@ def local_share(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = Non
             f"bandwidth: the kernel needs a width above zero in ln IM, got {bandwidth:g}; give "
             "one if all tests share one value."
         )
-    offset = (np.log(np.atleast_1d(np.asarray(im, dtype=np.float64)))[:, None] - x) / bandwidth
-    # the largest exponent is taken out so that far values still have weights
-    power = -0.5 * offset**2
-    weight = np.exp(power - power.max(axis=1, keepdims=True)) * outcomes.trials
     share = outcomes.overturned / outcomes.trials
-    return np.asarray((weight * share).sum(axis=1) / weight.sum(axis=1))
+    found = []
+    # one after the other, so that memory holds one row of weights
+    for middle in np.log(np.atleast_1d(np.asarray(im, dtype=np.float64))):
+        # the largest exponent is taken out so that far values still have weights
+        power = -0.5 * ((middle - x) / bandwidth) ** 2
+        weight = np.exp(power - power.max()) * outcomes.trials
+        found.append((weight * share).sum() / weight.sum())
+    return np.array(found)
 
 
 def survival_windows(

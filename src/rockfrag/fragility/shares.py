@@ -15,7 +15,13 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, stats
 
-from rockfrag.fragility.intervals import BETA_POWER, all_but_one, jackknife_error, student
+from rockfrag.fragility.intervals import (
+    BETA_POWER,
+    all_but_one,
+    blocks_of,
+    jackknife_error,
+    student,
+)
 from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.fragility.pooling import cells, counts
 
@@ -122,23 +128,40 @@ def shares_of_capacities(log_capacity: Floats, groups: NDArray[np.object_], leve
         As of :func:`shares_of_verdicts`.
     """
     codes, names = pd.factorize(pd.Series(groups))
-    values = np.unique(log_capacity[np.isfinite(log_capacity)])
-    if not values.size:
+    finite = np.isfinite(log_capacity)
+    if not finite.any():
         nothing = np.empty(0)
         nan = float("nan")
         return Shares(nothing, nothing, nothing, nothing, nan, UNKNOWN, nan, UNKNOWN)
+    # many neighbouring capacities are one
+    cell, values = cells(log_capacity[finite])
+    capacity = log_capacity.copy()
+    capacity[finite] = values[cell]
     # up to just below a capacity the share is that of the one before
     values = np.unique(np.append(values, values - 1e-9))
-    failed = log_capacity[:, None] <= values
-    fell = np.array([failed[codes == k].sum(axis=0) for k in range(len(names))], dtype=np.float64)
-    total = np.repeat(np.bincount(codes)[:, None], values.size, axis=1).astype(np.float64)
-    return _shares(values, values, fell, total, log_capacity.size, level)
+    block = blocks_of(len(names))[codes]
+    # an infinite capacity lies in the column after the last value
+    columns = values.size + 1
+    flat = block * columns + np.searchsorted(values, capacity)
+    each = np.bincount(flat, minlength=(int(block.max()) + 1) * columns).reshape(-1, columns)
+    fell = np.cumsum(each, axis=1)[:, :-1].astype(np.float64)
+    total = np.repeat(np.bincount(block)[:, None], values.size, axis=1).astype(np.float64)
+    return _shares(values, values, fell, total, log_capacity.size, level, len(names))
 
 
 def _shares(
-    log_im: Floats, middle: Floats, fell: Floats, total: Floats, motions: int, level: float
+    log_im: Floats,
+    middle: Floats,
+    fell: Floats,
+    total: Floats,
+    motions: int,
+    level: float,
+    witnesses: int | None = None,
 ) -> Shares:
-    """Shares from counts by group and value, shape (groups, values); ``middle`` is where capacities lie."""
+    """Shares from counts by group and value, shape (groups, values); ``middle`` is where capacities lie.
+
+    Every group bears witness to shares of 0 and 1 where ``witnesses`` says how many groups there are.
+    """
     groups = len(fell)
     share = _rising(fell.sum(axis=0), total.sum(axis=0))
     theta, beta = _median(log_im, share), _dispersion(middle, share, motions)
@@ -149,9 +172,8 @@ def _shares(
     left_out = np.array(
         [_rising(f, t) for f, t in zip(weights @ fell, weights @ total, strict=True)]
     )
-    lower, upper = _limits(
-        share, jackknife_error(left_out), _witnesses(share, total), motions, level
-    )
+    seen = _witnesses(share, total) if witnesses is None else np.full(share.shape, float(witnesses))
+    lower, upper = _limits(share, jackknife_error(left_out), seen, motions, level)
     theta_limits = UNKNOWN
     if np.isfinite(theta):
         theta_limits = _median_limits(np.exp(log_im), lower, upper, theta)

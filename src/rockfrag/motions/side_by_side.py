@@ -86,7 +86,8 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     peaks = np.empty(periods.size)
     to_come = _still_to_come(motion.acceleration)
     for group in _groups(periods.tobytes(), damping, motion.dt, True):
-        peaks[group.which] = _exact(group, motion.acceleration, to_come)
+        march = _marched(group, motion.acceleration, to_come)
+        peaks[group.which] = _looked_between(march, motion.acceleration)
     return peaks
 
 
@@ -110,24 +111,53 @@ def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float)
         psa[group.which], bound[group.which] = _bounds(
             group, acceleration, square[group.which], to_come, slope
         )
-    bounds = [float(bound[group.which].max()) for group in groups]
+    marched = []
     # from the highest bound on
-    for i in np.argsort(bounds)[::-1]:
-        if bounds[i] >= psa.max():
-            which = groups[i].which
-            psa[which] = square[which] * _exact(groups[i], acceleration, to_come)
+    for i in np.argsort([float(bound[group.which].max()) for group in groups])[::-1]:
+        which = groups[i].which
+        if bound[which].max() >= psa.max():
+            march = _marched(groups[i], acceleration, to_come)
+            psa[which], bound[which] = (square[which] * one for one in march.peaks_and_bounds())
+            marched.append(march)
+    for march in marched:
+        which = march.group.which
+        if bound[which].max() >= psa.max():
+            psa[which] = square[which] * _looked_between(march, acceleration)
     return int(np.argmax(psa))
 
 
-def _exact(group: _Group, acceleration: Floats, to_come: Floats) -> Floats:
-    """Sd of a group [m]."""
+class _Marched(NamedTuple):
+    """A group after its march: its table, and of each stretch the state before it and its peaks."""
+
+    group: _Group
+    table: Floats
+    stretches: Floats
+    number: int
+    ground: Floats
+
+    def peaks_and_bounds(self) -> tuple[Floats, Floats]:
+        """Largest displacement of each oscillator at its steps, and what a peak between them has at most [m]."""
+        peaks, added, kept = (
+            self.table[row : row + self.group.which.size] for row in (_LARGEST, _ADDED, _KEPT)
+        )
+        return peaks, (peaks + added) / kept * (1 + 1e-9)
+
+
+def _marched(group: _Group, acceleration: Floats, to_come: Floats) -> _Marched:
     table = group.table.copy()
     table[_ADDED : _ADDED + LANES] *= to_come[0]
-    stretches = -(-(acceleration.size - 1 + group.quiet) // LOOK_EVERY)
-    _march(
-        *(acceleration, to_come, group.quiet, group.step, group.parts, table),
-        np.empty((stretches, 3 * LANES)),
-    )
+    stretches = np.empty((-(-(acceleration.size - 1 + group.quiet) // LOOK_EVERY), 3 * LANES))
+    ground = np.empty((2, LOOK_EVERY * group.parts))
+    steps = (group.quiet, group.step, group.parts)
+    count = _march(acceleration, to_come, *steps, table, stretches, ground)
+    return _Marched(group, table, stretches, count, ground)
+
+
+def _looked_between(march: _Marched, acceleration: Floats) -> Floats:
+    """Sd of a group [m]."""
+    group, table = march.group, march.table
+    steps = (group.quiet, group.step, group.parts)
+    _look(acceleration, *steps, table, march.stretches[: march.number], march.ground)
     return table[_LARGEST : _LARGEST + group.which.size]
 
 
@@ -216,10 +246,12 @@ def _march(
     parts: int,
     x: Floats,
     stretches: Floats,
-) -> None:
-    """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then.
+    ground: Floats,
+) -> int:
+    """Take all lanes through a motion and ``quiet`` samples after it; return the number of stretches.
 
-    ``stretches`` is room for each stretch's state at its beginning and largest displacement, of all lanes.
+    The largest displacements at the steps are in the table then; ``stretches`` has each one's state at its
+    beginning and largest displacement, of all lanes, and ``ground`` is room for what shakes the steps of one.
     """
     end = acceleration.size - 1 + quiet
     count = 0
@@ -229,30 +261,59 @@ def _march(
         for i in range(LANES):
             stretches[count, i], stretches[count, LANES + i] = x[_U + i], x[_V + i]
             x[_HIGHEST + i] = abs(x[_U + i])
-        for k in range(first, min(first + LOOK_EVERY, end)):
-            start = _sample(acceleration, k)
-            s = (_sample(acceleration, k + 1) - start) / (parts * step)
-            for j in range(parts):
-                _advance(x, start + j * step * s, s)
+        steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
+        for j in range(0, steps - 3, 4):
+            _advance_four(x, ground, j)
+        for j in range(steps - steps % 4, steps):
+            _advance(x, ground[0, j], ground[1, j])
         for i in range(LANES):
             stretches[count, 2 * LANES + i] = x[_HIGHEST + i]
             x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
         count += 1
-    for number in range(count):
+    return count
+
+
+@cached_njit(error_model="numpy")
+def _look(
+    acceleration: Floats,
+    quiet: int,
+    step: float,
+    parts: int,
+    x: Floats,
+    stretches: Floats,
+    ground: Floats,
+) -> None:
+    """Go through those stretches again that may hold a peak between steps; the peaks are in the table then."""
+    end = acceleration.size - 1 + quiet
+    for number in range(len(stretches)):
         if _may_hold_the_peak(x, stretches[number]):
             for i in range(LANES):
                 x[_U + i], x[_V + i] = stretches[number, i], stretches[number, LANES + i]
             first = number * LOOK_EVERY
-            for k in range(first, min(first + LOOK_EVERY, end)):
-                start = _sample(acceleration, k)
-                s = (_sample(acceleration, k + 1) - start) / (parts * step)
-                for j in range(parts):
-                    a = start + j * step * s
-                    for i in range(LANES):
-                        x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
-                    _advance(x, a, s)
-                    for lane in range(LANES):
-                        _look_between(x, lane, a, s, step)
+            steps = _fill_ground(
+                acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground
+            )
+            for j in range(steps):
+                for i in range(LANES):
+                    x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
+                _advance(x, ground[0, j], ground[1, j])
+                for lane in range(LANES):
+                    _look_between(x, lane, ground[0, j], ground[1, j], step)
+
+
+@cached_njit(error_model="numpy")
+def _fill_ground(
+    acceleration: Floats, first: int, last: int, step: float, parts: int, ground: Floats
+) -> int:
+    """Write the ground's acceleration and slope at the beginning of each step; return how many these are."""
+    count = 0
+    for k in range(first, last):
+        start = _sample(acceleration, k)
+        s = (_sample(acceleration, k + 1) - start) / (parts * step)
+        for j in range(parts):
+            ground[0, count], ground[1, count] = start + j * step * s, s
+            count += 1
+    return count
 
 
 @cached_njit(error_model="numpy")
@@ -280,12 +341,34 @@ def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
 def _advance(x: Floats, a: float, s: float) -> None:
     """One step of all lanes."""
     for i in range(LANES):
-        u, v = x[_U + i], x[_V + i]
-        u1 = x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s
-        v1 = x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s
+        u, v = _stepped(x, i, x[_U + i], x[_V + i], a, s)
         # the zero keeps the compiler from storing under a condition, for which the next load would wait
-        x[_HIGHEST + i] = max(x[_HIGHEST + i], abs(u1)) + 0.0
-        x[_U + i], x[_V + i] = u1, v1
+        x[_HIGHEST + i] = max(x[_HIGHEST + i], abs(u)) + 0.0
+        x[_U + i], x[_V + i] = u, v
+
+
+@cached_njit(error_model="numpy")
+def _advance_four(x: Floats, ground: Floats, j: int) -> None:
+    """Four steps of all lanes from step j on, whose table is read and written once."""
+    a0, a1, a2, a3 = ground[0, j], ground[0, j + 1], ground[0, j + 2], ground[0, j + 3]
+    s0, s1, s2, s3 = ground[1, j], ground[1, j + 1], ground[1, j + 2], ground[1, j + 3]
+    for i in range(LANES):
+        u0, v0 = _stepped(x, i, x[_U + i], x[_V + i], a0, s0)
+        u1, v1 = _stepped(x, i, u0, v0, a1, s1)
+        u2, v2 = _stepped(x, i, u1, v1, a2, s2)
+        u3, v3 = _stepped(x, i, u2, v2, a3, s3)
+        highest = max(max(abs(u0), abs(u1)), max(abs(u2), abs(u3)))
+        x[_HIGHEST + i] = max(x[_HIGHEST + i], highest) + 0.0
+        x[_U + i], x[_V + i] = u3, v3
+
+
+@cached_njit(error_model="numpy", inline="always")
+def _stepped(x: Floats, i: int, u: float, v: float, a: float, s: float) -> tuple[float, float]:
+    """Displacement and velocity of lane i one step after u and v."""
+    return (
+        x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s,
+        x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s,
+    )
 
 
 @cached_njit(error_model="numpy")

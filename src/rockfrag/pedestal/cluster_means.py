@@ -229,6 +229,23 @@ def mean_effects(
     table: pd.DataFrame, by: str, confidence: float = CONFIDENCE
 ) -> dict[Hashable, Estimate]:
     """`mean_effect` of every group of rows with the same value of a column, all at once."""
+    units = sampled_units(table, by)
+    return {name: effect_of(some, confidence) for name, some in units.items()}
+
+
+def effect_of(units: pd.DataFrame, confidence: float = CONFIDENCE) -> Estimate:
+    """Mean of `sampled_units` with interval and p value."""
+    return t_estimate(units["d"], confidence, float(units["hidden"].mean()))
+
+
+def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, pd.DataFrame]:
+    """What was sampled of every group of rows with the same value of a column.
+
+    Returns
+    -------
+    By group a row per event, or per motion of a single event: ``d``, the mean over its pairs, and ``hidden``, what
+    their steps hide of it.
+    """
     d, known = table["d"].to_numpy(dtype=float), _resolution_of(table)
     hidden = np.zeros(len(table))
     groups = table.groupby(by, sort=True).indices
@@ -238,12 +255,11 @@ def mean_effects(
     motions = work.groupby([by, "event", "motion"])[["d", "hidden"]].mean()
     events = motions.groupby(level=[by, "event"]).mean()
     of_motions = motions.groupby(level=by).indices
-    found = {}
-    for name, places in events.groupby(level=by).indices.items():
-        # what was sampled of a single event are its motions
-        units = events.iloc[places] if len(places) > 1 else motions.iloc[of_motions[name]]
-        found[name] = t_estimate(units["d"], confidence, float(units["hidden"].mean()))
-    return found
+    # what was sampled of a single event are its motions
+    return {
+        name: events.iloc[places] if len(places) > 1 else motions.iloc[of_motions[name]]
+        for name, places in events.groupby(level=by).indices.items()
+    }
 
 
 def without_each_event(table: pd.DataFrame) -> dict[str, Estimate]:
@@ -258,23 +274,26 @@ def without_each_event(table: pd.DataFrame) -> dict[str, Estimate]:
     _different, place = np.unique(np.round(d, 9) + 0.0, return_inverse=True)
     event = pd.Categorical(table["event"], names).codes.astype(np.intp)
     count = np.bincount(place)
-    own = pd.DataFrame({"event": event, "place": place}).groupby(["event", "place"]).size()
-    of_event = own.reset_index(name="n").groupby("event")
+    own, times = np.unique(event * count.size + place, return_counts=True)
+    begin = np.searchsorted(own, np.arange(len(names) + 1) * count.size)
     work = table[["event", "motion", "d"]]
-    d_means = work.groupby(["event", "motion"])["d"].mean().groupby(level="event").mean()
-    hidden_means: dict[int, pd.Series] = {}
+
+    def by_event(work: pd.DataFrame) -> Array:
+        motions = work.groupby(["event", "motion"])["d"].mean()
+        return motions.groupby(level="event").mean().to_numpy()
+
+    d_means = by_event(work)
+    hidden_means: dict[int, Array] = {}
     found = {}
     for number, name in enumerate(names):
         rest = count.copy()
-        mine = of_event.get_group(number)
-        rest[mine["place"]] -= mine["n"]
+        mine = slice(begin[number], begin[number + 1])
+        rest[own[mine] % count.size] -= times[mine]
         tied = int(rest.argmax())
         if tied not in hidden_means:
-            hidden = work.assign(d=np.where(place == tied, known, 0.0))
-            motions = hidden.groupby(["event", "motion"])["d"].mean()
-            hidden_means[tied] = motions.groupby(level="event").mean()
-        resolution = float(hidden_means[tied].drop(name).mean())
-        found[name] = t_estimate(d_means.drop(name), CONFIDENCE, resolution)
+            hidden_means[tied] = by_event(work.assign(d=np.where(place == tied, known, 0.0)))
+        resolution = float(np.delete(hidden_means[tied], number).mean())
+        found[name] = t_estimate(np.delete(d_means, number), CONFIDENCE, resolution)
     return found
 
 

@@ -10,6 +10,7 @@ every fit is held against them.
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 from scipy import optimize, special
 
@@ -18,6 +19,9 @@ from rockfrag.pedestal.cluster_means import CONFIDENCE, Array, t_beyond
 
 STARTS = (0.0, 0.1, 0.5, 1.5)
 """Square roots of the variance ratios from whose best pair the search starts [-]."""
+
+MOST_APART = 50
+"""Events up to which each has a block of the covariance to itself."""
 
 EFFECT = "d ~ 1"
 EFFECT_BY_FLOOR = "d ~ C(floor,Sum)*s_c"
@@ -69,20 +73,27 @@ class _Direct:
 class _Reml:
     """Restricted likelihood of y = X β + event + motion + residual.
 
-    Motions lie within events, so the covariance falls into a block per event.
+    Motions lie within events, so the covariance falls into a block per event.  Of many events those with equal
+    floors share a block and are solved for together.
     """
 
     def __init__(self, y: Array, x: Array, rows: pd.DataFrame) -> None:
-        self.free = len(y) - x.shape[1]
-        places = rows.reset_index(drop=True).groupby("event").indices.values()
+        self.columns = x.shape[1]
+        self.free = len(y) - self.columns
+        places = list(rows.reset_index(drop=True).groupby("event").indices.values())
         floors = rows["floor"].to_numpy()
-        self.blocks = [
-            (y[i], x[i], (floors[i][:, None] == floors[i][None, :]).astype(float)) for i in places
-        ]
+        self.blocks = (
+            [] if len(places) > MOST_APART else [(y[i], x[i], _equal(floors[i])) for i in places]
+        )
+        alike: dict[tuple[str, ...], list[npt.NDArray[np.intp]]] = {}
+        for i in places if len(places) > MOST_APART else ():
+            alike.setdefault(tuple(floors[i]), []).append(np.asarray(i))
+        data = np.column_stack([x, y])
+        self.alike = [(data[np.array(some).T], _equal(floors[some[0]])) for some in alike.values()]
 
     def at(self, ratios: Array) -> _Direct:
         """Everything at given ratios of the variances of event and motion to the residual's."""
-        columns = self.blocks[0][1].shape[1]
+        columns = self.columns
         information = np.zeros((columns, columns))
         response, squares, log_det = np.zeros(columns), 0.0, 0.0
         for y, x, same_motion in self.blocks:
@@ -92,6 +103,14 @@ class _Reml:
             response += x.T @ solved[:, -1]
             squares += float(y @ solved[:, -1])
             log_det += float(np.linalg.slogdet(v)[1])
+        for data, same_motion in self.alike:
+            v = np.eye(len(data)) + ratios[0] + ratios[1] * same_motion
+            solved = np.linalg.solve(v, data.reshape(len(data), -1)).reshape(data.shape)
+            products = np.tensordot(data, solved, ([0, 1], [0, 1]))
+            information += products[:-1, :-1]
+            response += products[:-1, -1]
+            squares += float(products[-1, -1])
+            log_det += data.shape[1] * float(np.linalg.slogdet(v)[1])
         beta = np.asarray(np.linalg.solve(information, response), dtype=np.float64)
         scale = (squares - float(beta @ response)) / self.free
         loglik = -0.5 * (
@@ -113,6 +132,11 @@ class _Reml:
             options={"xatol": 1e-5, "fatol": 1e-8},
         )
         return self.at(found.x**2)
+
+
+def _equal(names: npt.NDArray[np.object_]) -> Array:
+    """1 where two of several names are equal and 0 elsewhere, shape (n, n)."""
+    return np.asarray(names[:, None] == names[None, :], dtype=float)
 
 
 def random_effects_balanced(rows: pd.DataFrame) -> bool:

@@ -2,6 +2,8 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +17,7 @@ DRAWS = 9_999
 
 
 MOST_EXACT = 500
-"""Units up to which signed ranks have their exact distribution, and beyond which the normal one."""
+"""Units beyond which signed ranks and flipped signs have the normal distribution."""
 
 WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
 """Columns of `leave_one_event_out`."""
@@ -155,7 +157,8 @@ class SignFlips:
     units
         Number of units, k.
     exact
-        Whether all 2^k patterns were enumerated; otherwise they were drawn from the seed.
+        Whether all 2^k patterns were enumerated; otherwise they were drawn from the seed, or are so many
+        that their mean is normal.
     """
 
     p: float
@@ -180,8 +183,15 @@ def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
     k = x.size
     if k == 1 or not x.any():
         return SignFlips(p=1.0, smallest_p=2.0 ** (1 - k), units=k, exact=True)
+    smallest = 2.0 ** (1 - k)
+    if k > MOST_EXACT:
+        p = 2 * float(stats.norm.sf(abs(x.sum()) / math.sqrt(float((x**2).sum()))))
+        return SignFlips(p=p, smallest_p=smallest, units=k, exact=False)
     # sums that agree to rounding are equal, so the values are taken on a grid of integers
     grid = np.rint(x / np.abs(x).max() * 1e12)
+    if 2**k <= DRAWS:
+        sums = np.abs(_sign_patterns(k) @ grid)
+        return SignFlips(float((sums >= abs(grid.sum())).mean()), smallest, k, exact=True)
     found = stats.permutation_test(
         (grid,),
         lambda flipped, axis: np.abs(flipped.sum(axis=axis)),
@@ -191,7 +201,13 @@ def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
         alternative="greater",
         rng=np.random.default_rng(seed),
     )
-    return SignFlips(p=float(found.pvalue), smallest_p=2.0 ** (1 - k), units=k, exact=2**k <= DRAWS)
+    return SignFlips(p=float(found.pvalue), smallest_p=smallest, units=k, exact=False)
+
+
+@lru_cache
+def _sign_patterns(units: int) -> Array:
+    """All patterns of signs, shape (2^units, units)."""
+    return np.array(list(product((1.0, -1.0), repeat=units)))
 
 
 def leave_one_event_out(table: pd.DataFrame) -> pd.DataFrame:

@@ -1,6 +1,7 @@
 """What a design could have seen, printed beside each "slight" difference."""
 
 import math
+from functools import lru_cache
 
 from scipy import special
 
@@ -40,17 +41,23 @@ def detectable_ratio(effect: Estimate, power: float = POWER) -> float:
     can be seen exceeds the resolution by what normal scatter takes away with this power. Infinite for
     one unit; NaN where neither scatter nor resolution are known.
     """
-    from statsmodels.stats.power import TTestPower
-
     if effect.units < 2:
         return math.inf
     if not effect.se > 0:
         return math.nan
-    size = TTestPower().solve_power(
-        nobs=effect.units, alpha=LEVEL / 2, power=power, alternative="larger"
-    )
     beyond = effect.resolution + float(special.ndtri(power)) * effect.se
-    return math.exp(max(float(size) * effect.sd, beyond if effect.resolution > 0 else 0.0))
+    size = _detectable_size(effect.units, power)
+    return math.exp(max(size * effect.sd, beyond if effect.resolution > 0 else 0.0))
+
+
+@lru_cache
+def _detectable_size(units: int, power: float) -> float:
+    """Effect over the standard deviation of a unit that so many units show with a power [-]."""
+    from statsmodels.stats.power import TTestPower
+
+    return float(
+        TTestPower().solve_power(nobs=units, alpha=LEVEL / 2, power=power, alternative="larger")
+    )
 
 
 def units_needed(effect: Estimate, power: float = POWER) -> float:

@@ -12,9 +12,10 @@ from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
 from rockfrag.pedestal.censored import CensoredFit, fit_censored
 from rockfrag.pedestal.cluster_means import (
     ROUNDING,
+    effect_of,
     mean_effect,
-    mean_effects,
     sampled_unit,
+    sampled_units,
     unit_means,
 )
 from rockfrag.pedestal.equivalence import equivalence
@@ -45,6 +46,8 @@ SCOPES: Mapping[str, tuple[str, ...]] = {
 }
 """What is averaged together; each is a family for Holm's adjustment."""
 
+MOST_RANKED = 100
+"""Levels of a factor, such as events, that are ranked; of more, which one is largest says little."""
 
 EFFECT_COLUMNS = [
     *("scope", "level", "pairs", "unit", "units", "ratio", "lower", "upper"),
@@ -128,18 +131,18 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns), observed=True) if columns else [((), table)]
         number = table.groupby(list(columns), observed=True).ngroup() if columns else 0
-        effects = mean_effects(table.assign(group=number), "group")
+        sampled = sampled_units(table.assign(group=number), "group")
         for place, (key, part) in enumerate(groups):
-            effect = effects[place]
-            unit = sampled_unit(part)
-            flips = sign_flip_test(unit_means(part, unit))
+            units = sampled[place]
+            effect = effect_of(units)
+            flips = sign_flip_test(units["d"])
             same = equivalence(effect)
             rows.append(
                 {
                     "scope": scope,
                     "level": "/".join(str(name) for name in key) if columns else "all",
                     "pairs": len(part),
-                    "unit": unit,
+                    "unit": sampled_unit(part),
                     "units": effect.units,
                     "ratio": effect.ratio,
                     "lower": effect.ratio_lower,
@@ -236,6 +239,7 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
 def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     """Rank probabilities of d: objects over motions, floors over events, events over their motions.
 
+    Of many levels none is ranked.
     Floors share the event and objects the motion, so they are drawn together.
     """
     parts = []
@@ -244,6 +248,8 @@ def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
         ("floor", "event", False),
         ("event", "motion", True),
     ):
+        if table[factor].nunique() > MOST_RANKED:
+            continue
         ranks = rank_probabilities(table, factor, cluster, seed, within=within)
         ranks.insert(0, "factor", factor)
         parts.append(ranks.assign(mean=np.exp(ranks["mean"])))

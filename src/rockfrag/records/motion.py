@@ -51,7 +51,7 @@ class Motion:
     provenance: tuple[Mapping[str, Any], ...] = ()
 
     def __post_init__(self) -> None:
-        acceleration = np.array(self.acceleration, dtype=np.float64)
+        acceleration = _own(self.acceleration)
         if acceleration.ndim != 1 or acceleration.size == 0:
             raise InputError(
                 f"motion {self.name!r}: acceleration needs shape (n,) with n ≥ 1, "
@@ -101,6 +101,13 @@ class Motion:
         )
 
 
+def _own(values: Any) -> NDArray[np.float64]:
+    """Return values that nobody can change: those of another motion as they are, others copied."""
+    if isinstance(values, np.ndarray) and values.dtype == np.float64 and values.base is None:
+        return values.copy() if values.flags.writeable else values
+    return np.array(values, dtype=np.float64)
+
+
 def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) -> None:
     """Write motions to one Parquet file, a row per motion.
 
@@ -123,7 +130,9 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
         table.to_parquet(file, index=False, engine="pyarrow", row_group_size=MOTIONS_AT_ONCE)
 
 
-def read_motion_set(path: str | os.PathLike[str], part: tuple[int, int] = (0, 1)) -> list[Motion]:
+def read_motion_set(
+    path: str | os.PathLike[str], part: tuple[int, int] = (0, 1), most: int | None = None
+) -> list[Motion]:
     """Read what :func:`write_motion_set` wrote, or part k of n of it, in order.
 
     Parameters
@@ -132,10 +141,14 @@ def read_motion_set(path: str | os.PathLike[str], part: tuple[int, int] = (0, 1)
         The file.
     part
         Number of the part, from 0, and of parts in all.
+    most
+        No more motions than the first so many of it.
     """
     with pq.ParquetFile(path) as file:
         total, (number, parts) = file.metadata.num_rows, part
         first, last = number * total // parts, (number + 1) * total // parts
+        if most is not None:
+            last = min(last, first + most)
         found, begin = [], 0
         for group in range(file.num_row_groups):
             end = begin + file.metadata.row_group(group).num_rows
@@ -144,6 +157,12 @@ def read_motion_set(path: str | os.PathLike[str], part: tuple[int, int] = (0, 1)
                 found += _motions(rows.slice(0, last - max(first, begin)).to_pandas())
             begin = end
     return found
+
+
+def read_motion_metadata(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
+    """Read what is known of each motion of a set, without its samples."""
+    found = pq.read_table(path, columns=["metadata"])["metadata"].to_pylist()
+    return [json.loads(one) for one in found]
 
 
 def _motions(table: pd.DataFrame) -> list[Motion]:

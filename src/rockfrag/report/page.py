@@ -72,8 +72,21 @@ def cell(value: Any, digits: int | None) -> str:
     return str(value) if str(value) else "–"
 
 
-def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> Markup:
+MOST_TABLE_ROWS = 500
+"""Rows of a table on the page; of more the first so many, and the name of the file that has all."""
+
+
+def table_html(
+    table: pd.DataFrame, columns: Sequence[Column], caption: str, file: str = ""
+) -> Markup:
     """Render a table; on a narrow screen its rows become lists of titles and values.
+
+    Parameters
+    ----------
+    table, columns, caption
+        What it shows, and what stands above it.
+    file
+        File of the results that has all rows; where it is named no more than ``MOST_TABLE_ROWS`` are shown.
 
     Returns
     -------
@@ -81,6 +94,9 @@ def table_html(table: pd.DataFrame, columns: Sequence[Column], caption: str) -> 
     """
     if table.empty:
         return Markup("")
+    if file and len(table) > MOST_TABLE_ROWS:
+        caption += f" The first {MOST_TABLE_ROWS} of {len(table)}; {file} has all."
+        table = table.iloc[:MOST_TABLE_ROWS]
     head = Markup("").join(
         Markup('<th scope="col" class="{}">{}</th>').format(_kind(table, c), c.title)
         for c in columns

@@ -4,10 +4,11 @@ To add a part, write a module in ``report/sections/`` with one :class:`Part`, an
 ``report/sections/__init__.py`` where it should stand.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from rockfrag.records.motion import Motion, read_motion_set
+from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
 from rockfrag.shaketable.readings import READING
 from rockfrag.shaketable.swept import read_swept
 from rockfrag.study.study import Study
@@ -138,14 +139,19 @@ class Results:
         return tests[tests["reading"] == READING]
 
     @cached_property
+    def records(self) -> Sequence[Mapping[str, Any]]:
+        """What is known of each ground motion."""
+        return read_motion_metadata(self.folder / "motions" / "ground.parquet")
+
+    @cached_property
     def ground(self) -> Sequence[Motion]:
-        """Ground motions."""
-        return read_motion_set(self.folder / "motions" / "ground.parquet")
+        """Ground motions, no more than a page shows."""
+        return read_motion_set(self.folder / "motions" / "ground.parquet", most=MOST_MOTIONS)
 
     @cached_property
     def floors(self) -> Sequence[Motion]:
-        """Motions of every floor, which shake the bodies."""
-        return read_motion_set(self.folder / "motions" / "floors.parquet")
+        """Motions of every floor, which shake the bodies, no more than a page shows."""
+        return read_motion_set(self.folder / "motions" / "floors.parquet", most=MOST_MOTIONS)
 
     @cached_property
     def verdicts(self) -> pd.DataFrame:

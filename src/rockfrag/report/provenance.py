@@ -3,6 +3,7 @@
 from importlib.metadata import version
 from typing import Any
 
+from rockfrag.report.page import MOST_TABLE_ROWS
 from rockfrag.report.part import Results
 from rockfrag.stages.digest import package_digest
 from rockfrag.study.study import Study
@@ -29,7 +30,10 @@ def provenance(results: Results) -> dict[str, str]:
 
 
 def _records(study: Study) -> str:
-    return ", ".join(_record(row) for row in study.catalogue.to_dict("records"))
+    rows = study.catalogue.head(MOST_TABLE_ROWS).to_dict("records")
+    rest = len(study.catalogue) - len(rows)
+    named = ", ".join(_record(row) for row in rows)
+    return f"{named} and {rest} more of {study.catalogue_file.name}" if rest else named
 
 
 def _record(row: dict[Any, Any]) -> str:

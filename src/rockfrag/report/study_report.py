@@ -12,7 +12,6 @@ from rockfrag.processes import in_processes
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import Picture, read_picture, render
 from rockfrag.report.part import (
-    MOST_MOTIONS,
     Answer,
     FigureSpec,
     Part,
@@ -121,12 +120,12 @@ def _live(results: Results) -> Markup:
     if not study.simulated_in_page:
         return Markup()
     bodies = {one.name: one.body for one in study.configurations}
-    return live_kernel(bodies, results.floors[:MOST_MOTIONS], results.verdicts)
+    return live_kernel(bodies, results.floors, results.verdicts)
 
 
 def _lead(results: Results) -> str:
-    study, motions = results.study, len(results.ground)
-    events = len({one.metadata.get("event") for one in results.ground})
+    study, motions = results.study, len(results.records)
+    events = len({one.get("event") for one in results.records})
     return (
         f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
         f"{counted(motions, 'record')} of {counted(events, 'earthquake')}"

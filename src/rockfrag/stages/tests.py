@@ -42,7 +42,8 @@ def run(job: Job[Study]) -> Results:
         if study.vertical
         else None
     )
-    yield "validity", validity_table(laboratory, study.configurations, by_name, ups)
+    forces = validity_table(laboratory, study.configurations, by_name, ups, job.threads)
+    yield "validity", forces
     if study.slides:
         files = (job.file(path) for path in study.sweep_files)
         yield "sliding", sliding_table(files)

@@ -1,13 +1,17 @@
-"""What surfaces were asked for in every test, and what sliding and flight did where friction is limited."""
+"""What surfaces were asked for in the tests, and what sliding and flight did where friction is limited."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion
 from rockfrag.study.configurations import Configuration
+
+MOST_TESTED = 1000
+"""Tests of a configuration whose forces are looked at: of more this many, evenly among them."""
 
 
 def validity_table(
@@ -15,8 +19,9 @@ def validity_table(
     configurations: Sequence[Configuration],
     motions: Mapping[str, Motion],
     vertical: Mapping[str, Motion] | None = None,
+    threads: int = 1,
 ) -> pd.DataFrame:
-    """Simulate each test once more, at its reported amplitude, and look at the contact forces.
+    """Simulate tests once more, each at its reported amplitude, and look at the contact forces.
 
     Parameters
     ----------
@@ -28,52 +33,116 @@ def validity_table(
         Motions by name.
     vertical
         Vertical motions by the same names; None shakes horizontally alone.
+    threads
+        Threads to use; the table does not depend on it.
 
     Returns
     -------
-    One row per test with an amplitude: ``test``, ``object``, ``pedestal``, ``event``, ``floor``,
-    ``motion``, ``amplitude_g``, ``friction_demand`` (largest |T|/N at any interface [-]),
-    ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have jumped) and
-    ``closest_approach`` (how near the response came to an unstable equilibrium).  With friction also
+    One row per test with an amplitude, ``MOST_TESTED`` of a configuration at most: ``test``, ``object``,
+    ``pedestal``, ``event``, ``floor``, ``motion``, ``amplitude_g``, ``friction_demand`` (largest |T|/N at any
+    interface [-]), ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have jumped)
+    and ``closest_approach`` (how near the response came to an unstable equilibrium).  With friction also
     ``peak_slip_m``, the largest displacement along any interface, and ``flights``.
     """
-    from rockfrag.motions.scaling import scale_to_pga
-    from rockfrag.rocking import simulate
-
-    by_name = {one.name: one for one in configurations}
     known = tests[tests["amplitude_g"].notna()]
-    rows = []
-    for test in known.to_dict("records"):
-        motion = motions[test["motion"]]
-        shaken = scale_to_pga(motion, test["amplitude_g"])
-        one = by_name[test["configuration"]]
-        up = None
-        if vertical is not None:
-            factor = shaken.pga / motion.pga
-            up = factor * vertical[test["motion"]].acceleration
-        response = simulate(
-            one.body,
-            shaken.acceleration,
-            shaken.dt,
-            restitution=one.restitution,
-            friction=one.friction,
-            vertical=up,
-        )
-        row: dict[str, float] = {
-            "friction_demand": float(np.max(response.friction_demand)),
-            "least_normal_force_n": float(np.min(response.least_normal_force)),
-            "closest_approach": response.closest_approach,
-        }
-        if one.friction is not None:
-            row["peak_slip_m"] = float(np.abs(response.slip).max())
-            row["flights"] = int((response.events["kind"] == "flight").sum())
-        rows.append(row)
-    keys = ["test", "object", "pedestal", "event", "floor", "motion", "amplitude_g"]
+    known = known[_looked_at(known["configuration"])].reset_index(drop=True)
     columns = ["friction_demand", "least_normal_force_n", "closest_approach"]
     if any(one.friction is not None for one in configurations):
         columns += ["peak_slip_m", "flights"]
-    found = pd.DataFrame(rows, columns=columns)
-    return pd.concat([known[keys].reset_index(drop=True), found], axis=1)
+    parts = [pd.DataFrame(columns=columns)]
+    for one in configurations:
+        rows = known[known["configuration"] == one.name]
+        if len(rows):
+            forces = _forces(one, *_shaken(rows, motions, vertical), threads)
+            parts.append(forces.set_index(rows.index))
+    found = pd.concat(parts[1:] or parts).sort_index()
+    keys = ["test", "object", "pedestal", "event", "floor", "motion", "amplitude_g"]
+    return pd.concat([known[keys], found], axis=1)
+
+
+def _looked_at(configuration: pd.Series) -> NDArray[np.bool_]:
+    """Which tests are simulated once more: all of a configuration, or some evenly among its many."""
+    chosen = np.zeros(len(configuration), dtype=bool)
+    for rows in configuration.groupby(configuration, sort=False).indices.values():
+        step = max(1.0, len(rows) / MOST_TESTED)
+        chosen[rows[np.arange(0, len(rows), step).astype(np.intp)]] = True
+    return chosen
+
+
+def _shaken(
+    tests: pd.DataFrame, motions: Mapping[str, Motion], vertical: Mapping[str, Motion] | None
+) -> tuple[list[Motion], list[NDArray[np.float64]] | None]:
+    """Motion of each test as scaled, and the vertical acceleration beside it [m/s²]."""
+    from rockfrag.motions.scaling import scale_to_pga
+
+    names = list(tests["motion"])
+    scaled = [
+        scale_to_pga(motions[name], amplitude)
+        for name, amplitude in zip(names, tests["amplitude_g"], strict=True)
+    ]
+    if vertical is None:
+        return scaled, None
+    return scaled, [
+        shaken.pga / motions[name].pga * vertical[name].acceleration
+        for name, shaken in zip(names, scaled, strict=True)
+    ]
+
+
+def _forces(
+    one: Configuration,
+    motions: list[Motion],
+    vertical: list[NDArray[np.float64]] | None,
+    threads: int,
+) -> pd.DataFrame:
+    """Forces of a configuration under motions as they are, a row each."""
+    if one.friction is not None:
+        return _forces_with_friction(one, motions, vertical)
+    from rockfrag.rocking import Block, overturns
+
+    found = overturns(
+        [one.body],
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        restitution=[one.restitution],
+        vertical=vertical,
+        forces=True,
+        threads=threads,
+    )
+    interfaces = 1 if isinstance(one.body, Block) else 2
+    return pd.DataFrame(
+        {
+            "friction_demand": found.friction_demand[0, :, 0, :interfaces].max(axis=1),
+            "least_normal_force_n": found.least_normal_force[0, :, 0, :interfaces].min(axis=1),
+            "closest_approach": found.closest_approach[0, :, 0],
+        }
+    )
+
+
+def _forces_with_friction(
+    one: Configuration, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
+) -> pd.DataFrame:
+    from rockfrag.rocking import simulate
+
+    rows = []
+    for place, motion in enumerate(motions):
+        response = simulate(
+            one.body,
+            motion.acceleration,
+            motion.dt,
+            restitution=one.restitution,
+            friction=one.friction,
+            vertical=None if vertical is None else vertical[place],
+        )
+        rows.append(
+            {
+                "friction_demand": float(np.max(response.friction_demand)),
+                "least_normal_force_n": float(np.min(response.least_normal_force)),
+                "closest_approach": response.closest_approach,
+                "peak_slip_m": float(np.abs(response.slip).max()),
+                "flights": int((response.events["kind"] == "flight").sum()),
+            }
+        )
+    return pd.DataFrame(rows)
 
 
 def sliding_table(files: Iterable[Path]) -> pd.DataFrame:

@@ -23,11 +23,10 @@ from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.number_table import (
     MAX_HEADER,
     NumberTable,
-    is_row,
+    are_numbers,
     number_in,
     number_table,
     numbers_of,
-    width_of,
 )
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
@@ -55,8 +54,8 @@ def _recognise(lines: list[str], name: str) -> bool:
     layout = _layout(lines)
     if layout is None or (layout.table.columns > 2 and layout.table.npts is None):
         return False
-    rows = [line for line in lines[layout.table.start :] if line.strip()]
-    if not rows or not all(is_row(line) for line in rows):
+    rows = [numbers_of(line) for line in lines[layout.table.start :] if line.strip()]
+    if not rows or not all(map(are_numbers, rows)):
         return False
     if any(headed.recognise(lines, name) for headed in HEADED):
         return False
@@ -64,12 +63,12 @@ def _recognise(lines: list[str], name: str) -> bool:
         return True
     if len(rows) < _MIN_ROWS:
         return False
-    widths = {width_of(line) for line in rows}
+    widths = {len(row) for row in rows}
     if widths == {1}:
         return True
     if widths != {2}:
         return False
-    times = np.array([number_in(numbers_of(line)[0]) for line in rows])
+    times = np.array([number_in(row[0]) for row in rows])
     return bool((np.diff(times) > 0).mean() > 0.5)
 
 

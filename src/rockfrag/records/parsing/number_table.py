@@ -89,8 +89,12 @@ def first_odd_row(lines: list[str]) -> int | None:
 
 def is_row(line: str) -> bool:
     """Tell whether a line is numbers and nothing else."""
-    numbers = numbers_of(line)
-    return bool(numbers) and all(_TOKEN.fullmatch(word) for word in numbers)
+    return are_numbers(numbers_of(line))
+
+
+def are_numbers(words: list[str]) -> bool:
+    """Tell whether words, one or more, are all numbers."""
+    return bool(words) and all(map(_TOKEN.fullmatch, words))
 
 
 def width_of(line: str) -> int:
@@ -100,8 +104,7 @@ def width_of(line: str) -> int:
 
 def numbers_of(line: str) -> list[str]:
     """Split a line at blanks and semicolons, or at blanks and commas where it has no semicolon."""
-    separators = r"[;\s]+" if ";" in line else r"[,\s]+"
-    return [word for word in re.split(separators, line.strip()) if word]
+    return line.replace(";" if ";" in line else ",", " ").split()
 
 
 def number_in(word: str) -> float:

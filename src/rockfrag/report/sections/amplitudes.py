@@ -35,7 +35,9 @@ def _section(results: Results) -> Section:
             "motion overturned the body.",
         ],
         [
-            table_html(shown, columns, "Overturning amplitude of every test, step protocol."),
+            table_html(
+                shown, columns, "Overturning amplitude of every test, step protocol.", "tests.csv"
+            ),
             *_maps(results),
         ],
     )

@@ -7,6 +7,8 @@ from rockfrag.report.findings import recorded_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 
+_TABLE = "Verdict under each motion as recorded."
+
 
 def _section(results: Results) -> Section:
     recorded = results.table("as_recorded")
@@ -36,7 +38,15 @@ def _section(results: Results) -> Section:
             "it on to its floor. “Near” marks a verdict that is another for some motions a tenth weaker or "
             "stronger: there luck decides."
         ],
-        [figure, table_html(_wide(recorded), columns, "Verdict under each motion as recorded.")],
+        [
+            figure,
+            table_html(
+                _wide(recorded),
+                columns,
+                "Verdict under each motion as recorded.",
+                "as_recorded.csv",
+            ),
+        ],
     )
 
 

@@ -18,7 +18,9 @@ def _section(results: Results) -> Section | None:
         f"{len(names)} of {counted(len(results.study.catalogue), 'record')} could not be used: {named}. "
         "What this page says holds for the others alone."
     )
-    shown = table_html(table, _COLUMNS, "Records that the study names and could not use.")
+    shown = table_html(
+        table, _COLUMNS, "Records that the study names and could not use.", "left_out.csv"
+    )
     return Section("left-out", "Left out", message, [], [shown])
 
 

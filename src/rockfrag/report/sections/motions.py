@@ -20,7 +20,9 @@ _COLUMNS = (
 
 def _section(results: Results) -> Section:
     measures = results.table("measures")
-    table = table_html(measures, _COLUMNS, "Intensity of every motion, before it is scaled.")
+    table = table_html(
+        measures, _COLUMNS, "Intensity of every motion, before it is scaled.", "measures.csv"
+    )
     return Section("motions", "Motions", _floors(results), [], [table, _accelerations(results)])
 
 
@@ -41,8 +43,8 @@ def _accelerations(results: Results) -> FigureSpec:
     shown = min(len(ground), MOST_PANELS)
     peak = max(ground[:shown], key=lambda motion: motion.pga)
     caption = "Accelerations of the ground motions over time; the dot marks the peak."
-    if shown < len(ground):
-        caption += f" The first {shown} of {len(ground)}."
+    if shown < len(results.records):
+        caption += f" The first {shown} of {len(results.records)}."
     alt = (
         f"Ground accelerations of {counted(shown, 'record')}; the strongest, {peak.name}, peaks at "
         f"{peak.pga / GRAVITY:.2f} g."

@@ -4,10 +4,11 @@ from collections.abc import Hashable, Mapping
 from typing import Any
 
 import pandas as pd
+from markupsafe import Markup
 
 from rockfrag.report.figures.effects import forest_figure
 from rockfrag.report.findings import pedestal_effect, ratio_of, ratio_text
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import MOST_TABLE_ROWS, Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import estimate, has_interval, listed, number, probability
 from rockfrag.shaketable.readings import READING
@@ -81,7 +82,7 @@ def _section(results: Results) -> Section:
         )
         parts = [
             _forest(here),
-            table_html(shown_effects(here), EFFECT_COLUMNS, "Effect by scope, step protocol."),
+            _table(here),
             table_html(methods, _METHODS, "All pairs by other methods and readings."),
         ]
     notes = results.table("pedestal/notes")
@@ -101,6 +102,15 @@ def _section(results: Results) -> Section:
         ],
         parts,
     )
+
+
+def _table(effects: pd.DataFrame) -> Markup:
+    caption = "Effect by scope, step protocol."
+    if len(effects) > MOST_TABLE_ROWS:
+        of_events = effects["scope"] == "event"
+        caption += f" Each of the {of_events.sum()} earthquakes is in pedestal/effects.csv."
+        effects = effects[~of_events]
+    return table_html(shown_effects(effects), EFFECT_COLUMNS, caption, "pedestal/effects.csv")
 
 
 def _plain(note: str) -> str:

@@ -50,7 +50,12 @@ def _section(results: Results) -> Section:
         ],
         [
             figure,
-            table_html(limits, _COLUMNS, "What each motion asks of the shaker per g of its peak."),
+            table_html(
+                limits,
+                _COLUMNS,
+                "What each motion asks of the shaker per g of its peak.",
+                "shaker.csv",
+            ),
         ],
     )
 

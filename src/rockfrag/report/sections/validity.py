@@ -6,6 +6,7 @@ import pandas as pd
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
+from rockfrag.stages.validity import MOST_TESTED
 
 _COLUMNS = (
     Column("object", "Object"),
@@ -44,7 +45,7 @@ def _section(results: Results) -> Section | None:
         "What the model assumes",
         model_allowed(validity)[0].said,
         [
-            "Blocks neither slide nor jump in this model. The contact forces of every test, at its "
+            f"Blocks neither slide nor jump in this model. The contact forces of {_which(validity)}, at its "
             "amplitude, say what that asks of the surfaces."
         ],
         [
@@ -55,6 +56,11 @@ def _section(results: Results) -> Section | None:
             )
         ],
     )
+
+
+def _which(validity: pd.DataFrame) -> str:
+    tests = validity.groupby(["object", "pedestal"]).size().max()
+    return "every test" if tests < MOST_TESTED else "each test of a sample spread evenly over all"
 
 
 def _what_friction_did(sliding: pd.DataFrame) -> Section:
