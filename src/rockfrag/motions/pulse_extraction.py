@@ -2,14 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from itertools import groupby, product
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from rockfrag.motions.pulses import mavroeidis_papageorgiou
-from rockfrag.motions.sliding_pulse import best_place, half_length
+from rockfrag.motions.sliding_pulse import best_place, best_pulse
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
 
@@ -25,6 +25,9 @@ longer than the record.  The best is then refined between its neighbours."""
 
 SAMPLES_PER_PERIOD = 40
 """A wavelet needs no finer sampling; denser records are thinned while they are searched."""
+
+
+_TRIED = np.array(CYCLES[::-1])
 
 
 @dataclass(frozen=True)
@@ -134,19 +137,10 @@ def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float
     best = (0.0, 0.0, 0.0)
     # long pulses first: they cost little and leave few places at which a short one could explain more
     for every, some in groupby(periods[::-1], lambda T: max(1, int(T / (SAMPLES_PER_PERIOD * dt)))):
-        thinned, step = np.ascontiguousarray(velocity[::every]), every * dt
-        energy = _energy(thinned)
-        hopeless = 0.0
-        for period, cycles in product(some, reversed(CYCLES)):
-            length = cycles * period
-            if length <= hopeless or 2 * half_length(length, step) + 1 > thinned.size:
-                continue
-            # less by what rounding may do, so that equals are looked at
-            known = best[0] / every * (1 - 1e-9)
-            gain = best_place(thinned, energy, step, period, cycles, known)[0]
-            best = max(best, (every * gain, float(period), cycles))
-            # a shorter window of the same samples holds no more
-            hopeless = length if gain == 0 else hopeless
+        thinned = np.ascontiguousarray(velocity[::every])
+        best = best_pulse(
+            thinned, _energy(thinned), every * dt, every, np.array([*some]), _TRIED, best
+        )
     return best
 
 

@@ -27,7 +27,7 @@ from rockfrag.motions.spectra import (
     steps_within,
     turning_time,
 )
-from rockfrag.records.integration import peak_velocity
+from rockfrag.records.integration import integrate, peak_velocity
 from rockfrag.records.motion import Motion
 
 Floats = NDArray[np.float64]
@@ -104,9 +104,13 @@ def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float)
     square = (2 * math.pi / periods) ** 2
     psa = np.zeros(periods.size)
     groups = _groups(periods.tobytes(), damping, motion.dt, True)
-    # |u| is PGV times the total variation of the impulse response at most, 2/(ω (1 - r))
-    velocity = peak_velocity(np.append(acceleration, 0.0), motion.dt)
-    bound = np.sqrt(square) * velocity * 2 / (1 - _decay(damping)) * (1 + 1e-9)
+    # |u| is PGV times the total variation of the impulse response at most, 2/(ω (1 - r)), and by Cauchy and
+    # Schwarz √∫v² times that of its derivative, 1/√(4ζω)
+    ended = np.append(acceleration, 0.0)
+    bound = np.minimum(
+        np.sqrt(square) * peak_velocity(ended, motion.dt) * 2 / (1 - _decay(damping)),
+        square**0.75 * np.sqrt(_squared_velocity(ended, motion.dt, periods) / (4 * damping)),
+    ) * (1 + 1e-9)
     for group in _groups(periods.tobytes(), damping, motion.dt, False):
         psa[group.which], bound[group.which] = _bounds(
             group, acceleration, square[group.which], to_come, slope
@@ -124,6 +128,18 @@ def largest_pseudo_acceleration(motion: Motion, periods: Floats, damping: float)
         if bound[which].max() >= psa.max():
             psa[which] = square[which] * _looked_between(march, acceleration)
     return int(np.argmax(psa))
+
+
+def _squared_velocity(acceleration: Floats, dt: float, periods: Floats) -> Floats:
+    """Bound of ∫v² over a motion and one period, for which its last velocity stays, after it [m²/s]."""
+    velocity, _ = integrate(acceleration, dt)
+    square = velocity**2
+    # straight between samples, and an arc of height dt |Δa|/8 above or below
+    straight = dt * (square.sum() - (square[0] + square[-1]) / 2)
+    arcs = dt**3 / 64 * (np.diff(acceleration) ** 2).sum()
+    return np.asarray(
+        (math.sqrt(straight) + math.sqrt(arcs)) ** 2 + square[-1] * (periods + 3 * dt)
+    )
 
 
 class _Marched(NamedTuple):
@@ -297,8 +313,9 @@ def _look(
                 for i in range(LANES):
                     x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
                 _advance(x, ground[0, j], ground[1, j])
-                for lane in range(LANES):
-                    _look_between(x, lane, ground[0, j], ground[1, j], step)
+                if _turns_high(x):
+                    for lane in range(LANES):
+                        _look_between(x, lane, ground[0, j], ground[1, j], step)
 
 
 @cached_njit(error_model="numpy")
@@ -372,6 +389,16 @@ def _stepped(x: Floats, i: int, u: float, v: float, a: float, s: float) -> tuple
 
 
 @cached_njit(error_model="numpy")
+def _turns_high(x: Floats) -> bool:
+    """Whether a lane has a peak between the last two steps that can be its largest."""
+    does = False
+    for i in range(LANES):
+        highest = max(abs(x[_U0 + i]), abs(x[_U + i])) + x[_ADDED + i]
+        does |= (x[_V0 + i] * x[_V + i] < 0) & (highest > x[_KEPT + i] * x[_LARGEST + i])
+    return does
+
+
+@cached_njit(error_model="numpy")
 def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
     """Let the peak of lane i between the last two steps count, if it can be the largest."""
     u, v, u1, v1 = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i]
@@ -384,22 +411,37 @@ def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
 @cached_njit(error_model="numpy")
 def _march_free(acceleration: Floats, to_come: Floats, quiet: int, step: float, x: Floats) -> None:
     """Take all lanes through a motion and find the largest amplitudes of their free vibration."""
-    for i in range(acceleration.size - 1 + quiet):
-        if i % LOOK_EVERY == 0 and _settled(x, _sample(to_come, i)):
+    end = acceleration.size - 1 + quiet
+    ground = np.empty((2, LOOK_EVERY))
+    for first in range(0, end, LOOK_EVERY):
+        if _settled(x, _sample(to_come, first)):
             return
-        a = _sample(acceleration, i)
-        s = (_sample(acceleration, i + 1) - a) / step
-        _advance_free(x, a, s)
+        steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, 1, ground)
+        for j in range(0, steps - 1, 2):
+            _advance_free_two(x, ground, j)
+        if steps % 2:
+            ground[:, steps] = 0.0
+            _advance_free_two(x, ground, steps - 1)
 
 
 @cached_njit(error_model="numpy")
-def _advance_free(x: Floats, a: float, s: float) -> None:
+def _advance_free_two(x: Floats, ground: Floats, j: int) -> None:
+    """Two steps of all lanes from step j on, whose table is read and written once."""
+    a0, a1, s0, s1 = ground[0, j], ground[0, j + 1], ground[1, j], ground[1, j + 1]
     for i in range(LANES):
-        u, v = x[_U + i], x[_V + i]
-        free = u + a * x[_PER_A + i] - s * x[_PER_S + i]
-        speed = (v + s * x[_PER_A + i] + x[_RATE + i] * free) * x[_PER_TURN + i]
-        u1 = x[_UU + i] * u + x[_UV + i] * v + x[_UA + i] * a + x[_US + i] * s
-        v1 = x[_VU + i] * u + x[_VV + i] * v + x[_VA + i] * a + x[_VS + i] * s
-        x[_FREE + i] = max(x[_FREE + i], free * free + speed * speed) + 0.0
-        x[_LARGEST + i] = max(x[_LARGEST + i], abs(u1)) + 0.0
-        x[_U + i], x[_V + i] = u1, v1
+        u0, v0 = x[_U + i], x[_V + i]
+        u1, v1 = _stepped(x, i, u0, v0, a0, s0)
+        u2, v2 = _stepped(x, i, u1, v1, a1, s1)
+        free = max(_free(x, i, u0, v0, a0, s0), _free(x, i, u1, v1, a1, s1))
+        x[_FREE + i] = max(x[_FREE + i], free) + 0.0
+        x[_LARGEST + i] = max(x[_LARGEST + i], max(abs(u1), abs(u2))) + 0.0
+        x[_U + i], x[_V + i] = u2, v2
+
+
+@cached_njit(error_model="numpy", inline="always")
+def _free(x: Floats, i: int, u: float, v: float, a: float, s: float) -> float:
+    """Squared amplitude of the free vibration of lane i."""
+    free = u + a * x[_PER_A + i] - s * x[_PER_S + i]
+    speed = (v + s * x[_PER_A + i] + x[_RATE + i] * free) * x[_PER_TURN + i]
+    amplitude: float = free * free + speed * speed
+    return amplitude

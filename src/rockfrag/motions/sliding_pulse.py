@@ -97,6 +97,49 @@ def best_place(
     return gain, place, best.real / even_norm, best.imag / odd_norm
 
 
+@cached_njit(error_model="numpy")
+def best_pulse(
+    velocity: Floats,
+    energy: Floats,
+    dt: float,
+    every: int,
+    periods: Floats,
+    cycles: Floats,
+    best: tuple[float, float, float],
+) -> tuple[float, float, float]:
+    """Find the best of several pulses, if it explains more than the best so far.
+
+    Parameters
+    ----------
+    velocity, energy, dt
+        As of :func:`best_place`.
+    every
+        Samples of the record that one of the velocity stands for.
+    periods, cycles
+        Periods [s] and oscillatory characters [-] that are tried, in this order.
+    best
+        What the best pulse so far explains [m²/s²], its period and its cycles.
+
+    Returns
+    -------
+    As ``best``.
+    """
+    hopeless = 0.0
+    for period in periods:
+        for one in cycles:
+            length = one * period
+            if length <= hopeless or 2 * half_length(length, dt) + 1 > velocity.size:
+                continue
+            # less by what rounding may do, so that equals are looked at
+            known = best[0] / every * (1 - 1e-9)
+            gain = best_place(velocity, energy, dt, period, one, known)[0]
+            found = (every * gain, period, one)
+            best = found if found > best else best
+            # a shorter window of the same samples holds no more
+            hopeless = length if gain == 0 else hopeless
+    return best
+
+
 @cached_njit()
 def _phasor(angle: float) -> complex:
     return complex(math.cos(angle), math.sin(angle))
