@@ -15,6 +15,15 @@ from rockfrag.records.sources.wheel import fetch_wheel
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
 
+WHOLE_STUDIES = ("workflow", "end_to_end", "test_readme.py")
+"""What runs whole studies, in the tests' folder."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Whole studies come first: one that starts last would leave the other processors waiting for it."""
+    first = tuple(ROOT / "tests" / name for name in WHOLE_STUDIES)
+    items.sort(key=lambda item: not any(item.path.is_relative_to(one) for one in first))
+
 
 @pytest.fixture(scope="session")
 def shared() -> Path:

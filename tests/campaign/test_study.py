@@ -178,6 +178,7 @@ def granite(folder: Path, shared: Path, **changes: Any) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_the_granite_rock_is_simulated_better_than_by_any_rival(tmp_path: Path, shared: Path):
     tables = run(granite(tmp_path, shared, trials=512, varied_conditioning={}), tmp_path)
     agreement = tables["agreement"].set_index("who")
