@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.fragility.censored import Brackets, bracket_interval, fit_brackets
+from rockfrag.fragility import censored
+from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval, fit_brackets
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.intervals import interval_over_motions, verdict_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
@@ -177,3 +178,18 @@ def test_beta_of_four_events_lies_within_its_limits(seed):
     data = Brackets(levels[place - 1], levels[place], names, names)
     fit, interval = fit_brackets(data), bracket_interval(data)
     assert interval.beta[0] <= fit.beta <= interval.beta[1]
+
+
+def test_one_step_without_a_block_is_the_fit_without_it(monkeypatch):
+    rng = np.random.default_rng(7)
+    names = np.array([f"m{k}" for k in range(400)], dtype=object)
+    low = np.exp(0.4 * rng.normal(size=400))
+    brackets = Brackets(low, np.where(low < 2.0, 1.05 * low, np.inf), names, names)
+    stepped = bracket_interval(brackets)
+    monkeypatch.setattr(censored, "_without_a_block", lambda *all_of: _fit_weighted(*all_of)[0])
+    fitted = bracket_interval(brackets)
+    assert stepped.groups == fitted.groups == 400
+    assert stepped.theta == pytest.approx(fitted.theta, rel=1e-4)
+    assert stepped.beta == pytest.approx(fitted.beta, rel=2e-3)
+    # and it is a step, not the fit itself
+    assert stepped.theta != fitted.theta

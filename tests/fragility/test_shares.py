@@ -121,3 +121,16 @@ def test_limits_of_the_median_and_the_dispersion_hold_in_few_data_sets(law):
             ]
         )
     assert (np.mean(held, axis=0) > 0.84).all()
+
+
+def test_many_groups_are_left_out_in_blocks_with_the_same_curve():
+    rng = np.random.default_rng(RNG)
+    capacity = np.round(0.3 * rng.normal(size=600), 2)
+    each = np.array([f"e{k}" for k in range(600)], dtype=object)
+    few = np.array([f"e{k % 60}" for k in range(600)], dtype=object)
+    many, known = (shares_of_capacities(capacity, groups, 0.9) for groups in (each, few))
+    assert np.array_equal(many.share, known.share)
+    assert many.theta == known.theta
+    width = np.diff(np.log(many.theta_limits))[0] / np.diff(np.log(known.theta_limits))[0]
+    assert 0.6 < width < 1.7
+    assert (many.lower <= many.share).all() and (many.share <= many.upper).all()

@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.pedestal import censored, permutation
+from rockfrag.pedestal import censored, mixed, permutation
 from rockfrag.pedestal.cluster_means import mean_effect, without_each_event
+from rockfrag.pedestal.paired_tests import pair_tests
 
 
 def ladder(events: int) -> pd.DataFrame:
@@ -70,3 +71,25 @@ def test_each_event_is_left_out_as_if_it_had_not_been():
     )
     for name, one in without_each_event(table).items():
         assert one == mean_effect(table[table["event"] != name])
+
+
+def test_events_with_equal_floors_are_solved_for_together(monkeypatch):
+    pairs = pair_tests(ladder(12)).table
+    known = mixed.fit_mixed(pairs, mixed.EFFECT)
+    monkeypatch.setattr(mixed, "MOST_APART", 1)
+    found = mixed.fit_mixed(pairs, mixed.EFFECT)
+    assert found.coefficients.iloc[0]["se"] == pytest.approx(known.coefficients.iloc[0]["se"])
+    assert found.sd_event == pytest.approx(known.sd_event, rel=1e-3)
+
+
+def test_flipped_signs_of_many_are_those_that_are_drawn(monkeypatch):
+    values = np.random.default_rng(4).normal(0.08, 1.0, 400)
+    drawn = permutation.sign_flip_test(values)
+    monkeypatch.setattr(permutation, "MOST_EXACT", 100)
+    assert permutation.sign_flip_test(values).p == pytest.approx(drawn.p, abs=0.015)
+
+
+def test_flipped_signs_of_few_are_all_counted():
+    # of the eight patterns four have sums of three or more
+    found = permutation.sign_flip_test([1.0, 2.0, 0.0])
+    assert (found.p, found.exact) == (0.5, True)

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from rockfrag.figure_style import figure_style, new_figure
-from rockfrag.report.page import Column, cell, render, table_html
+from rockfrag.report.page import MOST_TABLE_ROWS, Column, cell, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw
 
@@ -62,6 +62,13 @@ def test_figures_are_part_of_the_page_with_text_and_identifiers_of_their_own(tmp
 
 def test_an_empty_table_is_not_shown():
     assert table_html(pd.DataFrame({"a": []}), [Column("a", "A")], "Nothing") == ""
+
+
+def test_a_long_table_names_the_file_that_has_all():
+    table = pd.DataFrame({"a": range(MOST_TABLE_ROWS + 1)})
+    shown = table_html(table, [Column("a", "A", 0)], "Many.", "many.csv")
+    assert shown.count("<tr>") == MOST_TABLE_ROWS + 1  # and its head
+    assert f"The first {MOST_TABLE_ROWS} of {MOST_TABLE_ROWS + 1}; many.csv has all." in shown
 
 
 def test_cells_carry_their_title_for_narrow_screens(tmp_path: Path):

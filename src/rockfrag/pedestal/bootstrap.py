@@ -94,7 +94,9 @@ def rank_probabilities(
     """
     rng = np.random.default_rng(seed)
     levels = sorted(table[factor].unique())
-    if within:
+    if len(levels) == 1:
+        drawn = np.zeros((1, 1))
+    elif within:
         drawn = np.column_stack(
             [
                 _resampled(rows.groupby(cluster)[value].mean().to_numpy(), rng, draws)

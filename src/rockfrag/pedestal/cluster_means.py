@@ -18,6 +18,7 @@ called one.
 import math
 from collections.abc import Hashable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -233,19 +234,28 @@ def mean_effects(
     return {name: effect_of(some, confidence) for name, some in units.items()}
 
 
-def effect_of(units: pd.DataFrame, confidence: float = CONFIDENCE) -> Estimate:
-    """Mean of `sampled_units` with interval and p value."""
-    return t_estimate(units["d"], confidence, float(units["hidden"].mean()))
+def effect_of(units: "Units", confidence: float = CONFIDENCE) -> Estimate:
+    """Mean of sampled units with interval and p value."""
+    return t_estimate(units.d, confidence, float(units.hidden.mean()))
 
 
-def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, pd.DataFrame]:
-    """What was sampled of every group of rows with the same value of a column.
+class Units(NamedTuple):
+    """What was sampled: the events of some pairs, or the motions of their single event.
 
-    Returns
-    -------
-    By group a row per event, or per motion of a single event: ``d``, the mean over its pairs, and ``hidden``, what
-    their steps hide of it.
+    Attributes
+    ----------
+    d
+        Mean of d over each one's pairs [-], shape (k,).
+    hidden
+        What the steps of these pairs hide of it [-], shape (k,).
     """
+
+    d: Array
+    hidden: Array
+
+
+def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
+    """What was sampled of every group of rows with the same value of a column."""
     d, known = table["d"].to_numpy(dtype=float), _resolution_of(table)
     hidden = np.zeros(len(table))
     groups = table.groupby(by, sort=True).indices
@@ -254,12 +264,16 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, pd.DataFrame]:
     work = table[[by, "event", "motion", "d"]].assign(hidden=hidden)
     motions = work.groupby([by, "event", "motion"])[["d", "hidden"]].mean()
     events = motions.groupby(level=[by, "event"]).mean()
-    of_motions = motions.groupby(level=by).indices
+    of_motions, of_events = (means.groupby(level=by).indices for means in (motions, events))
     # what was sampled of a single event are its motions
-    return {
-        name: events.iloc[places] if len(places) > 1 else motions.iloc[of_motions[name]]
-        for name, places in events.groupby(level=by).indices.items()
-    }
+    by_motion, by_event = (
+        Units(means["d"].to_numpy(), means["hidden"].to_numpy()) for means in (motions, events)
+    )
+    found = {}
+    for name, places in of_events.items():
+        chosen, rows = (by_event, places) if len(places) > 1 else (by_motion, of_motions[name])
+        found[name] = Units(chosen.d[rows], chosen.hidden[rows])
+    return found
 
 
 def without_each_event(table: pd.DataFrame) -> dict[str, Estimate]:

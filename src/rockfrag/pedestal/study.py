@@ -128,21 +128,32 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     known = [name for name in floors if name in set(table["floor"])]
     known += sorted(set(table["floor"]) - set(known))
     table = table.assign(floor=pd.Categorical(table["floor"], known))
+    tied, at_bound = table["d"].abs() < ROUNDING, table["bound"] != ""
     for scope, columns in SCOPES.items():
-        groups = table.groupby(list(columns), observed=True) if columns else [((), table)]
-        number = table.groupby(list(columns), observed=True).ngroup() if columns else 0
+        groups = table.groupby(list(columns) or np.zeros(len(table)), observed=True)
+        number = groups.ngroup()
         sampled = sampled_units(table.assign(group=number), "group")
-        for place, (key, part) in enumerate(groups):
-            units = sampled[place]
-            effect = effect_of(units)
-            flips = sign_flip_test(units["d"])
+        about = pd.DataFrame(
+            {
+                "pairs": groups.size().to_numpy(),
+                "events": groups["event"].nunique().to_numpy(),
+                "tied": tied.groupby(number).sum(),
+                "at_bound": at_bound.groupby(number).sum(),
+            }
+        )
+        for place, (key, of) in enumerate(
+            zip(groups.size().index, about.to_dict("records"), strict=True)
+        ):
+            effect = effect_of(sampled[place])
+            flips = sign_flip_test(sampled[place].d)
             same = equivalence(effect)
+            names = key if isinstance(key, tuple) else (key,)
             rows.append(
                 {
                     "scope": scope,
-                    "level": "/".join(str(name) for name in key) if columns else "all",
-                    "pairs": len(part),
-                    "unit": sampled_unit(part),
+                    "level": "/".join(str(name) for name in names) if columns else "all",
+                    "pairs": of["pairs"],
+                    "unit": "event" if of["events"] > 1 else "motion",
                     "units": effect.units,
                     "ratio": effect.ratio,
                     "lower": effect.ratio_lower,
@@ -154,8 +165,8 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                     "equivalent": same.shown(),
                     "detectable_ratio": detectable_ratio(effect),
                     "resolution_ratio": math.exp(effect.resolution),
-                    "tied": int((part["d"].abs() < ROUNDING).sum()),
-                    "at_bound": int((part["bound"] != "").sum()),
+                    "tied": of["tied"],
+                    "at_bound": of["at_bound"],
                 }
             )
     result = pd.DataFrame(rows)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rockfrag.records.motion import Motion
 from rockfrag.study.configurations import Configuration
 
-MOST_TESTED = 1000
+MOST_TESTED = 500
 """Tests of a configuration whose forces are looked at: of more this many, evenly among them."""
 
 

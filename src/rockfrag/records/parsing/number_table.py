@@ -109,4 +109,7 @@ def numbers_of(line: str) -> list[str]:
 
 def number_in(word: str) -> float:
     """Return a number whose decimal sign may be a comma and whose exponent a D."""
-    return float(word.replace(",", ".").upper().replace("D", "E"))
+    try:
+        return float(word)
+    except ValueError:
+        return float(word.replace(",", ".").upper().replace("D", "E"))
