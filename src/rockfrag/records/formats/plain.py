@@ -8,6 +8,7 @@ the interval. A unit is known only where the titles state it.
 import os
 import re
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,7 @@ def _recognise(lines: list[str], name: str) -> bool:
     if layout is None or (layout.table.columns > 2 and layout.table.npts is None):
         return False
     rows = [numbers_of(line) for line in lines[layout.table.start :] if line.strip()]
-    if not rows or not all(map(are_numbers, rows)):
+    if not all(rows) or not are_numbers([*chain.from_iterable(rows)]):
         return False
     if any(headed.recognise(lines, name) for headed in HEADED):
         return False

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[EeDd][+-]?\d+)?"
-_TOKEN = re.compile(_NUMBER)
+_NUMBERS = re.compile(rf"(?>{_NUMBER} )*+")
 _COUNT_AND_STEP = re.compile(rf"^\s*(?P<npts>\d+)[\s,;]+(?P<dt>{_NUMBER})\s*$")
 _STEP = re.compile(
     rf"\bdt\s*[=:]\s*(?P<dt>{_NUMBER})(?:\s*(?:s|sec|seconds?)\b|\s*$|\s*[,;])", re.IGNORECASE
@@ -94,7 +94,7 @@ def is_row(line: str) -> bool:
 
 def are_numbers(words: list[str]) -> bool:
     """Tell whether words, one or more, are all numbers."""
-    return bool(words) and all(map(_TOKEN.fullmatch, words))
+    return bool(words) and _NUMBERS.fullmatch(" ".join([*words, ""])) is not None
 
 
 def width_of(line: str) -> int:
