@@ -91,6 +91,21 @@ def test_a_tuple_by_reference_has_the_fields_of_the_tuple():
         jit.entry_kernel(lambda given: given.missing)(given)
 
 
+@pytest.mark.skipif(not jit.KNOWN, reason="an unknown numba compiles the ordinary way")
+def test_a_kernel_is_compiled_once_whatever_number_is_written_out():
+    @jit.kernel
+    def twice(number, pair):
+        return 2 * number + pair[0]
+
+    @jit.entry_kernel
+    def calls(n):
+        return twice(n, (1, n)) + twice(1, (n, 2)) + twice(2, (2, 1))
+
+    calls._cache.disable()
+    assert calls(10) == 21 + 12 + 6
+    assert len(twice.signatures) == 1
+
+
 UNKNOWN = """
 import numba, numpy as np
 numba.__version__ = "9.9.9"

@@ -22,7 +22,8 @@ from numba.core.rewrites.static_getitem import RewriteConstGetitems, RewriteCons
 from numba.core.ssa import reconstruct_ssa
 from numba.core.targetconfig import ConfigStack
 from numba.core.transforms import canonicalize_cfg
-from numba.core.types.functions import BaseFunction
+from numba.core.types.functions import BaseFunction, Dispatcher
+from numba.core.types.misc import unliteral
 from numba.core.typing.context import BaseContext as TypingContext
 from numba.core.typing.templates import signature
 from numba.cpython.builtins import do_minmax
@@ -215,6 +216,19 @@ def _remembering_call_types(find: Any) -> Any:
     return get_call_type
 
 
+def _of_plain_types(find: Any) -> Any:
+    """Find a kernel for numbers as such, not one more for each number that is written out where it is called.
+
+    What follows from the number, the compiler finds where it inlines the kernel.
+    """
+
+    def get_call_type(kernel: Any, context: Any, args: Any, named: Any) -> Any:
+        plain = {name: unliteral(one) for name, one in named.items()}
+        return find(kernel, context, tuple(map(unliteral, args)), plain)
+
+    return get_call_type
+
+
 def _remembering_sizes(measure: Any) -> Any:
     """Measure only once how large a type is, of which LLVM makes a module for each variable."""
     sizes: dict[Any, int] = {}
@@ -238,6 +252,7 @@ def _shortcuts() -> Iterator[None]:
         return
     places: tuple[tuple[Any, str, Any], ...] = (
         (BaseFunction, "get_call_type", _remembering_call_types(BaseFunction.get_call_type)),
+        (Dispatcher, "get_call_type", _of_plain_types(Dispatcher.get_call_type)),
         (BaseContext, "get_abi_sizeof", _remembering_sizes(BaseContext.get_abi_sizeof)),
         (BaseContext, "refresh", _refresh),
         (TypingContext, "refresh", lambda _: None),
