@@ -272,7 +272,7 @@ def _ahead(case, motions):
 # --------------------------------------------------------------------------- events
 
 
-@inlined_kernel
+@kernel
 def event_of_one(i, case, worker, ensemble, motions, g):
     """Take a case in lane i of those of one rotation to its event or to the step's end, and through the event.
 
@@ -319,7 +319,7 @@ def event_of_one(i, case, worker, ensemble, motions, g):
     return False, False
 
 
-@inlined_kernel
+@kernel
 def event_of_two(i, case, worker, ensemble, motions, g):
     """Take a case in lane i of those of two rotations to its event or to the step's end, and through the event.
 
