@@ -30,13 +30,16 @@ def cached_njit(stamp: Callable[[], str] | None = None, **options: Any) -> Calla
             # numba finds no folder that it may write to
             return numba.njit(**options)(function)
         # numba does not document these: with a version that lacks them the cache is as it was, or is not used
-        file: Any = getattr(getattr(compiled, "_cache", None), "_cache_file", None)
+        cache: Any = getattr(compiled, "_cache", None)
+        file: Any = getattr(cache, "_cache_file", None)
         if stamp is not None:
             if not hasattr(file, "_source_stamp"):
                 return numba.njit(**options)(function)
             file._source_stamp = (file._source_stamp, stamp())
         if hasattr(file, "load") and hasattr(file, "flush"):
             file.load = _whole_or_nothing(file.load, file.flush)
+        if not options.get("_nrt", True) and hasattr(cache, "_load_overload"):
+            cache.load_overload = _loading_alone(cache)
         return compiled
 
     return decorate
@@ -55,3 +58,16 @@ def _whole_or_nothing(
             return None
 
     return load_whole
+
+
+def _loading_alone(cache: Any) -> Callable[[Any, Any], Any]:
+    """Read machine code that allocates nothing without what numba does first: it gets ready to compile.
+
+    That takes ten times as long as the reading, and imports scipy's linear algebra; a compiler does it by itself.
+    """
+
+    def load(signature: Any, target: Any) -> Any:
+        with cache._guard_against_spurious_io_errors():
+            return cache._load_overload(signature, target)
+
+    return load
