@@ -3,6 +3,7 @@
 Read by :mod:`rockfrag.rocking.kernels.jit` alone, with versions of numba that it knows.
 """
 
+import importlib
 import operator
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -241,6 +242,21 @@ def _remembering_sizes(measure: Any) -> Any:
     return get_abi_sizeof
 
 
+@cache
+def _import_without_scipy() -> None:
+    """Import what numba is about to, but leave scipy's linear algebra until something multiplies matrices.
+
+    It is imported only to see that it is there, and takes longer than all that numba imports.
+    """
+    linalg = importlib.import_module("numba.np.linalg")
+    look = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None  # type: ignore[attr-defined]
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = look  # type: ignore[attr-defined]
+
+
 @contextmanager
 def _shortcuts() -> Iterator[None]:
     """Spare numba what it would work out anew for each operation of each kernel.
@@ -275,6 +291,10 @@ class _KernelCompiler(CompilerBase):
 
     library: ClassVar[type]
     lowering: ClassVar[type]
+
+    def __init__(self, *given: Any) -> None:
+        _import_without_scipy()
+        super().__init__(*given)
 
     def _compile_core(self) -> Any:
         """Take the kernel through its passes, without what numba works out between them for others."""
