@@ -110,13 +110,16 @@ def compiling_alone(entry: Any) -> Iterator[None]:
         yield
         return
     with _locked(folder, entry.__name__):
-        # the collector finds nothing in what a compiler builds, and takes a tenth of its time
+        # looking for garbage in what a compiler builds takes a tenth of its time
         collects = gc.isenabled()
         gc.disable()
         try:
             yield
         finally:
             if collects:
+                # what there is counts as old, so it is looked through with the old, not before the first verdict
+                gc.freeze()
+                gc.unfreeze()
                 gc.enable()
 
 
