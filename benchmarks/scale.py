@@ -2,13 +2,15 @@
 
 ``python benchmarks/scale.py 300 1000 3000`` runs studies of so many motions of 20 s, a third as many events,
 the thesis's six configurations (three lone blocks, three stacks) and 200 amplitudes; ``--amplitudes 2000``
-takes more.  Each stage's processor time, the largest memory and the wall time of the whole are printed as the
-table of ``docs/reliability.md``, and go to ``results/bench/scale.csv``.
+takes more.  Each stage's processor time, what the run takes before and between its jobs, the largest memory
+and the wall time of the whole are printed as the table of ``docs/reliability.md``, and go to
+``results/bench/scale.csv``.
 """
 
 import argparse
 import math
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -64,10 +66,10 @@ def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[di
     project.mkdir()
     for name in ("Snakefile", "workflow", "profiles"):
         (project / name).symlink_to(ROOT / name)
-    begin = time.monotonic()
+    begin, before = time.monotonic(), _of_children()
     command = [sys.executable, "workflow/run.py", str(folder / "study.yaml")]
     subprocess.run([*command, "--cores", str(cores), "--quiet"], cwd=project, check=True)
-    wall = time.monotonic() - begin
+    wall, whole = time.monotonic() - begin, _of_children() - before
     histories = motions * CONFIGURATIONS * amplitudes
     stages: dict[str, list[tuple[float, float, float]]] = {}
     for log in sorted((project / "results" / "scale" / "logs").glob("*.log")):
@@ -76,6 +78,9 @@ def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[di
             raise RuntimeError(f"{log} does not say what its job took")
         one = (float(found[1]), float(found[2]), float(found[3]))
         stages.setdefault(_PART.sub("", log.stem), []).append(one)
+    # reading the records beforehand, and planning the jobs
+    jobs = sum(job[1] for some in stages.values() for job in some)
+    stages["before and between"] = [(math.nan, whole - jobs, math.nan)]
     about = {"motions": motions, "histories": histories, "wall_s": round(wall, 1)}
     return [
         {
@@ -88,6 +93,12 @@ def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[di
         }
         for stage, jobs in stages.items()
     ]
+
+
+def _of_children() -> float:
+    """Processor time of all processes that were started from here and have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def in_words(table: pd.DataFrame) -> str:
