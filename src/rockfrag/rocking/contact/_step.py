@@ -10,8 +10,8 @@ SLACK, TOUCH = 1e-12, 1e-13
 """Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;
 speeds over √(g b) and lengths over b [-]."""
 
-MOST_SECANTS = 20
-"""Tries of regula falsi before an interval is halved; a smooth margin takes eight."""
+WIDTH = 1e-12
+"""Fraction of a step to which the time of an event is found."""
 
 GAP, EDGE = 0, 2
 """Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
@@ -266,37 +266,34 @@ def margin_at(p, w, tau, stretch):
 
 @kernel
 def first_failure(p, w, at_low, high, at_high, stretch):
-    """Fraction of the step just after the least margin has become negative, by regula falsi (Illinois).
+    """Fraction of the step just after the least margin has become negative, by Chandrupatla's method.
 
-    It is ``at_low`` at the beginning and ``at_high``, which is negative, at the fraction ``high``.
-    A margin that starts at its slack and bends upwards before it falls would hold that up for hundreds of
-    tries, so after ``MOST_SECANTS`` the rest is halved.
+    It is ``at_low`` at the beginning and ``at_high``, which is negative, at the fraction ``high``.  The least of
+    several margins has kinks, and often starts at its slack and rises before it falls: a parabola is trusted only
+    where the last three values allow it, and the interval is halved elsewhere (T. R. Chandrupatla, Advances in
+    Engineering Software 28, 1997, 145-149).
     """
-    low = 0.0
-    moved = 0
-    tries = 0
-    while high - low > 1e-12:
-        tau = 0.5 * (low + high)
-        if tries < MOST_SECANTS:
-            tau = high - at_high * (high - low) / (at_high - at_low)
-        tries += 1
-        width = high - low
-        tau = min(max(tau, low + 1e-3 * width), high - 1e-3 * width)
-        tau = min(max(tau, low + 4e-13), high - 4e-13) if width > 1e-12 else 0.5 * (low + high)
-        value = margin_at(p, w, tau, stretch)
-        if value >= 0.0:
-            low = tau
-            at_low = value
-            if moved == 1:
-                at_high *= 0.5
-            moved = 1
+    x1, f1, x2, f2 = high, at_high, 0.0, at_low
+    part = 0.5
+    while True:
+        x = x1 + part * (x2 - x1)
+        value = margin_at(p, w, x, stretch)
+        if (value < 0.0) == (f1 < 0.0):
+            x3, f3 = x1, f1
         else:
-            high = tau
-            at_high = value
-            if moved == -1:
-                at_low *= 0.5
-            moved = -1
-    return high
+            x3, f3 = x2, f2
+            x2, f2 = x1, f1
+        x1, f1 = x, value
+        width = abs(x2 - x1)
+        if width <= WIDTH:
+            return x1 if f1 < 0.0 else x2
+        part = 0.5
+        xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+        if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
+            part = f1 / (f2 - f1) * (f3 / (f2 - f3))
+            part += (x3 - x1) / (x2 - x1) * (f1 / (f3 - f1)) * (f2 / (f3 - f2))
+        least = 0.5 * WIDTH / width
+        part = min(max(part, least), 1.0 - least)
 
 
 @kernel
