@@ -116,8 +116,9 @@ def save_figure(figure: Figure, *paths: str | os.PathLike[str]) -> None:
         "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 4}},
     }
     with figure_style(), mpl.rc_context({"figure.constrained_layout.use": False}):
-        # laid out once, not twice for each file
-        figure.draw_without_rendering()
+        # laid out once, not twice for each file, and nothing is drawn for it
+        if engine := figure.get_layout_engine():
+            engine.execute(figure)
         figure.set_layout_engine(None)
         for path in paths:
             ending = os.path.splitext(path)[1].lstrip(".")
