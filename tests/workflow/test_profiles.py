@@ -6,6 +6,10 @@ from pathlib import Path
 import pytest
 
 PROFILES = Path(__file__).resolve().parents[2] / "profiles"
+PLUGINS = {
+    "slurm": "snakemake-executor-plugin-slurm",
+    "queue": "snakemake-executor-plugin-cluster-generic",
+}
 
 
 def parsed(folder: Path):
@@ -17,9 +21,9 @@ def parsed(folder: Path):
 
 @pytest.mark.parametrize("profile", sorted(PROFILES.iterdir()), ids=lambda path: path.name)
 def test_snakemake_knows_every_key_of_a_profile(profile: Path):
-    plugin = "snakemake_executor_plugin_slurm"
-    if profile.name == "slurm" and importlib.util.find_spec(plugin) is None:
-        pytest.skip("not installed: snakemake-executor-plugin-slurm (pip install '.[slurm]')")
+    plugin = PLUGINS.get(profile.name)
+    if plugin and importlib.util.find_spec(plugin.replace("-", "_")) is None:
+        pytest.skip(f"not installed: {plugin} (pip install '.[{profile.name}]')")
     assert parsed(profile).rerun_incomplete
 
 
