@@ -25,8 +25,9 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
         return 1
     # what takes much memory is loaded now that there is some
     from rockfrag.cli import main as rockfrag
+    from rockfrag.stages.loaded import loaded
     from rockfrag.stages.log import in_words
-    from rockfrag.stages.one_run import only_run
+    from rockfrag.stages.one_run import RUNS, only_run
     from rockfrag.stages.running import results_folder
     from rockfrag.study.loading import load_any
 
@@ -37,7 +38,7 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
         study = load_any(study_file)
         results = results_folder(study)
         check_folders(results)
-        with only_run(study.name, results):
+        with only_run(study.name, results), loaded(RUNS / f"{study.name}.socket"):
             return _snakemake(study_file, ["--keep-going", *arguments])
     except InputError as error:
         print(error, file=sys.stderr)

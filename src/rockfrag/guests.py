@@ -4,7 +4,7 @@ The one place that knows of the thesis. A new stage is added to the list here; a
 report in :mod:`rockfrag.report.sections`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.report.stages import CAMPAIGN_REPORT, MEASURED_TABLE
@@ -19,10 +19,10 @@ from rockfrag.stages import (
     sweep,
     tests,
 )
-from rockfrag.stages.running import RESULTS
+from rockfrag.stages.running import RESULTS, run_stage
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.campaign import CampaignStudy
-from rockfrag.study.loading import AnyStudy
+from rockfrag.study.loading import AnyStudy, any_study
 from rockfrag.study.measured_table import MeasuredTable
 from rockfrag.study.study import Study
 from rockfrag.thesis import stages as thesis
@@ -51,6 +51,28 @@ def study_stages(study: AnyStudy) -> list[Stage[Any]]:
     before = [motions.STAGE, *sweep.sweep_stages(study)]
     stages = [one for one in (*before, *_GENERAL, *guests) if one.wanted(study)]
     return [*stages, _report_stage(stages)]
+
+
+def run_job(
+    name: str, config: Mapping[str, Any], study_file: str, threads: int, log_file: str
+) -> None:
+    """Run a stage of a study, as a job of the workflow does.
+
+    Parameters
+    ----------
+    name
+        Name of the stage.
+    config
+        The configuration as read.
+    study_file
+        The file it was read from.
+    threads
+        Threads that the stage may use.
+    log_file
+        Path of its log.
+    """
+    study = any_study(config, study_file)
+    run_stage(name, study_stages(study), study, threads, log_file)
 
 
 def report_parts(study: Study) -> "Sequence[Part]":

@@ -1,8 +1,19 @@
 """Run the stage that a rule is named after."""
 
-from rockfrag.guests import study_stages
-from rockfrag.stages.running import run_stage
-from rockfrag.study.loading import any_study
+import sys
 
-study = any_study(snakemake.config, snakemake.params.study)
-run_stage(snakemake.rule, study_stages(study), study, snakemake.threads, snakemake.log[0])
+from rockfrag.stages.loaded import run_in_copy
+
+job = {
+    "name": snakemake.rule,
+    "config": snakemake.config,
+    "study_file": snakemake.params.study,
+    "threads": snakemake.threads,
+    "log_file": snakemake.log[0],
+}
+status = run_in_copy(job)
+if status is None:
+    from rockfrag.guests import run_job
+
+    run_job(**job)
+sys.exit(status)
