@@ -8,8 +8,8 @@ A job runs its stage itself where there is no such process: on other systems tha
 in an environment of its own, and where Snakemake is started without ``workflow/run.py``.
 """
 
+import json
 import os
-import pickle
 import signal
 import socket
 import subprocess
@@ -93,7 +93,7 @@ def run_in_copy(job: Mapping[str, Any]) -> int | None:
     begun = status = b""
     with suppress(OSError), socket.socket(socket.AF_UNIX) as process:
         process.connect(address)
-        process.sendall(pickle.dumps((dict(os.environ), dict(job))))
+        process.sendall(f"{json.dumps((dict(os.environ), dict(job)))}\n".encode())
         begun = process.recv(1)
         status = process.recv(1)
     signal.signal(signal.SIGINT, usual)
@@ -163,10 +163,10 @@ def _copy(asker: socket.socket, listener: socket.socket) -> BaseProcess | None:
     """Fork a copy for the job at the other end of a socket and tell it so, if there is one and it can be done."""
     try:
         with asker.makefile("rb") as file:
-            environment, job = pickle.load(file)
+            environment, job = json.loads(file.readline())
         copy = get_context("fork").Process(target=_run, args=(listener, environment, job))
         copy.start()
-    except (EOFError, OSError, pickle.UnpicklingError):
+    except (OSError, ValueError):
         return None
     with suppress(OSError):
         asker.sendall(b"+")
