@@ -32,19 +32,20 @@ def check_memory() -> None:
         )
 
 
-def check_folders(results: Path) -> None:
-    """See that results can be written where there are some already.
+def check_folders(*folders: Path) -> None:
+    """See that all can be written where there is something already.
 
     Parameters
     ----------
-    results
-        Folder of a study's results; it need not be there.
+    folders
+        Of a study's results, and of what is noted of its runs; they need not be there.
 
     Raises
     ------
     PermissionError
-        If the folder, or one in it, may not be written.
+        If one of them, or a folder in it, may not be written.
     """
-    for folder in [results, *(path for path in results.rglob("*") if path.is_dir())]:
-        if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):
-            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
+    for top in folders:
+        for folder in [top, *(path for path in top.rglob("*") if path.is_dir())]:
+            if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):
+                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
