@@ -19,7 +19,7 @@ def motions(count: int) -> dict[str, Motion]:
     return {f"m{k}": Motion(window * rng.normal(size=300), 0.02, f"m{k}") for k in range(count)}
 
 
-def tests_of(names: list[str]) -> pd.DataFrame:
+def readings_of(names: list[str]) -> pd.DataFrame:
     about = {"configuration": "T", "object": "T", "pedestal": "NP", "event": "e", "floor": "g"}
     table = pd.DataFrame({"motion": names, **about, "amplitude_g": 0.4})
     return table.assign(test=table["motion"])
@@ -28,7 +28,7 @@ def tests_of(names: list[str]) -> pd.DataFrame:
 def test_forces_are_those_of_one_history():
     known = motions(3)
     configuration = Configuration("T", "T", "", BODY)
-    table = validity.validity_table(tests_of([*known]), [configuration], known)
+    table = validity.validity_table(readings_of([*known]), [configuration], known)
     for row in table.to_dict("records"):
         response = simulate(BODY, scale_to_pga(known[row["motion"]], 0.4))
         assert row["friction_demand"] == response.friction_demand.max()
@@ -40,5 +40,5 @@ def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch: pytest.
     monkeypatch.setattr(validity, "MOST_TESTED", 4)
     known = motions(10)
     configuration = Configuration("T", "T", "", BODY)
-    table = validity.validity_table(tests_of([*known]), [configuration], known)
+    table = validity.validity_table(readings_of([*known]), [configuration], known)
     assert list(table["motion"]) == ["m0", "m2", "m5", "m7"]

@@ -104,8 +104,8 @@ def run_in_copy(job: Mapping[str, Any]) -> int | None:
 
 def serve(address: str) -> None:
     """Load the libraries, and fork a copy for each job that asks, until standard input ends."""
-    # this process ends with its run
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # this process ends with its run; blocked and not ignored, lest a copy miss what it is told before it can act
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     run = sys.stdin.fileno()
     to_load: list[Callable[[], object]] = [
         *(partial(import_module, name) for name in MODULES),
@@ -178,9 +178,13 @@ def _run(listener: socket.socket, environment: dict[str, str], job: dict[str, An
 
     # without the process of the run nobody answers
     listener.close()
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.update(environment)
-    run_job(**job)
+    try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        run_job(**job)
+    except KeyboardInterrupt:
+        sys.exit(1)
 
 
 if __name__ == "__main__":
