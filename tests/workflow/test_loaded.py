@@ -113,15 +113,29 @@ def test_nothing_is_done_where_there_is_no_such_process(
 ):
     monkeypatch.delenv(ADDRESS, raising=False)
     assert run_in_copy(job()) is None
-    monkeypatch.setenv(ADDRESS, f"{sys.prefix}:{SOCKET}")
+    monkeypatch.setenv(ADDRESS, f"{os.getpid()}:{sys.prefix}:{SOCKET}")
     assert run_in_copy(job()) is None
 
 
 def test_another_environment_is_not_served(
     here: Path, process: psutil.Process, monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setenv(ADDRESS, f"/elsewhere:{SOCKET}")
+    monkeypatch.setenv(ADDRESS, f"{os.getpid()}:/elsewhere:{SOCKET}")
     assert run_in_copy(job()) is None
+
+
+def test_a_job_that_a_queue_started_runs_by_itself(here: Path, process: psutil.Process):
+    program = (
+        "import os, time\nfrom rockfrag.stages.loaded import run_in_copy\nown = os.getpid()\n"
+        "if os.fork():\n    os._exit(0)\n"
+        "while os.getppid() == own:\n    time.sleep(0.01)\n"
+        f"print(run_in_copy({job()!r}))"
+    )
+    # its parent is gone, and who took it over is no child of the run
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert done.stdout == "None\n"
 
 
 def test_a_job_that_is_stopped_waits_for_the_last_word_of_its_copy(

@@ -4,8 +4,9 @@ Libraries take a second or two to load, as long as many a stage works. A run sta
 while Snakemake reads the study; a job asks it for a copy of itself (a fork), which runs the stage, and waits
 for its end. A copy ends with its job, and all of them with their run.
 
-A job runs its stage itself where there is no such process: on other systems than Linux, on a cluster's nodes,
-in an environment of its own, and where Snakemake is started without ``workflow/run.py``.
+A job runs its stage itself where there is no such process: on other systems than Linux, in an environment of its
+own, and where Snakemake is started without ``workflow/run.py``. So does a job that a cluster's queue started, on
+whichever node: the queue has given it its own memory and time.
 """
 
 import json
@@ -27,7 +28,7 @@ from typing import Any
 from rockfrag.stages.same_numbers import same_numbers
 
 ADDRESS = "ROCKFRAG_LOADED"
-"""Variable of the environment that says in which Python there are copies, and at which socket."""
+"""Variable of the environment that says of which run there are copies, in which Python, and at which socket."""
 
 MODULES = (
     "rockfrag.guests",
@@ -63,7 +64,7 @@ def loaded(address: Path) -> Iterator[None]:
         env={**os.environ, **same_numbers(os.environ)},
         stdin=subprocess.PIPE,
     )
-    os.environ[ADDRESS] = f"{sys.prefix}:{address}"
+    os.environ[ADDRESS] = f"{os.getpid()}:{sys.prefix}:{address}"
     try:
         yield
     finally:
@@ -85,8 +86,9 @@ def run_in_copy(job: Mapping[str, Any]) -> int | None:
     -------
     Exit status of the copy, 255 if that is not known; None if no copy was to be had and nothing was done.
     """
-    prefix, _, address = os.environ.get(ADDRESS, "").rpartition(":")
-    if prefix != sys.prefix:
+    of, _, address = os.environ.get(ADDRESS, "").rpartition(":")
+    run, _, prefix = of.partition(":")
+    if prefix != sys.prefix or int(run) not in (os.getpid(), *_forebears()):
         return None
     # whoever stops a run tells all its processes: the copy writes so into its log and ends
     usual = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -102,6 +104,15 @@ def run_in_copy(job: Mapping[str, Any]) -> int | None:
     return status[0] if status else 255
 
 
+def _forebears() -> Iterator[int]:
+    """The process that started this one, the one that started that, and so on."""
+    process = os.getppid()
+    while process:
+        yield process
+        # behind the name, which may hold anything: state and parent
+        process = int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
+
+
 def serve(address: str) -> None:
     """Load the libraries, and fork a copy for each job that asks, until standard input ends."""
     # this process ends with its run; blocked and not ignored, lest a copy miss what it is told before it can act
@@ -115,8 +126,10 @@ def serve(address: str) -> None:
     with socket.socket(socket.AF_UNIX) as listener:
         try:
             Path(address).unlink(missing_ok=True)
+            # for this user alone
+            usual = os.umask(0o177)
             listener.bind(address)
-            os.chmod(address, 0o600)
+            os.umask(usual)
         except OSError:
             # a path too long, or a file system without sockets: jobs run by themselves
             return
