@@ -112,7 +112,7 @@ def test_a_million_rows_of_2000_motions_take_bounded_memory(tmp_path):
         {
             "record": [f"r{k}" for k in motion],
             "pgv_cm_s": velocity,
-            "pga_g": velocity / 60 * np.exp(0.5 * rng.normal(size=motion.size)),
+            "pga_g": velocity / 200 * np.exp(0.5 * rng.normal(size=motion.size)),
             "overturned": (velocity > capacity).astype(int),
         }
     ).to_csv(path, index=False)
