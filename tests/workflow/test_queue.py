@@ -1,14 +1,11 @@
 """A study that is given to a queue by a command, as on most clusters, ends in the same bytes."""
 
 import importlib.util
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from .test_run import ROOT, tables_of
+from .test_run import ROOT, run_locally_and_with
 
 SUBMIT = """#!/bin/sh
 # a queue of one node: starts the job's script beside this, and prints the job's number
@@ -25,25 +22,13 @@ def test_a_study_in_a_queue_ends_in_the_same_bytes(study_folder: Path, tmp_path:
         pytest.skip(
             "not installed: snakemake-executor-plugin-cluster-generic (pip install '.[queue]')"
         )
-    launcher = [sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml"]
-    subprocess.run([*launcher, "--cores", "2"], cwd=study_folder, check=True, capture_output=True)
-    wanted = tables_of(study_folder)
-    shutil.rmtree(study_folder / "results")
     submit, log = tmp_path / "submit", tmp_path / "submitted"
     submit.write_text(SUBMIT.format(log=log))
     submit.chmod(0o755)
-    done = subprocess.run(
-        [
-            *(*launcher, "--profile", str(ROOT / "profiles" / "queue")),
-            *("--cluster-generic-submit-cmd", f"{submit} {{threads}} {{resources.mem_mb}}"),
-            *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
-        ],
-        cwd=study_folder,
-        capture_output=True,
-        text=True,
-        timeout=900,
-        check=False,
+    run_locally_and_with(
+        study_folder,
+        *("--profile", str(ROOT / "profiles" / "queue")),
+        *("--cluster-generic-submit-cmd", f"{submit} {{threads}} {{resources.mem_mb}}"),
+        *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
     )
-    assert done.returncode == 0, done.stderr[-3000:]
     assert len(log.read_text().splitlines()) >= 3
-    assert tables_of(study_folder) == wanted

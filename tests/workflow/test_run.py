@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -37,6 +38,25 @@ def tables_of(folder: Path) -> dict[str, bytes]:
         for path in sorted(results.rglob("*"))
         if path.suffix in (".csv", ".parquet", ".svg", ".png", ".html")
     }
+
+
+def run_locally_and_with(folder: Path, *arguments: str) -> str:
+    """Run a study here, then from nothing with more arguments; the bytes must agree. Return what was said."""
+    launcher = [sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml"]
+    subprocess.run([*launcher, "--cores", "2"], cwd=folder, check=True, capture_output=True)
+    wanted = tables_of(folder)
+    shutil.rmtree(folder / "results")
+    done = subprocess.run(
+        [*launcher, *arguments],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=900,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert tables_of(folder) == wanted
+    return done.stderr
 
 
 def test_a_wrong_configuration_stops_before_anything_runs(study_folder: Path):

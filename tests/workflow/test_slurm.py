@@ -5,14 +5,13 @@ import os
 import shutil
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from .test_run import ROOT, tables_of
+from .test_run import ROOT, run_locally_and_with
 
 CONF = Path("/etc/slurm/slurm.conf")
 """Where jobs look for the configuration: the executor takes SLURM's variables from their environment."""
@@ -125,22 +124,10 @@ def _wait_for_node(folder: Path) -> None:
 
 @pytest.mark.slow
 def test_a_study_on_slurm_ends_in_the_same_bytes(study_folder: Path, slurm: Path):
-    launcher = [sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml"]
-    subprocess.run([*launcher, "--cores", "2"], cwd=study_folder, check=True, capture_output=True)
-    wanted = tables_of(study_folder)
-    shutil.rmtree(study_folder / "results")
-    done = subprocess.run(
-        [
-            *(*launcher, "--profile", str(ROOT / "profiles" / "slurm"), "--slurm-no-account"),
-            *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "2"),
-            *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
-        ],
-        cwd=study_folder,
-        capture_output=True,
-        text=True,
-        timeout=900,
-        check=False,
+    screen = run_locally_and_with(
+        study_folder,
+        *("--profile", str(ROOT / "profiles" / "slurm"), "--slurm-no-account"),
+        *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "2"),
+        *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
     )
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert "SLURM jobid" in done.stderr
-    assert tables_of(study_folder) == wanted
+    assert "SLURM jobid" in screen

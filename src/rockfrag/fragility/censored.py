@@ -400,19 +400,12 @@ def _weighted(weights: Floats, pulls: tuple[Floats, ...]) -> tuple[Floats, Float
 def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...]:
     """Log-likelihood of each bracket and its derivatives in (intercept, slope), each of shape (batch, n)."""
     c0, c1 = coefficients[:, :1], coefficients[:, 1:]
-    exact = low == high
     x_low, x_high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 0.0)
+    exact = low == high
+    # the density of ln IM, so that equal bounds and narrow brackets rank models alike
+    of_density = _density_pulls(c0, c1, x_low)
     if exact.all():
-        at = c0 + c1 * x_low
-        ones = np.ones(at.shape)
-        return (
-            np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI,
-            -at,
-            -at * x_low + 1.0 / c1,
-            -ones,
-            -x_low * ones,
-            -(x_low**2) - 1.0 / c1**2,
-        )
+        return of_density
     z_low = np.where(np.isneginf(low), -np.inf, c0 + c1 * x_low)
     z_high = np.where(np.isposinf(high), np.inf, c0 + c1 * x_high)
     log_share = _log_difference(z_low, z_high)
@@ -420,19 +413,31 @@ def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...
     ratio_high = np.exp(-0.5 * z_high**2 - _LOG_ROOT_TWO_PI - log_share)
     bend_low = np.where(np.isinf(z_low), 0.0, z_low) * ratio_low
     bend_high = np.where(np.isinf(z_high), 0.0, z_high) * ratio_high
-    at = np.where(exact, z_low, 0.0)  # finite where it is read
-    g0 = np.where(exact, -at, ratio_high - ratio_low)
-    g1 = np.where(exact, -at * x_low + 1.0 / c1, ratio_high * x_high - ratio_low * x_low)
-    h00 = np.where(exact, -1.0, bend_low - bend_high - g0**2)
-    h01 = np.where(exact, -x_low, bend_low * x_low - bend_high * x_high - g0 * g1)
-    h11 = np.where(
-        exact,
-        -(x_low**2) - 1.0 / c1**2,
+    g0 = ratio_high - ratio_low
+    g1 = ratio_high * x_high - ratio_low * x_low
+    of_share = (
+        log_share,
+        g0,
+        g1,
+        bend_low - bend_high - g0**2,
+        bend_low * x_low - bend_high * x_high - g0 * g1,
         bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
     )
-    # the density of ln IM, so that equal bounds and narrow brackets rank models alike
-    terms = np.where(exact, np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI, log_share)
-    return terms, g0, g1, h00, h01, h11
+    return tuple(np.where(exact, *pair) for pair in zip(of_density, of_share, strict=True))
+
+
+def _density_pulls(c0: Floats, c1: Floats, x: Floats) -> tuple[Floats, ...]:
+    """What :func:`_pulls` gives of capacities that are known exactly."""
+    at = c0 + c1 * x
+    ones = np.ones(at.shape)
+    return (
+        np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI,
+        -at,
+        -at * x + 1.0 / c1,
+        -ones,
+        -x * ones,
+        -(x**2) - 1.0 / c1**2,
+    )
 
 
 def _log_difference(z_low: Floats, z_high: Floats) -> Floats:

@@ -25,6 +25,8 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
+import psutil
+
 from rockfrag.stages.same_numbers import same_numbers
 
 ADDRESS = "ROCKFRAG_LOADED"
@@ -88,7 +90,8 @@ def run_in_copy(job: Mapping[str, Any]) -> int | None:
     """
     of, _, address = os.environ.get(ADDRESS, "").rpartition(":")
     run, _, prefix = of.partition(":")
-    if prefix != sys.prefix or int(run) not in (os.getpid(), *_forebears()):
+    here = psutil.Process()
+    if prefix != sys.prefix or int(run) not in {one.pid for one in (here, *here.parents())}:
         return None
     # whoever stops a run tells all its processes: the copy writes so into its log and ends
     usual = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -102,15 +105,6 @@ def run_in_copy(job: Mapping[str, Any]) -> int | None:
     if not begun:
         return None
     return status[0] if status else 255
-
-
-def _forebears() -> Iterator[int]:
-    """The process that started this one, the one that started that, and so on."""
-    process = os.getppid()
-    while process:
-        yield process
-        # behind the name, which may hold anything: state and parent
-        process = int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
 
 
 def serve(address: str) -> None:

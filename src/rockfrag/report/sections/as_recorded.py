@@ -7,8 +7,6 @@ from rockfrag.report.findings import recorded_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 
-_TABLE = "Verdict under each motion as recorded."
-
 
 def _section(results: Results) -> Section:
     recorded = results.table("as_recorded")
