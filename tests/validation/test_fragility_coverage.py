@@ -103,7 +103,7 @@ def coverage(n: int, method: str, over: str, data_sets: int = DATA_SETS) -> pd.D
                 verdicts, verdicts.motion if over == "motion" else verdicts.event
             ),
         }
-        _, notes = population(brackets.motion, brackets.event, over)
+        _, notes = population(n, events, over)
         for name, (fit, groups) in fitters.items():
             interval = resampled_interval(
                 fit, groups, over=over, notes=notes, method=method, replicates=200, seed=k

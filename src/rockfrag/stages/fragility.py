@@ -57,8 +57,8 @@ def run(job: Job[Study]) -> Results:
     job.log.info(
         "exported %s", ", ".join(export_curves(by_floor, exports, floor_shares)) or "no curve"
     )
-    best = choice.loc[choice["recommended"], "im"]
-    job.log.info("curves: %d; best measures: %s", len(found.curves), ", ".join(dict.fromkeys(best)))
+    best = ", ".join(dict.fromkeys(choice.loc[choice["recommended"], "im"]))
+    job.log.info("curves: %d; best measures: %s", len(found.curves), best or "none stands out")
 
 
 BY = ["configuration", "event", "floor", "motion"]

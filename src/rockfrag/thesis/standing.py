@@ -66,7 +66,6 @@ def standing_readings(
     rng = np.random.default_rng(seed)
     rows = []
     for one in configurations:
-        rng.uniform(-1, 1)
         copies = [[_copy(one.body, size, rng) for _ in range(COPIES)] for size in SIZES]
         fell = overturns(
             [one.body],
