@@ -16,7 +16,7 @@ called from Python                    calls
                                       ``single.land`` and ``contact_states`` say what follows; ``record`` keeps it
 ``lanes.scheduler.march_stacks``      ``stack_one.advance`` and ``stack_two.advance``: one step of sixteen cases;
                                       ``stack_case``: events, rest, the next case; ``stack_constants`` once a body
-``lanes.block.march_blocks``          ``block.advance``: one step of 32 lone blocks, and all the rest in one file
+``lanes.block.march_blocks``          ``block.advance``: one step of 64 lone blocks, and all the rest in one file
 ``record.fill_energies``              ``equations``
 ``record.fill_sines``                 ``elementary``
 ====================================  =========================================================================

@@ -42,7 +42,7 @@ from rockfrag.rocking.kernels.taylor import (
     travel,
 )
 
-LANES = 32
+LANES = 64
 TOUCHES, FALLS = 1.0, 2.0
 """Flags of a lane: it may have touched, or falls for certain."""
 
@@ -84,6 +84,7 @@ LANE = np.dtype(
         ("crest", _F, LANES),  # √(light² + bound²) + heavy - light, with the least that W can be
         ("factor", _F, LANES), ("signed", _F, LANES),  # scale of the motion over g, and that times the side
         ("flag", _F, LANES),
+        ("when", _F, LANES),  # time in the step at which ψ passes θc
         ("rates", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of ψ'
     ],
     align=True,
@@ -209,6 +210,7 @@ def march_blocks(ensemble, motions, worker, outcomes):
         passes += 1
         advance(lane, upward)
         stops = next_samples(lane, lane.signed, LANES, motions)
+        _find_impacts(lane, stops)
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1
@@ -295,6 +297,27 @@ def _take_event(lane, i, tally, ensemble, motions):
 
 
 @inlined_kernel
+def _rates_of(lane, i):
+    """Taylor coefficients 0 to 6 of ψ' over a lane's step."""
+    rows = lane.rates
+    w = lane.was_omega[i] * lane.was_left[i]
+    return w, rows[0, i], rows[1, i], rows[2, i], rows[3, i], rows[4, i], rows[5, i]
+
+
+@kernel
+def _find_impacts(lane, stops):
+    """Find when the blocks of lanes come down within their steps, before any of them goes through it.
+
+    Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
+    """
+    while stops != 0:
+        i = lowest_bit(stops)
+        stops &= stops - 1
+        if lane.flag[i] == TOUCHES and lane.psi[i] >= lane.angle[i]:
+            lane.when[i] = _flight(lane.was_psi[i] - lane.angle[i], _rates_of(lane, i), 1.0)
+
+
+@inlined_kernel
 def _event(lane, i, tally):
     """Time of the next impact in the lane's step, or NEVER; ψ and ψ' then or at the end; whether it never left.
 
@@ -304,14 +327,13 @@ def _event(lane, i, tally):
     left = lane.was_left[i]
     angle = lane.angle[i]
     kappa = lane.kappa[i]
-    w = lane.was_omega[i] * left
-    rows = lane.rates
-    rates = w, rows[0, i], rows[1, i], rows[2, i], rows[3, i], rows[4, i], rows[5, i]
+    rates = _rates_of(lane, i)
+    w = rates[0]
     gap = psi - angle
     end, v = lane.psi[i], lane.omega[i]
     t = NEVER
     if end >= angle:
-        t = _flight(gap, rates, 1.0)
+        t = lane.when[i]
         if t > 1.0:
             return t, end, v, True
     elif w > 0.0 and v < 0.0:

@@ -21,6 +21,7 @@ from rockfrag.rocking.kernels.lanes.stack_case import (
     after_event,
     event_of_one,
     event_of_two,
+    find_events_of_two,
     general_impact,
     lane_of,
     next_case,
@@ -66,6 +67,7 @@ def march_stacks(ensemble, motions, worker, outcomes):
             steps2 += LANES
             stack_two.advance(worker.two, g, upward)
             stops = next_samples(worker.two, worker.two.factor, LANES, motions)
+            find_events_of_two(stops, worker)
         while stops != 0:
             i = lowest_bit(stops)
             stops &= stops - 1

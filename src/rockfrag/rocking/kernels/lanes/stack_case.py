@@ -39,9 +39,16 @@ from rockfrag.rocking.kernels.equations import (
     statue_balance,
 )
 from rockfrag.rocking.kernels.impact import ground_impact, interface_impact
-from rockfrag.rocking.kernels.jit import inlined_kernel, kernel, take_next
+from rockfrag.rocking.kernels.jit import inlined_kernel, kernel, lowest_bit, take_next
 from rockfrag.rocking.kernels.lanes import stack_one, stack_two
-from rockfrag.rocking.kernels.lanes.case import LANES, RELEASE, next_uplift, place_of, weight_of
+from rockfrag.rocking.kernels.lanes.case import (
+    LANES,
+    QUIET,
+    RELEASE,
+    next_uplift,
+    place_of,
+    weight_of,
+)
 from rockfrag.rocking.kernels.lanes.stack_constants import (
     HOLD,
     IMPACT,
@@ -97,7 +104,7 @@ class Worker(NamedTuple):
     waits, busy : (2,) how many wait, and how many lanes are taken
     ones, twos, impacts : (SLOTS, 9) constants of the slots' bodies in every contact state
     restoring : (SLOTS,)
-    series : of the step that an event is looked for in
+    series : (LANES,) of the steps that events are looked for in
     state : of a case, with rates per second, for what the constants do not cover
     """
 
@@ -135,7 +142,7 @@ def worker() -> Worker:
         twos=np.zeros((SLOTS, 9), TWO),
         impacts=np.zeros((SLOTS, 9), IMPACT),
         restoring=np.zeros(SLOTS, RESTORING),
-        series=np.zeros(1, SERIES)[0],
+        series=np.zeros(LANES, SERIES),
         state=np.zeros(1, STATE)[0],
     )
 
@@ -280,7 +287,7 @@ def event_of_one(i, case, worker, ensemble, motions, g):
     -------
     Whether ground and interface close and ``general_impact`` has to say what comes of it.
     """
-    lane, series = worker.one, worker.series
+    lane, series = worker.one, worker.series[i]
     if lane.flag[i] == RELEASE and lane.has_before[i] == 1.0:
         # it let go in the sample before
         stack_one.go_back(lane, i, g, motions.vertical.size > 0)
@@ -320,17 +327,36 @@ def event_of_one(i, case, worker, ensemble, motions, g):
 
 
 @kernel
+def find_events_of_two(stops, worker):
+    """Find the events of lanes of two rotations, before any case goes through one.
+
+    Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
+    Lanes of one rotation have too few events in a pass to gain by it.
+    """
+    lane = worker.two
+    while stops != 0:
+        i = lowest_bit(stops)
+        stops &= stops - 1
+        if lane.slot[i] >= 0 and lane.flag[i] > QUIET:
+            case, series = worker.cases[lane.slot[i]], worker.series[i]
+            stack_two.take_series(lane, i, series)
+            lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_event(
+                case.c1, case.c2, lane.flag[i], series
+            )
+
+
+@kernel
 def event_of_two(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of two rotations to its event or to the step's end, and through the event.
+    """Take a case in lane i of those of two rotations through the event that was found, or to the step's end.
 
     Returns
     -------
     Whether ground and interface close and ``general_impact`` has to say what comes of it.
     """
-    lane, series = worker.two, worker.series
-    span = stack_two.take_series(lane, i, series)
+    lane, series = worker.two, worker.series[i]
     left = lane.was_left[i]
-    when, closes1, closes2 = stack_two.next_event(case.c1, case.c2, lane.flag[i], series)
+    span = stack_two.span_of(left, lane.part[i])
+    when, closes1, closes2 = lane.when[i], lane.closes1[i] != 0, lane.closes2[i] != 0
     at = min(1.0, when)
     t1, w1 = value(series.one.angle, at), slope(series.one.angle, at) / span
     t2, w2 = value(series.two.angle, at), slope(series.two.angle, at) / span

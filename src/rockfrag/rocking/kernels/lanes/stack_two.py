@@ -44,6 +44,8 @@ LANE = np.dtype(
         # extremes so far: of θ/θcritical, |θ2'|, and distance from balance squared
         ("ratio1", _F, LANES), ("ratio2", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
         ("flag", _F, LANES),
+        # time of its event in the step, and whether ground and interface close then
+        ("when", _F, LANES), ("closes1", np.int64, LANES), ("closes2", np.int64, LANES),
         # these where the step began
         ("was_theta1", _F, LANES), ("was_omega1", _F, LANES),
         ("was_theta2", _F, LANES), ("was_omega2", _F, LANES),
@@ -170,7 +172,7 @@ def _advance(lane, g, upward):
 
 @inlined_kernel
 def take_series(lane, i, series):
-    """Copy the series of a lane's step out; return the step's length."""
+    """Copy the series of a lane's step out."""
     one, two = series.one.angle, series.two.angle
     span = span_of(lane.was_left[i], lane.part[i])
     one[0], one[1] = lane.was_theta1[i], lane.was_omega1[i] * span
@@ -178,7 +180,6 @@ def take_series(lane, i, series):
     for n in range(ORDER - 1):
         one[2 + n] = lane.rates1[n, i] * (1.0 / (n + 2))
         two[2 + n] = lane.rates2[n, i] * (1.0 / (n + 2))
-    return span
 
 
 @inlined_kernel
