@@ -35,7 +35,7 @@ class FloatModel(Model):
         self.arms = {pair: sum(self.fields(pair, (0.0, 0.0)), ()) for pair in poles}
 
     def terms(
-        self, poles: State, theta: Pair, omega: Pair, a: float
+        self, poles: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
         """Return M11, M12, M22, f1, f2 of M θ'' + f = τ."""
         x1, y1, xd, yd, x2, y2 = self.arms[poles]
@@ -43,7 +43,8 @@ class FloatModel(Model):
         x1, y1, xd, yd = x1 * c + y1 * s, y1 * c - x1 * s, xd * c + yd * s, yd * c - xd * s
         c, s = math.cos(theta[1]), math.sin(theta[1])
         x2, y2 = x2 * c + y2 * s, y2 * c - x2 * s
-        m1, m2, g = self.m1, self.m2, self.g
+        m1, m2 = self.m1, self.m2
+        a, g = pull
         v1, v2 = omega[0] * omega[0], omega[1] * omega[1]
         ax, ay = a - v1 * xd - v2 * x2, g - v1 * yd - v2 * y2
         # the pedestal's own centripetal acceleration has no moment about its pole
@@ -70,7 +71,7 @@ def piecewise_linear(values: list[float], dt: float) -> Ground:
 
 def rest_interval(model: Model) -> tuple[float, float]:
     """Accelerations of the ground [m/s²] between which what is at rest stays so."""
-    still, pushed = (model.margins((0, 0), (0.0, 0.0), (0.0, 0.0), a) for a in (0.0, 1.0))
+    still, pushed = (model.margins((0, 0), (0.0, 0.0), (0.0, 0.0), (a, G)) for a in (0.0, 1.0))
     limits = [still[key] / (still[key] - pushed[key]) for key in still]
     return max(a for a in limits if a < 0), min(a for a in limits if a > 0)
 
@@ -84,7 +85,8 @@ def watches(model: Model, state: State, start: float, ground: Ground) -> list[Wa
 
     def hold(t: float, y: Array) -> float:
         th1, th2, w1, w2 = y.tolist()
-        return min(model.margins(state, (th1, th2), (w1, w2), ground(t)).values()) + SLACK
+        pull = ground(t), G
+        return min(model.margins(state, (th1, th2), (w1, w2), pull).values()) + SLACK
 
     def falls(t: float, y: Array) -> float:
         th1, th2, _, _ = y.tolist()
@@ -101,9 +103,9 @@ def landed(
 ) -> tuple[State, Pair]:
     """Contact state and velocities after the contacts ``shut`` have closed, without chatter."""
     closing = (state[0] if 0 in shut else 0, state[1] if 1 in shut else 0)
-    new, after = model.impact(state, closing, theta, omega)
+    new, after, _ = model.impact(state, closing, theta, omega)
     while True:
-        q1, q2 = model.accelerations(new, theta, after, a)
+        q1, q2 = model.accelerations(new, theta, after, (a, G))
         parts, pulls = (after[0], after[1] - after[0]), (q1, q2 - q1)
         weak = [
             (closing[i] or not state[i])
@@ -141,13 +143,14 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
             a0, a1 = ground(before), values[k]
             limit = high if a1 > high else low
             t = before + (after - before) * (limit - a0) / (a1 - a0) + 1e-9
-        state = model.settled(state, theta, omega, ground(t))
+        state = model.settled(state, theta, omega, (ground(t), G))
         if state == (0, 0):
             continue
 
         def rates(t: float, y: Array, state: State = state) -> tuple[float, float, float, float]:
             th1, th2, w1, w2 = y.tolist()
-            return w1, w2, *model.accelerations(state, (th1, th2), (w1, w2), ground(t))
+            pull = ground(t), G
+            return w1, w2, *model.accelerations(state, (th1, th2), (w1, w2), pull)
 
         # from an event just before a sample on to the one after
         stop = (int(t / dt + 1e-7) + 1) * dt if by_sample else end
