@@ -36,13 +36,13 @@ report-pdf: .venv/installed
 	@$(RUN) rockfrag.report.pdf "$(STUDY)"
 
 # each of pytest's workers has a processor to itself, so threads of its linear algebra would only wait for each other
-test coverage: export OPENBLAS_NUM_THREADS = 1
+test validate coverage: export OPENBLAS_NUM_THREADS = 1
 
 test: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow"
 
 validate: .venv/installed
-	@$(RUN) pytest -m slow
+	@$(RUN) pytest -n auto --dist loadfile -m slow
 
 coverage: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow" --cov --cov-report=term --cov-report=xml

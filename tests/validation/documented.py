@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pandas as pd
+from filelock import FileLock
 
 from rockfrag.files import write_text
 
@@ -22,9 +23,10 @@ def markdown(table: pd.DataFrame, digits: int = 3) -> str:
 def document(file: str, name: str, table: pd.DataFrame, digits: int = 3) -> None:
     """Put a table between the marks ``<!-- name -->`` and ``<!-- end of name -->`` of a document."""
     path = DOCS / file
-    text = path.read_text(encoding="utf-8")
     head, tail = f"<!-- {name} -->", f"<!-- end of {name} -->"
-    before, _, rest = text.partition(head)
-    _, found, after = rest.partition(tail)
-    assert found, f"{file} has no place for the table {name}"
-    write_text(f"{before}{head}\n{markdown(table, digits)}\n{tail}{after}", path)
+    # tests that run side by side write tables into the same document
+    with FileLock(DOCS / f".{file}.lock"):
+        before, _, rest = path.read_text(encoding="utf-8").partition(head)
+        _, found, after = rest.partition(tail)
+        assert found, f"{file} has no place for the table {name}"
+        write_text(f"{before}{head}\n{markdown(table, digits)}\n{tail}{after}", path)
