@@ -43,6 +43,8 @@ from rockfrag.rocking.kernels.taylor import (
 )
 
 LANES = 64
+"""As many as ``next_samples`` has bits for."""
+
 TOUCHES, FALLS = 1.0, 2.0
 """Flags of a lane: it may have touched, or falls for certain."""
 
