@@ -1,15 +1,15 @@
 """The programs that ``make bench`` compares with: written for speed's sake, they have to say the same."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from cases import cases
+from competitors import numpy_lone, scipy_lone
+from measures import over_limit
+from scipy_stack import scipy_stack
 
 from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
 
-BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 DT = 0.01
 STATUE = Block(0.3, 1.2, 200.0)
 STACK = Stack(Block(0.4, 0.3, 100.0), STATUE)
@@ -17,17 +17,9 @@ PULSE = np.sin(2 * np.pi * np.arange(101) * DT)
 """One sine of a second, at 1 m/s²."""
 
 
-@pytest.fixture(autouse=True)
-def _benchmarks(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(sys, "path", [str(BENCHMARKS), *sys.path])
-
-
 @pytest.mark.parametrize("by_sample", [False, True])
 @pytest.mark.parametrize("body", [STATUE, STACK], ids=["block", "stack"])
 def test_solve_ivp_gives_the_same_verdicts(body: Block | Stack, by_sample: bool):
-    from competitors import scipy_lone
-    from scipy_stack import scipy_stack
-
     verdict = scipy_lone if isinstance(body, Block) else scipy_stack
     amplitudes = (2.0, 4.0, 8.0)
     ours = overturns(body, PULSE, DT, amplitudes).overturned.ravel().tolist()
@@ -37,8 +29,6 @@ def test_solve_ivp_gives_the_same_verdicts(body: Block | Stack, by_sample: bool)
 
 def test_numpy_gives_nearly_the_same_verdicts_with_small_steps():
     """It takes impacts at the ends of steps, and ends with the motion."""
-    from competitors import numpy_lone
-
     bodies = [Block(b, 4 * b, 500.0) for b in (0.2, 0.3, 0.4, 0.6)]
     scales = np.linspace(1.0, 12.0, 30)[np.newaxis]
     time = np.arange(0.0, 5.0, 0.001)
@@ -49,9 +39,6 @@ def test_numpy_gives_nearly_the_same_verdicts_with_small_steps():
 
 
 def test_the_time_between_the_steps_is_measured():
-    from cases import cases
-    from measures import over_limit
-
     for kind in ("lone", "stack"):
         over, steps = over_limit(kind, cases(kind, 40))
         assert over > 1.0

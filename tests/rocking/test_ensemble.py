@@ -1,9 +1,8 @@
 """Ensembles: the same numbers however cases are grouped, and the same as one by one."""
 
-import importlib.util
 from dataclasses import replace
-from pathlib import Path
 
+import cases as benchmark_cases
 import numpy as np
 import pytest
 
@@ -13,21 +12,10 @@ from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.simulation import simulate
 
-
-def benchmark_cases():
-    """The module that makes the random cases of the benchmarks."""
-    path = Path(__file__).parents[2] / "benchmarks" / "cases.py"
-    spec = importlib.util.spec_from_file_location("benchmark_cases", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-CASES = benchmark_cases()
-MOTIONS = [motion[:2500] for motion in CASES.motions(4, seed=11)]
+MOTIONS = [motion[:2500] for motion in benchmark_cases.motions(4, seed=11)]
 SCALES = np.array([[0.15, 0.4, 0.9], [0.2, 0.5, 1.0], [0.25, 0.6, 0.8], [0.0, 0.35, 0.7]])
-LONE = CASES.blocks(5, seed=11)
-STACKS = CASES.stacks(3, seed=11)
+LONE = benchmark_cases.blocks(5, seed=11)
+STACKS = benchmark_cases.stacks(3, seed=11)
 # a leaning block with its centre of gravity to one side has two different poles
 SKEW = Block(width=0.3, height=1.2, mass=100.0, cg_offset=0.02, lean=0.01)
 # a slender pedestal falls with its squat statue
@@ -51,7 +39,7 @@ def picked(result: EnsembleResult, *index) -> EnsembleResult:
 
 @pytest.fixture(scope="module")
 def whole() -> EnsembleResult:
-    return overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=1)
+    return overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES, threads=1)
 
 
 def test_the_cases_hold_falls_and_survivals_of_blocks_and_stacks(whole):
@@ -64,12 +52,12 @@ def test_the_cases_hold_falls_and_survivals_of_blocks_and_stacks(whole):
 
 @pytest.mark.parametrize("threads", [2, 3, 16])
 def test_threads_do_not_change_a_bit(whole, threads):
-    same(whole, overturns(BODIES, MOTIONS, CASES.DT, SCALES, threads=threads))
+    same(whole, overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES, threads=threads))
 
 
 def test_parts_give_the_bits_of_the_whole(whole):
     for k in range(SCALES.shape[1]):
-        part = overturns(BODIES, MOTIONS, CASES.DT, SCALES[:, k : k + 1], threads=1)
+        part = overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES[:, k : k + 1], threads=1)
         same(picked(whole, slice(None), slice(None), slice(k, k + 1)), part)
 
 
@@ -77,27 +65,31 @@ def test_order_does_not_change_a_bit(whole):
     rng = np.random.default_rng(3)
     i, j, k = (rng.permutation(n) for n in whole.overturned.shape)
     shuffled = overturns(
-        [BODIES[n] for n in i], [MOTIONS[n] for n in j], CASES.DT, SCALES[j][:, k], threads=1
+        [BODIES[n] for n in i],
+        [MOTIONS[n] for n in j],
+        benchmark_cases.DT,
+        SCALES[j][:, k],
+        threads=1,
     )
     same(picked(whole, *np.ix_(i, j, k)), shuffled)
 
 
 def test_each_case_alone_gives_the_bits_it_gives_in_company(whole):
     for i, j, k in ((0, 1, 2), (1, 0, 1), (4, 2, 0), (9, 3, 2)):
-        alone = overturns(BODIES[i], MOTIONS[j], CASES.DT, SCALES[j, k : k + 1])
+        alone = overturns(BODIES[i], MOTIONS[j], benchmark_cases.DT, SCALES[j, k : k + 1])
         same(picked(whole, np.s_[i : i + 1], np.s_[j : j + 1], np.s_[k : k + 1]), alone)
 
 
 def test_a_body_that_needs_shorter_steps_changes_no_other(whole):
     small = Block(width=0.01, height=0.04, mass=0.01)
-    more = overturns([small, *BODIES], MOTIONS, CASES.DT, SCALES, threads=1)
+    more = overturns([small, *BODIES], MOTIONS, benchmark_cases.DT, SCALES, threads=1)
     same(whole, picked(more, np.s_[1:]))
 
 
 def test_a_block_on_an_immovable_pedestal_is_a_lone_block():
     pedestal = Block(width=50.0, height=1.0, mass=1e9)
     kinds = [LONE, [Stack(pedestal, block) for block in LONE]]
-    lone, on_top = (overturns(kind, MOTIONS, CASES.DT, SCALES) for kind in kinds)
+    lone, on_top = (overturns(kind, MOTIONS, benchmark_cases.DT, SCALES) for kind in kinds)
     assert (lone.overturned == on_top.overturned).all()
     assert set(np.unique(on_top.overturned_body)) == {0, 2}
 
@@ -110,7 +102,7 @@ def test_single_simulations_of_blocks_agree_in_verdicts_and_peaks(whole):
             continue
         for j in range(2):
             for k in range(SCALES.shape[1]):
-                response = simulate(body, SCALES[j, k] * MOTIONS[j], CASES.DT)
+                response = simulate(body, SCALES[j, k] * MOTIONS[j], benchmark_cases.DT)
                 at = (i, j, k)
                 near = whole.closest_approach[at] < 1e-3
                 assert near or response.overturned == whole.overturned[at]
@@ -120,7 +112,7 @@ def test_single_simulations_of_blocks_agree_in_verdicts_and_peaks(whole):
                 pole = [body.critical_angle(s) for s in (1, -1)]
                 peak = max(top.max() / pole[0], -top.min() / pole[1])
                 # between samples a flight rises by at most (p dt)² α / 4 above them
-                between = (body.frequency() * CASES.DT) ** 2 / 4 + 1e-6
+                between = (body.frequency() * benchmark_cases.DT) ** 2 / 4 + 1e-6
                 assert peak - 1e-6 <= whole.peak_rotation[at] <= peak + between
                 assert whole.peak_velocity[at] >= np.abs(response.omega).max() - 1e-6
                 checked += 1
@@ -136,8 +128,8 @@ def test_single_simulations_of_stacks_agree_in_verdicts_and_peaks():
                 start = int(np.argmax(np.abs(scale * motion) > 2.0))
                 # with still ground at its end, as an ensemble stops when nothing can fall any more
                 part = np.append(scale * motion[start : start + 400], np.zeros(500))
-                response = simulate(body, part, CASES.DT)
-                one = overturns(body, part, CASES.DT, [1.0])
+                response = simulate(body, part, benchmark_cases.DT)
+                one = overturns(body, part, benchmark_cases.DT, [1.0])
                 if one.closest_approach[0, 0, 0] < 0.02:
                     continue
                 assert response.overturned == one.overturned[0, 0, 0]
@@ -156,16 +148,18 @@ def test_single_simulations_of_stacks_agree_in_verdicts_and_peaks():
 def test_nothing_happens_below_the_static_threshold():
     block = LONE[0]
     scale = 0.999 * np.tan(block.alpha)
-    result = overturns(block, MOTIONS, CASES.DT, [scale])
+    result = overturns(block, MOTIONS, benchmark_cases.DT, [scale])
     assert not result.overturned.any()
     assert (result.impacts == 0).all()
     assert (result.peak_rotation == 0).all()
 
 
 def test_an_ensemble_of_motions_gives_a_table():
-    motions = [Motion(values, CASES.DT, name=str(i)) for i, values in enumerate(MOTIONS[:2])]
+    motions = [
+        Motion(values, benchmark_cases.DT, name=str(i)) for i, values in enumerate(MOTIONS[:2])
+    ]
     result = overturns(BODIES[:3], motions, scales=SCALES[:2])
-    same(result, overturns(BODIES[:3], MOTIONS[:2], CASES.DT, SCALES[:2]))
+    same(result, overturns(BODIES[:3], MOTIONS[:2], benchmark_cases.DT, SCALES[:2]))
     table = result.table()
     assert len(table) == result.overturned.size
     row = table[(table["body"] == 2) & (table["motion"] == 1)].iloc[2]
@@ -179,13 +173,19 @@ def test_cases_with_a_start_of_their_own_end_as_single_simulations_do(linear):
     bodies = [LONE[1], STACKS[0]]
     theta0, omega0 = [0.3 * LONE[1].alpha, (0.0, 0.02)], [None, (0.0, -0.1)]
     found = overturns(
-        bodies, MOTIONS[:2], CASES.DT, [0.2, 0.6], theta0=theta0, omega0=omega0, linear=linear
+        bodies,
+        MOTIONS[:2],
+        benchmark_cases.DT,
+        [0.2, 0.6],
+        theta0=theta0,
+        omega0=omega0,
+        linear=linear,
     )
     for i, j, k in np.ndindex(found.overturned.shape):
         response = simulate(
             bodies[i],
             (0.2, 0.6)[k] * MOTIONS[j],
-            CASES.DT,
+            benchmark_cases.DT,
             theta0=theta0[i],
             omega0=omega0[i],
             linear=linear,

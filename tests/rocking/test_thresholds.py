@@ -1,9 +1,8 @@
 """Thresholds to a tolerance, survival windows, and verdicts that hang on the step."""
 
-import importlib.util
 import math
-from pathlib import Path
 
+import cases as benchmark_cases
 import numpy as np
 import pytest
 
@@ -15,18 +14,6 @@ from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.thresholds import find_thresholds
 
 G = 9.81
-
-
-def benchmark_cases():
-    """The module that makes the random cases of the benchmarks."""
-    path = Path(__file__).parents[2] / "benchmarks" / "cases.py"
-    spec = importlib.util.spec_from_file_location("benchmark_cases", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-CASES = benchmark_cases()
 
 
 def one_sine() -> tuple[Block, np.ndarray, float]:
@@ -69,7 +56,7 @@ def test_a_window_narrower_than_promised_can_be_missed_and_a_finer_grid_finds_it
 
 @pytest.fixture(scope="module")
 def ensemble():
-    return CASES.blocks(4, seed=2), [m[:2500] for m in CASES.motions(3, seed=2)]
+    return benchmark_cases.blocks(4, seed=2), [m[:2500] for m in benchmark_cases.motions(3, seed=2)]
 
 
 def test_thresholds_are_those_of_a_fine_grid(ensemble):
@@ -139,7 +126,7 @@ def test_thresholds_do_not_depend_on_threads(ensemble):
 def test_a_block_that_nothing_topples_has_no_threshold():
     found = find_thresholds(
         Block(10.0, 10.0, 1.0),
-        CASES.motions(1, 3)[0],
+        benchmark_cases.motions(1, 3)[0],
         0.01,
         0.9,
         tolerance=0.1,
@@ -169,7 +156,7 @@ def test_scattered_cases_have_the_verdicts_of_the_grid(ensemble):
 @pytest.mark.parametrize(("kind", "gate"), [("lone", 0.001), ("stack", 0.005)])
 @pytest.mark.parametrize("count", [1000, pytest.param(10_000, marks=pytest.mark.slow, id="10000")])
 def test_few_verdicts_change_when_the_step_is_halved(kind, gate, count):
-    cases = CASES.cases(kind, count)
+    cases = benchmark_cases.cases(kind, count)
     fragile = fragile_verdicts(
         cases.bodies, cases.accelerations, cases.dt, cases.scales, sample=cases.count
     )
@@ -180,7 +167,7 @@ def test_few_verdicts_change_when_the_step_is_halved(kind, gate, count):
 
 def test_verdicts_taken_with_long_steps_are_fragile():
     """The count is not zero by construction: steps of p h up to 1 leave more verdicts open."""
-    cases = CASES.cases("lone", 1000)
+    cases = benchmark_cases.cases("lone", 1000)
     rough = [motion[::10] for motion in cases.accelerations]
     fragile = fragile_verdicts(cases.bodies, rough, 0.1, cases.scales, sample=1000, step=3.0)
     assert fragile.share > 0.005

@@ -44,7 +44,7 @@ LANE = np.dtype(
         # extremes so far: of θ/θcritical, |θ2'|, and distance from balance squared
         ("ratio1", _F, LANES), ("ratio2", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
         ("flag", _F, LANES),
-        # time of its event in the step, and whether ground and interface close then
+        # time of its event in the step, whether ground and interface close then (numba has no rows of booleans)
         ("when", _F, LANES), ("closes1", np.int64, LANES), ("closes2", np.int64, LANES),
         # these where the step began
         ("was_theta1", _F, LANES), ("was_omega1", _F, LANES),
