@@ -43,10 +43,10 @@ __getattr__ = loader(
     {
         "Motion": "rockfrag.records.motion",
         "read_motion": "rockfrag.records.read",
-        "Block": "rockfrag.rocking.bodies",
+        "Block": "rockfrag.system.blocks",
         "EnsembleResult": "rockfrag.rocking.ensemble",
         "Response": "rockfrag.rocking.response",
-        "Stack": "rockfrag.rocking.bodies",
+        "Stack": "rockfrag.system.blocks",
         "overturns": "rockfrag.rocking.ensemble",
         "simulate": "rockfrag.rocking.simulation",
     },

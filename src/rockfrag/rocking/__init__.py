@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from rockfrag._lazy import loader
 
 if TYPE_CHECKING:
-    from rockfrag.rocking.bodies import Block, Body, Stack
     from rockfrag.rocking.ensemble import EnsembleResult, overturns
     from rockfrag.rocking.measured_restitution import MeasuredRestitution
     from rockfrag.rocking.parquet import stream_histories, stream_overturns
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from rockfrag.rocking.step_sensitivity import FragileVerdicts, fragile_verdicts
     from rockfrag.rocking.sureness import verdict_sureness
     from rockfrag.rocking.thresholds import Thresholds, find_thresholds
+    from rockfrag.system.blocks import Block, Body, Stack
 
 __all__ = [
     "Block",
@@ -47,7 +47,6 @@ __all__ = [
 ]
 
 _HOMES = {
-    "bodies": ("Block", "Body", "Stack"),
     "ensemble": ("EnsembleResult", "overturns"),
     "measured_restitution": ("MeasuredRestitution",),
     "parquet": ("stream_histories", "stream_overturns"),
@@ -66,5 +65,7 @@ _HOMES = {
 }
 
 __getattr__ = loader(
-    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
+    __name__,
+    {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
+    | dict.fromkeys(("Block", "Body", "Stack"), "rockfrag.system.blocks"),
 )
