@@ -104,3 +104,54 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
             f"{GRAVITY:g}"
         )
     return ""
+
+
+def body_warning(width: float, height: float, mass: float, cg_height: float, inertia: float) -> str:
+    """Say that a body looks as if it were in other units, or return an empty text.
+
+    Parameters
+    ----------
+    width, height
+        Width of the base and height [m].
+    mass
+        Mass [kg].
+    cg_height
+        Height of the centre of gravity above the base [m].
+    inertia
+        Moment of inertia about the centre of gravity [kg m²].
+    """
+    if cg_height > height:
+        return f"a centre of gravity {cg_height:g} m above the base lies above the body, {height:g} m high"
+    uniform = mass * (width * width + height * height) / 12
+    if not INERTIAS[0] * uniform <= inertia <= INERTIAS[1] * uniform:
+        return (
+            f"a moment of inertia of {inertia:.3g} kg m² is far from that of a uniform block, {uniform:.3g}; "
+            "check the units"
+        )
+    try:
+        check_density(width, height, mass)
+    except InputError as error:
+        return str(error)
+    return size_warning(width, height)
+
+
+INERTIAS = (1e-3, 100.0)
+"""Least and largest moment of inertia over that of a uniform block of the body's size."""
+
+
+def gravity_warning(g: float) -> str:
+    """Say that an acceleration of gravity [m/s²] looks like one in cm/s², or return an empty text."""
+    if g <= LARGEST_GRAVITY:
+        return ""
+    return f"an acceleration of gravity of {g:g} m/s² is that of no planet; if it is in cm/s², divide it by 100"
+
+
+LARGEST_GRAVITY = 100.0
+"""Largest acceleration of gravity that is no mistake of unit [m/s²]."""
+
+
+def interval_warning(dt: float) -> str:
+    """Say that a sampling interval [s] is too long for strong motion, or return an empty text."""
+    if dt <= LONGEST_STEP:
+        return ""
+    return f"a sampling interval of {dt:g} s is too long for strong motion; check its unit"

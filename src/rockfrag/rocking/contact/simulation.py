@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.kernels.single import GRAZING_SPEED
+from rockfrag.engines.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
+from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.input_checks import positive_number
 from rockfrag.rocking.contact._body import contact_body, posed, working_memory
 from rockfrag.rocking.contact._march import (
@@ -25,17 +27,8 @@ from rockfrag.rocking.contact._march import (
     march,
 )
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
-from rockfrag.rocking.inputs import (
-    STEP,
-    MotionLike,
-    checked_motion,
-    checked_start,
-    checked_vertical,
-    free_samples,
-    step_count,
-)
-from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
-from rockfrag.system.blocks import Block, Body
+from rockfrag.rocking.inputs import MotionLike, checked_motion, checked_start, checked_vertical
+from rockfrag.system.blocks import Body, as_system
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -80,10 +73,39 @@ def simulate_with_friction(
     InputError
         If an argument cannot be used; the message says which and why.
     """
+    return contact_history(
+        body,
+        acceleration,
+        dt,
+        friction=friction,
+        vertical=vertical,
+        theta0=theta0,
+        omega0=omega0,
+        g=g,
+        step=step,
+        closing=closing,
+    )[0]
+
+
+def contact_history(
+    body: Body,
+    acceleration: ArrayLike,
+    dt: float,
+    *,
+    friction: FrictionInput,
+    vertical: MotionLike | None = None,
+    theta0: float | Sequence[float] | None = None,
+    omega0: float | Sequence[float] | None = None,
+    g: float = GRAVITY,
+    step: float = STEP,
+    closing: float = CLOSING,
+) -> tuple[Response, bool]:
+    """Simulate as :func:`simulate_with_friction`; also say whether a contact slid or opened as a whole."""
     values, interval = checked_motion(acceleration, dt)
     up = checked_vertical(vertical, values, interval)
     positive_number("g", g, "m/s²")
     p = contact_body(body, interface_frictions(body, friction), g)
+    system = as_system(body)
     blocks = int(p["count"])
     start = posed(p, checked_start(body, theta0, "theta0"), checked_start(body, omega0, "omega0"))
     substeps, free = int(step_count(body, interval, g, step)), int(free_samples(body, interval, g))
@@ -104,12 +126,12 @@ def simulate_with_friction(
     speeds = history[:, 6:12].reshape(done, 2, 3)[:, :blocks]
     modes = [_modes(number, blocks) for number in history[:, 21]]
     fallen = int(work["fallen"])
-    names = ("", "block") if isinstance(body, Block) else ("", "pedestal", "statue")
     table = _event_table(events, blocks)
     ground = np.zeros(done)
     ground[: min(done, values.size)] = values[:done]
-    return Response(
-        body=body,
+    loose = work["slid"].max() > 0 or np.any(work["flights"]) or work["paradoxes"] > 0
+    response = Response(
+        system=system,
         time=time,
         ground_acceleration=ground,
         position=centres[:, :, :2],
@@ -121,7 +143,7 @@ def simulate_with_friction(
         slip=history[:, 12 : 12 + blocks],
         events=table,
         overturned=fallen > 0,
-        overturned_body=names[fallen],
+        overturned_body=("", *system.names)[fallen],
         overturning_time=float(fall),
         energy=_energy_table(p, time, history, events),
         normal_force=history[:, 14 : 14 + blocks],
@@ -134,8 +156,9 @@ def simulate_with_friction(
         lost_contact=math.nan,
         paradoxes=int(work["paradoxes"]),
         forced=int(work["forced"]),
-        closest_approach=float("nan"),
+        unstable_distance=float("nan"),
     )
+    return response, bool(loose)
 
 
 def _modes(number: float, blocks: int) -> Modes:
@@ -210,6 +233,8 @@ def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.
     for row, mine in enumerate((by_ground, ~by_ground)):
         np.add.at(lost[row], at, loss * mine)
     ground, interface = np.cumsum(lost, axis=1)[:, : time.size]
+    # of a lone block all impacts are the ground's
+    each = [ground, interface] if blocks == 2 else [ground + interface]
     work, rubbed = history[:, 18], history[:, 19]
     start = kinetic[0] + potential[0] + ground[0] + interface[0]
     return pd.DataFrame(
@@ -218,8 +243,7 @@ def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.
             "kinetic": kinetic,
             "potential": potential,
             "input": work,
-            "lost_ground": ground,
-            "lost_interface": interface,
+            **{f"lost_contact_{k + 1}": lost for k, lost in enumerate(each)},
             "lost_friction": rubbed,
             "residual": kinetic + potential + ground + interface + rubbed - work - start,
         }
