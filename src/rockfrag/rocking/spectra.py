@@ -58,6 +58,19 @@ def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
     Its size follows from p = √(3g/4R) (thesis eq. 2.17); its density is 1000 kg/m³ for a depth of
     1 m, which matters to nothing.
 
+    Parameters
+    ----------
+    alpha
+        Critical angle [rad].
+    period
+        2π/p [s].
+    g
+        Acceleration of gravity [m/s²].
+
+    Returns
+    -------
+    The block.
+
     Raises
     ------
     InputError
