@@ -56,7 +56,9 @@ def test_contour_is_where_the_probability_has_its_level_and_limits_hold_it():
         across, *_ = fit.contour(p, value, of=1)
         assert across == pytest.approx(second)
     low, high = fit.band(1.0, second)
-    assert (low < fit.probability(1.0, second)).all() and (fit.probability(1.0, second) < high).all()
+    assert (low < fit.probability(1.0, second)).all() and (
+        fit.probability(1.0, second) < high
+    ).all()
 
 
 def test_probability_in_one_measure_is_the_mean_over_the_records():
@@ -69,7 +71,9 @@ def test_probability_in_one_measure_is_the_mean_over_the_records():
 def test_interaction_is_found_where_there_is_one_and_kept_in_the_fit():
     table = laboratory(np.random.default_rng(4), 40, interaction=0.8)
     fit = fit_vector(table, MEASURES)
-    assert fit.interaction.kept and fit.interaction.p < 0.01 and fit.interaction.likelihood_ratio > 10
+    assert (
+        fit.interaction.kept and fit.interaction.p < 0.01 and fit.interaction.likelihood_ratio > 10
+    )
     assert len(fit.surface.coefficients) == 4
     value, *_ = fit.contour(0.5, [1.3])
     assert fit.probability(value, 1.3) == pytest.approx(0.5)
@@ -117,7 +121,7 @@ def test_nonparametric_surface_rises_both_ways_and_keeps_the_number_overturned()
     assert (surface["probability"] * surface["tests"]).sum() == pytest.approx(
         table["overturned"].sum(), rel=1e-6
     )
-    wide = surface.pivot(index=MEASURES[0], columns=MEASURES[1], values="probability").to_numpy()
+    wide = surface.pivot_table("probability", MEASURES[0], MEASURES[1]).to_numpy()
     for rows in (wide, wide.T):
         for values in rows:
             assert (np.diff(values[~np.isnan(values)]) >= -1e-6).all()

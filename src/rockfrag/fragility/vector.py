@@ -2,8 +2,8 @@
 
 Tests under motions of one earthquake depend on each other.  Every statement here therefore takes the earthquake as
 the unit: limits by a jackknife that leaves out an earthquake at a time (Tukey 1958), and a score test of the
-interaction whose contributions are summed by earthquake (Cameron and Miller 2015, sec. VI).  A likelihood-ratio test
-that counts tests as independent finds an interaction that is not there in 7 to 16 of 100 laboratories
+interaction whose contributions are summed by earthquake (Cameron and Miller 2015, sec. VI).  A likelihood-ratio
+test that counts tests as independent finds an interaction that is not there in 7 to 16 of 100 laboratories
 (``docs/fragility.md``).
 """
 
@@ -42,8 +42,8 @@ class Interaction:
     Attributes
     ----------
     p
-        p value of no interaction, score test with contributions summed by earthquake [-]; NaN with fewer than three
-        earthquakes.
+        p value of no interaction, score test with contributions summed by earthquake [-]; NaN with fewer than
+        three earthquakes.
     likelihood_ratio
         2 ln (L with / L without) [-]; tests counted as independent, for comparison with other programs.
     score_gain
@@ -122,8 +122,8 @@ class VectorFragility:
         Returns
         -------
         value, lower, upper
-            The contour and its limits, each of shape (n,); NaN where the probability does not rise with the measure,
-            limits of 0 and infinity where the earthquakes set none.
+            The contour and its limits, each of shape (n,); NaN where the probability does not rise with the
+            measure, limits of 0 and infinity where the earthquakes set none.
         """
         other = np.log(np.atleast_1d(np.asarray(second, dtype=np.float64)))
         centre = _log_contour(
@@ -155,7 +155,7 @@ class VectorFragility:
         return np.asarray(self.probability(x, y) @ w / w.sum())
 
     def _half_width(self, left_out: Floats) -> Floats:
-        """Half the width of the limits of values, from those without one earthquake each; infinite without limits."""
+        """Half the width of limits, from values without one earthquake each; infinite where there are none."""
         if len(left_out) < 2:
             return np.full(left_out.shape[1], np.inf)
         half = student(self.level, len(left_out)) * jackknife_error(left_out)
@@ -219,7 +219,9 @@ def fit_vector(
     interaction = _interaction(table, plain, logs, outcome, group, overturned, source)
     surface = plain
     if interaction.kept:
-        surface = fit_surface(table, measures, interaction=True, overturned=overturned, source=source)
+        surface = fit_surface(
+            table, measures, interaction=True, overturned=overturned, source=source
+        )
     design = design_of(logs, interaction.kept)
     groups = int(group.max()) + 1
     replicates = _replicates(design, outcome, group)
@@ -265,7 +267,9 @@ def _interaction(
     if np.linalg.matrix_rank(design) < 4 or "penalised" in plain.method:
         return nothing
     p = interaction_p(np.array(plain.coefficients), design, outcome, group)
-    full = fit_surface(table, plain.measures, interaction=True, overturned=overturned, source=source)
+    full = fit_surface(
+        table, plain.measures, interaction=True, overturned=overturned, source=source
+    )
     ratio = 2.0 * (full.log_likelihood - plain.log_likelihood)
     ones = np.ones(outcome.size)
     predictors = design[:, 1:]
@@ -280,10 +284,10 @@ def _interaction(
 def interaction_p(
     coefficients: Floats, design: Floats, outcome: Floats, group: NDArray[np.intp]
 ) -> float:
-    """p value of the last column of a probit design, by a score test over groups of dependent tests [-].
+    """P value of the last column of a probit design, by a score test over groups of dependent tests [-].
 
-    The efficient score of the last column, with what the others explain of it taken out, is summed by group; Student's
-    t of these sums has one degree of freedom less than there are groups.
+    The efficient score of the last column, with what the others explain of it taken out, is summed by group;
+    Student's t of these sums has one degree of freedom less than there are groups.
 
     Parameters
     ----------
@@ -333,7 +337,8 @@ def _notes(surface: FragilitySurface, replicates: Floats, groups: int) -> tuple[
         slopes = replicates[:, 1 + at]
         if surface.coefficients[1 + at] <= 0:
             notes.append(
-                f"The probability does not rise with {name_and_unit(column)[0]} at given other measure; there is no "
+                f"The probability does not rise with {name_and_unit(column)[0]} at given other measure; there "
+                f"is no "
                 "contour in it."
             )
         elif len(slopes) and (slopes <= 0).any():

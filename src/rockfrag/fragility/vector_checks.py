@@ -1,4 +1,4 @@
-"""What stands beside a fragility in two measures: does it describe the outcomes, and what do these say without it?"""
+"""What stands beside a fragility in two measures: a test of fit, and what the outcomes say without it."""
 
 from dataclasses import dataclass
 
@@ -42,8 +42,8 @@ class VectorChecks:
         A row per bin of the fitted probability: ``tests``, ``predicted``, ``observed``, ``observed_lower``,
         ``observed_upper`` (90 % binomial limits).
     surface
-        A row per cell of the two measures that has tests: the measures' columns (geometric means of the cell's row and
-        column), ``tests``, ``overturned``, ``probability`` (rising in both measures) and ``fitted``.
+        A row per cell of the two measures that has tests: the measures' columns (geometric means of the cell's
+        row and column), ``tests``, ``overturned``, ``probability`` (rising in both measures) and ``fitted``.
     """
 
     p_fit: float
@@ -141,7 +141,7 @@ def _surface_table(fit: VectorFragility, logs: list[Floats], outcome: Floats) ->
     flat = row * shape[1] + column
     tests = np.bincount(flat, minlength=first.size * second.size).reshape(shape)
     fell = np.bincount(flat, outcome, minlength=first.size * second.size).reshape(shape)
-    probability = monotone_probability(fell, tests.astype(np.float64))
+    probability = monotone_probability(fell.astype(np.float64), tests.astype(np.float64))
     i, j = np.nonzero(tests)
     x, y = np.exp(first[i]), np.exp(second[j])
     return pd.DataFrame(

@@ -7,12 +7,4 @@ likely (Baker, Abrahamson, Whitney, Board and Hanks 2013, Bull. Seism. Soc. Am. 
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
-    __name__,
-    submod_attrs={
-        "branches": ["Branch", "mean_curve", "read_branches"],
-        "evidence": ["Age", "StandingObject"],
-        "reweight": ["Reweighted", "reweight"],
-        "site": ["Site", "read_site"],
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,9 +1,10 @@
 """Branches of a hazard model: a logic tree's end branches, each with its weight and a hazard curve a measure.
 
-Two ways to give them: OpenQuake's exports (``realizations_….csv`` and a file of hazard curves for each realization,
-``hazard_curve-rlz-000-PGA_….csv``), or plain tables with the columns ``branch``, ``weight``, a level (``pga_g``,
-``pgv_cm_s``, ``sa_0_3s_g``) and how often it is exceeded (``annual_rate``, ``return_period_years`` or such as
-``poe_50_years``), a row a level; a second table may give another measure of the same branches.
+Two ways to give them: OpenQuake's exports (``realizations_….csv`` and a file of hazard curves for each
+realization, ``hazard_curve-rlz-000-PGA_….csv``), or plain tables with the columns ``branch``, ``weight``, a
+level (``pga_g``, ``pgv_cm_s``, ``sa_0_3s_g``) and how often it is exceeded (``annual_rate``,
+``return_period_years`` or such as ``poe_50_years``), a row a level; a second table may give another measure of
+the same branches.
 """
 
 import math
@@ -76,7 +77,9 @@ def read_branches(
     found = _of_openquake(paths, realizations) if realizations else _of_tables(paths)
     where = str(realizations or paths[0])
     if len(found) > MOST_BRANCHES:
-        raise InputError(f"{where}: {len(found)} branches are more than the {MOST_BRANCHES} allowed.")
+        raise InputError(
+            f"{where}: {len(found)} branches are more than the {MOST_BRANCHES} allowed."
+        )
     _check(found, where)
     total = sum(branch.weight for branch in found)
     return [Branch(b.name, b.weight / total, b.curves) for b in found]
@@ -91,13 +94,15 @@ def _check(branches: Sequence[Branch], where: str) -> None:
     total = sum(branch.weight for branch in branches)
     if abs(total - 1.0) > WEIGHT_ERROR:
         raise InputError(
-            f"{where}: the weights of the {len(branches)} branches sum to {total:.6g} and not to 1; give every end "
+            f"{where}: the weights of the {len(branches)} branches sum to {total:.6g} and not to 1; give every "
+            f"end "
             "branch once."
         )
     for branch in branches[1:]:
         if set(branch.curves) != set(branches[0].curves):
             raise InputError(
-                f"{where}: branch {branch.name[:60]} has curves of {_names(branch)}, branch {branches[0].name[:60]} "
+                f"{where}: branch {branch.name[:60]} has curves of {_names(branch)}, branch "
+                f"{branches[0].name[:60]} "
                 f"of {_names(branches[0])}; give the same measures for all."
             )
 
@@ -118,7 +123,9 @@ def _of_tables(paths: Sequence[str | os.PathLike[str]]) -> list[Branch]:
                 )
             of_branch = curves.setdefault(name, {})
             if curve.measure in of_branch:
-                raise InputError(f"{path}: {curve.measure.name} of branch {name[:60]} is given twice.")
+                raise InputError(
+                    f"{path}: {curve.measure.name} of branch {name[:60]} is given twice."
+                )
             of_branch[curve.measure] = curve
     return [Branch(name, weight, curves[name]) for name, weight in weights.items()]
 
@@ -140,13 +147,18 @@ def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]
     for row in read_rows(path, header, least=2):
         name, weight = row.text("branch"), row.number("weight")
         if weights.setdefault(name, weight) != weight:
-            raise row.error("weight", f"branch {name} has the weight {weights[name]:g} in an earlier row")
+            raise row.error(
+                "weight", f"branch {name} has the weight {weights[name]:g} in an earlier row"
+            )
         points.setdefault(name, []).append((row.positive(levels[0]) * factor, row.number(rates[0])))
     found = {}
     for name, pairs in points.items():
         x, y = zip(*sorted(pairs), strict=True)
         where = f"{path}, branch {name[:60]}"
-        found[name] = (weights[name], make_curve(measure, x, annual_rates(rates[0], list(y), where), where))
+        found[name] = (
+            weights[name],
+            make_curve(measure, x, annual_rates(rates[0], list(y), where), where),
+        )
     return found
 
 
@@ -167,7 +179,9 @@ def _of_openquake(
             raise InputError(f"{path}: realization {number} is not in {realizations}.")
         curve = openquake_csv.read_curve(read_text(path, LARGEST_FILE), str(path))
         if curve.measure in curves[number]:
-            raise InputError(f"{path}: {curve.measure.name} of realization {number} is given twice.")
+            raise InputError(
+                f"{path}: {curve.measure.name} of realization {number} is given twice."
+            )
         curves[number][curve.measure] = curve
     return [Branch(names[number], weights[number], curves[number]) for number in weights]
 
@@ -202,7 +216,8 @@ def _realization_of(path: str | os.PathLike[str]) -> int:
     found = _RLZ.search(head) or _RLZ.search(Path(path).name)
     if found is None:
         raise InputError(
-            f"{path}: neither its first line nor its name says which realization it is of (such as rlz-003); export "
+            f"{path}: neither its first line nor its name says which realization it is of (such as rlz-003); "
+            f"export "
             "with individual_rlzs = true."
         )
     return int(found[1])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import special, stats
 
 from rockfrag.assess.hazard.measure import PGA, PGV, Measure
-from rockfrag.survival.rates import ShakingRates
+from rockfrag.survival.rates import VELOCITY_PER_G, ShakingRates
 
 Floats = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ class Age:
             age = self.low * np.exp(self.sd_ln * special.ndtri(uniform))
         else:
             age = self.low + uniform * (self.high - self.low)
-        return np.minimum(age, self.fragile_for)
+        return np.asarray(np.minimum(age, self.fragile_for), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,11 @@ class StandingObject:
         c0, c1 = self.coefficients[:2]
         wide = TAIL * (1 / c1 + self.sd_ln)
         # the second measure moves the median by as much as PGV/PGA of 0.02 to 0.5 s may
-        aside = [self.coefficients[2] * math.log(r) for r in (0.02, 0.5)] if len(self.coefficients) > 2 else [0.0]
+        aside = (
+            [self.coefficients[2] * math.log(r) for r in (0.02, 0.5)]
+            if len(self.coefficients) > 2
+            else [0.0]
+        )
         middle = [-(c0 + shift) / c1 for shift in aside]
         return math.exp(min(middle) - wide), math.exp(max(middle) + wide)
 
@@ -97,7 +101,7 @@ class StandingObject:
         if len(c) == 2:
             return np.asarray(c[0] + c[1] * np.log(shaking.values[self.measure]))
         pga, pgv = shaking.values[PGA], shaking.values[PGV]
-        return np.asarray(c[0] + c[1] * np.log(pga) + c[2] * np.log(pgv / (980.665 * pga)))
+        return np.asarray(c[0] + c[1] * np.log(pga) + c[2] * np.log(pgv / (VELOCITY_PER_G * pga)))
 
     def probability(self, index: Floats, error: float) -> Floats:
         """Probability of toppling where the object withstands exp(error) times the shaking estimated."""
@@ -109,9 +113,7 @@ def lognormal_coefficients(theta: float, beta: float) -> tuple[float, float]:
     return -math.log(theta) / beta, 1.0 / beta
 
 
-def draw_errors(
-    objects: int, shared: float, samples: int, seed: int = 0
-) -> tuple[Floats, Floats]:
+def draw_errors(objects: int, shared: float, samples: int, seed: int = 0) -> tuple[Floats, Floats]:
     """Draw errors of fragilities and positions in ages, evenly spread (Sobol).
 
     Parameters

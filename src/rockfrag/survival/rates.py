@@ -1,6 +1,6 @@
 """How often a site sees shaking near given levels: a hazard curve as weights of points in one or two measures."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +9,15 @@ from numpy.typing import NDArray
 from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.hazard.measure import PGA, PGV, Measure
 from rockfrag.errors import InputError
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 Floats = NDArray[np.float64]
 
 GRID = 600
 """Levels on which a hazard curve is integrated."""
+
+VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
+"""PGV over (PGA times PGV/PGA): cm/s for g and s."""
 
 NODES = 15
 """Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration."""
@@ -37,15 +41,15 @@ class VelocityRelation:
 
 @dataclass(frozen=True)
 class ShakingRates:
-    """Points of shaking with the annual rate that each stands for.
+    """Points of shaking with the annual rates that they stand for in each branch of the hazard.
 
     Attributes
     ----------
     values
         Value of each measure at each point, in the measure's unit, shape (points,).
     rates
-        Annual rate of each point [1/year], shape (points,).  Their sum over points above a level is how often that
-        level is exceeded.
+        Annual rate of each point [1/year], shape (branches, points).  Their sum over points above a level is
+        how often that level is exceeded.
     """
 
     values: Mapping[Measure, Floats]
@@ -55,8 +59,8 @@ class ShakingRates:
 def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
     """Weights with which a function that is linear in ln level is integrated over a hazard curve [1/year].
 
-    ∫ P(x) |dν(x)| from the first level on, where ν is a power law between levels and P stays as it is above the last
-    one, is the sum of P at the levels times these weights.
+    ∫ P(x) |dν(x)| from the first level on, where ν is a power law between levels and P stays as it is above the
+    last one, is the sum of P at the levels times these weights.
 
     Parameters
     ----------
@@ -81,23 +85,23 @@ def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
 
 
 def shaking_rates(
-    curves: Mapping[Measure, HazardCurve],
+    branches: Sequence[Mapping[Measure, HazardCurve]],
     wanted: set[Measure],
     velocity: VelocityRelation | None,
     reach: tuple[float, float],
 ) -> ShakingRates:
-    """Points of shaking of one branch of the hazard in all measures that the objects are sensitive to.
+    """Points of shaking at a site in all measures that the objects are sensitive to, the same for all branches.
 
     Parameters
     ----------
-    curves
-        Hazard curves of the branch by measure.
+    branches
+        Hazard curves of each branch by measure.
     wanted
         Measures of the objects' fragilities.
     velocity
-        PGV that comes with a PGA, where PGV is wanted and the branch has no curve of it, or both are wanted.
+        PGV that comes with a PGA, where PGV is wanted and the branches have no curve of it, or both are wanted.
     reach
-        Lowest and highest level of the curves' measure at which fragilities change, a range to be covered.
+        Lowest and highest level between which fragilities change, a range to be covered.
 
     Returns
     -------
@@ -109,37 +113,39 @@ def shaking_rates(
     InputError
         If a measure is in no curve and follows from none.
     """
-    if len(wanted) == 1 and next(iter(wanted)) in curves:
-        curve = curves[next(iter(wanted))]
-        levels = _grid(curve, reach)
-        return ShakingRates({curve.measure: levels}, rate_weights(curve, levels))
-    if wanted <= {PGA, PGV} and PGA in curves and velocity is not None:
-        return _with_velocity(curves[PGA], velocity, reach)
-    missing = sorted(measure.name for measure in wanted - set(curves)) or ["PGV that comes with PGA"]
+    measures = set(branches[0])
+    if len(wanted) == 1 and wanted <= measures:
+        (measure,) = wanted
+        levels, rates = _on_grid([curves[measure] for curves in branches], reach)
+        return ShakingRates({measure: levels}, rates)
+    if wanted <= {PGA, PGV} and PGA in measures and velocity is not None:
+        levels, rates = _on_grid([curves[PGA] for curves in branches], reach)
+        return _with_velocity(levels, rates, velocity)
+    missing = sorted(measure.name for measure in wanted - measures) or ["PGV that comes with PGA"]
     raise InputError(
         f"hazard: an object's fragility needs {' and '.join(missing)}, but the branches give "
-        f"{', '.join(measure.name for measure in curves)}; give velocity: {{median_s: …, sd_ln: …}}, the PGV/PGA of the site, "
-        "or a fragility in that measure."
+        f"{', '.join(sorted(measure.name for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
+        f"the "
+        "PGV/PGA of the site, or a fragility in that measure."
     )
 
 
-def _with_velocity(
-    curve: HazardCurve, velocity: VelocityRelation, reach: tuple[float, float]
-) -> ShakingRates:
-    levels = _grid(curve, reach)
-    nodes, share = np.polynomial.hermite_e.hermegauss(NODES)
+def _with_velocity(levels: Floats, rates: Floats, velocity: VelocityRelation) -> ShakingRates:
+    nodes, weight = np.polynomial.hermite_e.hermegauss(NODES)
     ratio = velocity.median_s * np.exp(velocity.sd_ln * nodes)
-    # PGA in g, PGV in cm/s
-    pgv = levels[:, np.newaxis] * 980.665 * ratio
-    rates = rate_weights(curve, levels)[:, np.newaxis] * (share / share.sum())
-    pga = np.broadcast_to(levels[:, np.newaxis], pgv.shape)
-    return ShakingRates({PGA: pga.ravel(), PGV: pgv.ravel()}, rates.ravel())
+    pga = np.repeat(levels, NODES)
+    pgv = VELOCITY_PER_G * (levels[:, np.newaxis] * ratio).ravel()
+    spread = rates[:, :, np.newaxis] * (weight / weight.sum())
+    return ShakingRates({PGA: pga, PGV: pgv}, spread.reshape(len(rates), -1))
 
 
-def _grid(curve: HazardCurve, reach: tuple[float, float]) -> Floats:
-    """Levels over a curve and the reach of the fragilities, with the curve's own among them."""
-    low, high = min(curve.levels[0], reach[0]), max(curve.levels[-1], reach[1])
-    return np.union1d(np.geomspace(low, high, GRID), curve.levels)
+def _on_grid(curves: Sequence[HazardCurve], reach: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Levels over all curves and the reach of the fragilities, and the rates that they stand for in each curve."""
+    known = np.concatenate([curve.levels for curve in curves])
+    grid = np.geomspace(min(known.min(), reach[0]), max(known.max(), reach[1]), GRID)
+    # a few hundred branches with levels of their own would make the grid needlessly fine
+    levels = np.union1d(grid, np.unique(known)) if np.unique(known).size <= GRID else grid
+    return levels, np.array([rate_weights(curve, levels) for curve in curves])
 
 
 def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floats:

@@ -4,10 +4,10 @@ The probability that all objects stand if branch i is true is
 
     S_i = E[exp(-∫ λ_i(t) dt)],    λ_i(t) = ∫ [1 - Π (1 - P_k(x))] |dν_i(x)|,
 
-with the product over the objects k that stood at time t, and the expectation over their ages and the errors of their
-fragilities, which may be correlated.  Objects at one site feel the same earthquakes: λ is the rate of earthquakes that
-topple at least one of them, not the sum of their own rates.  Objects far apart feel different earthquakes; their rates
-add up.  Weights afterwards are w_i S_i / Σ w_j S_j (Bayes; Baker and others 2013, eq. 8).
+with the product over the objects k that stood at time t, and the expectation over their ages and the errors of
+their fragilities, which may be correlated.  Objects at one site feel the same earthquakes: λ is the rate of
+earthquakes that topple at least one of them, not the sum of their own rates.  Objects far apart feel different
+earthquakes; their rates add up.  Weights afterwards are w_i S_i / Σ w_j S_j (Bayes; Baker and others 2013, eq. 8).
 """
 
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ from rockfrag.survival.rates import (
 
 Floats = NDArray[np.float64]
 
-SAMPLES = 2048
+SAMPLES = 1024
 """Draws of ages and errors of fragilities."""
 
 RATES = (1e-2, 1e-3, 1e-4, 1e-5)
@@ -110,8 +110,8 @@ class Reweighted:
 
         Returns
         -------
-        A row a rate: ``annual_rate``, ``level_before``, ``level_after`` (NaN beyond the curves), ``level_ratio``, and
-        ``rate_ratio``, by which the rate at the level before has changed.
+        A row a rate: ``annual_rate``, ``level_before``, ``level_after`` (NaN beyond the curves),
+        ``level_ratio``, and ``rate_ratio``, by which the rate at the level before has changed.
         """
         curves = self.curves(measure)
         log_level = np.log(curves["level"].to_numpy())
@@ -178,7 +178,9 @@ def reweight(
     if not objects:
         raise InputError("objects: give at least one that stands.")
     if not 0.0 <= shared_error <= 1.0:
-        raise InputError(f"shared_error: a correlation lies between 0 and 1, found {shared_error:g}.")
+        raise InputError(
+            f"shared_error: a correlation lies between 0 and 1, found {shared_error:g}."
+        )
     wanted = set().union(*(body.measures for body in objects))
     reach = (min(b.reach[0] for b in objects), max(b.reach[1] for b in objects))
     normal, uniform = draw_errors(len(objects), shared_error, samples)
@@ -186,12 +188,10 @@ def reweight(
     years = np.column_stack(
         [body.age.exposure(u) for body, u in zip(objects, uniform.T, strict=True)]
     )
-    log_survival = []
-    for branch in branches:
-        shaking = shaking_rates(branch.curves, wanted, velocity, reach)
-        expected = _expected_topplings(objects, shaking, errors, years, same_earthquakes)
-        log_survival.append(special.logsumexp(-expected) - np.log(samples))
-    return _weighted(tuple(branches), np.array(log_survival))
+    shaking = shaking_rates([branch.curves for branch in branches], wanted, velocity, reach)
+    expected = _expected_topplings(objects, shaking, errors, years, same_earthquakes)
+    log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
+    return _weighted(tuple(branches), np.asarray(log_survival))
 
 
 def _weighted(branches: tuple[Branch, ...], log_survival: Floats) -> Reweighted:
@@ -207,11 +207,11 @@ def _expected_topplings(
     years: Floats,
     same_earthquakes: bool,
 ) -> Floats:
-    """Expected number of earthquakes since the oldest stood that topple an object that stands, shape (samples,)."""
+    """Expected number of earthquakes that topple an object that stands, (samples, branches)."""
     indices = [body.index(shaking) for body in objects]
-    expected = np.zeros(len(errors))
+    expected = np.zeros((len(errors), len(shaking.rates)))
     for at, (error, exposure) in enumerate(zip(errors, years, strict=True)):
-        stands = np.ones(shaking.rates.size)
+        stands = np.ones(shaking.rates.shape[1])
         # from the object that has stood longest: each next one adds to what may topple since then
         order = np.argsort(-exposure, kind="stable")
         until = np.append(exposure[order[1:]], 0.0)
@@ -225,7 +225,9 @@ def _expected_topplings(
     return expected
 
 
-def scaled(objects: Sequence[StandingObject], capacity: float = 1.0, age: float = 1.0) -> list[StandingObject]:
+def scaled(
+    objects: Sequence[StandingObject], capacity: float = 1.0, age: float = 1.0
+) -> list[StandingObject]:
     """Objects that withstand a factor more shaking, or have stood a factor longer.
 
     Parameters
@@ -242,13 +244,18 @@ def scaled(objects: Sequence[StandingObject], capacity: float = 1.0, age: float 
         c = body.coefficients
         moved = (c[0] - c[1] * float(np.log(capacity)), *c[1:])
         ages = replace(
-            body.age, low=body.age.low * age, high=body.age.high * age, fragile_for=body.age.fragile_for * age
+            body.age,
+            low=body.age.low * age,
+            high=body.age.high * age,
+            fragile_for=body.age.fragile_for * age,
         )
         found.append(replace(body, coefficients=moved, age=ages))
     return found
 
 
-def mean_hazard(branches: Sequence[Branch], measure: Measure, weights: Floats, source: str) -> HazardCurve:
+def mean_hazard(
+    branches: Sequence[Branch], measure: Measure, weights: Floats, source: str
+) -> HazardCurve:
     """Mean hazard curve of branches under weights."""
     levels = common_levels(branches, measure)
     rates = weights @ np.array([branch.curves[measure].rate(levels) for branch in branches])
