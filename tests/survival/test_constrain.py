@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -95,7 +97,7 @@ def test_what_cannot_be_is_said_in_one_sentence(site, capsys, change, sentence):
 
 
 def test_objects_that_no_branch_lets_stand_are_said_to_be_at_odds(site, capsys):
-    write_branches(site.parent / "branches.csv", scale=100)
+    write_branches(site.parent / "branches.csv", scale=50)
     status, said = run(site, capsys)
     assert status == 2
     assert "in no branch" in said.err and "rock A" in said.err
@@ -141,3 +143,15 @@ def test_two_tables_give_two_measures_of_the_same_branches(tmp_path):
     table.to_csv(tmp_path / "pgv.csv", index=False)
     with pytest.raises(InputError, match="elsewhere"):
         read_branches([tmp_path / "pga.csv", tmp_path / "pgv.csv"])
+
+
+def test_the_example_of_the_documentation_runs_as_it_stands_there(tmp_path, monkeypatch, capsys):
+    document = Path(__file__).resolve().parents[2] / "docs" / "survival.md"
+    first, second = re.findall(r"```python\n(.*?)```", document.read_text(encoding="utf-8"), re.S)
+    monkeypatch.chdir(tmp_path)
+    exec(first, {})
+    assert main(["constrain", "site.yaml"]) == 0
+    assert "lower" in capsys.readouterr().out
+    exec(second, {})
+    table = capsys.readouterr().out
+    assert "weight_after" in table and "level_ratio" in table

@@ -5,7 +5,15 @@ from collections.abc import Hashable
 import numpy as np
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, WIDEST, figure_style, new_figure, plain_log
+from rockfrag.figure_style import (
+    BLUE,
+    COLUMN_WIDTH,
+    ORANGE,
+    WIDEST,
+    figure_style,
+    new_figure,
+    plain_log,
+)
 from rockfrag.survival.answer import Constrained
 
 MOST_BRANCHES_SHOWN = 20
@@ -80,4 +88,8 @@ def weights_figure(found: Constrained) -> Figure:
 
 def _short(name: str, number: Hashable) -> str:
     """Name of a branch that fits beside an axis: a long one by its place in the table and its end."""
-    return name if len(name) <= LONGEST_LABEL else f"row {int(str(number)) + 1}: …{name[8 - LONGEST_LABEL :]}"
+    return (
+        name
+        if len(name) <= LONGEST_LABEL
+        else f"row {int(str(number)) + 1}: …{name[8 - LONGEST_LABEL :]}"
+    )
