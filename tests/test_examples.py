@@ -11,8 +11,8 @@ import pytest
 import rockfrag
 from rockfrag import Block, Motion, Stack, find_thresholds, overturns, read_motion, simulate
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import UnlikelyBlock
 from rockfrag.rocking.inputs import UnitDoubt
+from rockfrag.system.blocks import UnlikelyBlock
 
 SUBPACKAGES = (
     *("", ".assess", ".building", ".campaign", ".fragility", ".motions", ".pedestal", ".records"),

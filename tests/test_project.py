@@ -53,7 +53,7 @@ def test_pre_commit_has_the_pinned_versions():
 
 SUBPACKAGES = (
     *("", ".assess", ".building", ".campaign", ".fragility", ".motions", ".pedestal", ".records"),
-    *(".rocking", ".shaketable"),
+    *(".rocking", ".shaketable", ".system"),
 )
 
 

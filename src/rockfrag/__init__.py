@@ -16,7 +16,9 @@ What is most used stands here; the rest is in the subpackages, and ``dir()`` of 
 records     read, write and list strong-motion records
 motions     filter, scale, rotate, measure; spectra, pulses, synthetic motions
 building    motions of the floors of a building
-rocking     bodies, single histories, ensembles, thresholds, rocking spectra
+system      what is shaken: bodies, contacts, blocks, stacks and columns
+outcomes    what comes out: tables of outcomes, limit states
+rocking     single histories, ensembles, thresholds, rocking spectra
 shaketable  what a shaking table can do, and protocols of its tests
 fragility   curves and their intervals, choice of the intensity measure, exports
 pedestal    paired comparison of objects with and without a pedestal
@@ -33,8 +35,8 @@ __version__ = "0.2.0"
 
 _find, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 _SUBPACKAGES = (
-    *("records", "motions", "building", "rocking", "shaketable", "fragility", "pedestal"),
-    *("campaign", "assess"),
+    *("records", "motions", "building", "system", "outcomes", "rocking", "shaketable", "fragility"),
+    *("pedestal", "campaign", "assess"),
 )
 
 

@@ -93,10 +93,8 @@ def light_giant_warning(width: float, height: float, mass: float) -> str:
     )
 
 
-def inertia_warning(width: float, height: float, mass: float, inertia: float | None) -> str:
+def inertia_warning(width: float, height: float, mass: float, inertia: float) -> str:
     """Say that a moment of inertia [kg m²] is that of a body of another size, or return an empty text."""
-    if inertia is None:
-        return ""
     gyration = math.sqrt(inertia) / math.sqrt(mass) / math.hypot(width, height)
     if GYRATIONS[0] <= gyration <= GYRATIONS[1]:
         return ""

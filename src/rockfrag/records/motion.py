@@ -24,7 +24,7 @@ MOTIONS_AT_ONCE = 64
 
 @dataclass(frozen=True)
 class Motion:
-    """One horizontal acceleration history, linear between samples.
+    """One component of acceleration, linear between samples.
 
     Attributes
     ----------

@@ -1,9 +1,7 @@
+import rockfrag.system.blocks as _blocks
+import rockfrag.system.mesh as _mesh
+
 from . import closed_forms as closed_forms, rules_of_thumb as rules_of_thumb
-from .bodies import (
-    Block as Block,
-    Body as Body,
-    Stack as Stack,
-)
 from .ensemble import (
     EnsembleResult as EnsembleResult,
     LightBodies as LightBodies,
@@ -20,10 +18,6 @@ from .restitution import (
     restitution_from_history as restitution_from_history,
     restitution_from_impacts as restitution_from_impacts,
     restitution_from_peaks as restitution_from_peaks,
-)
-from .shapes import (
-    Shape as Shape,
-    read_shape as read_shape,
 )
 from .simulation import simulate as simulate
 from .spectra import (
@@ -44,3 +38,10 @@ from .worst_direction import (
     WorstDirection as WorstDirection,
     worst_direction as worst_direction,
 )
+
+Block = _blocks.Block
+Body = _blocks.Body
+Column = _blocks.Column
+Stack = _blocks.Stack
+Shape = _mesh.Shape
+read_shape = _mesh.read_shape

@@ -17,10 +17,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.kernels.record import EVENT, SAMPLE
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.inputs import (
@@ -34,9 +34,9 @@ from rockfrag.rocking.inputs import (
     step_count,
     warn_of_unit,
 )
-from rockfrag.rocking.kernels.record import EVENT, SAMPLE
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

@@ -13,17 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.elementary import sin_cos
 from rockfrag.errors import InputError
+from rockfrag.input_checks import real_array
 from rockfrag.keywords import named_keywords
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
-from rockfrag.rocking.kernels.elementary import sin_cos
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]

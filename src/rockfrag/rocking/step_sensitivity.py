@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.input_checks import whole_number
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.checks import whole_number
 from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 
