@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.outcomes.columns import Column, Table, column
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -133,6 +134,8 @@ class Outcomes:
     least_normal_force: Floats = column(
         "contacts", "N", "Least normal force until the fall was due; NaN not told.", NOT_TOLD
     )
+
+    __repr__ = short_repr
 
     @property
     def shape(self) -> tuple[int, int, int]:

@@ -1,5 +1,7 @@
 """Many bodies × motions × amplitudes at once."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -10,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.engines.contract import Cases, Request, engine_for, run_cases
 from rockfrag.engines.steps import STEP
 from rockfrag.input_checks import positive_number
+from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.rocking.inputs import (
@@ -59,6 +62,7 @@ class Options(NamedTuple):
     threads: int | None = None
 
 
+@named_keywords
 def overturns(
     bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
@@ -128,14 +132,25 @@ def overturns(
         weight, or they are squat and rock; with neither ``friction`` nor ``forces``.
     UserWarning
         If a number looks as if it were given in another unit.
+
+    Examples
+    --------
+    A statue alone and on a pedestal, under a sine of one second at three amplitudes [m/s²]:
+
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, Stack, overturns
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> statue = Block(width=0.3, height=1.2, mass=180.0)
+    >>> stack = Stack(Block(width=0.6, height=0.4, mass=300.0), statue)
+    >>> overturns([statue, stack], motion, scales=[2.0, 3.0, 5.0]).overturned.shape
+    (2, 1, 3)
     """
     options = Options(
         restitution, friction, vertical, theta0, omega0, linear, forces, g, step, threads
     )
     cases = prepared(bodies, motions, dt, scales, options)
     check_case_count(len(cases.systems) * cases.scales.size)
-    if cases.systems and cases.motions:
-        warn_of_units(cases.systems, cases.motions, cases.scales, g)
     return shaken(cases)
 
 
@@ -169,7 +184,10 @@ def prepared(
     if shaking:
         for system in systems:
             engine_for(system, richest(shaking), request)
-    return Cases(systems, tuple(shaking), factors, request, checked_threads(options.threads))
+    threads = checked_threads(options.threads)
+    cases = Cases(systems, tuple(shaking), factors, request, threads)
+    warn_of_units(cases, motions)
+    return cases
 
 
 def richest(motions: Sequence[GroundMotion]) -> GroundMotion:

@@ -5,16 +5,17 @@ import numbers
 import os
 import warnings
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.contract import Cases
 from rockfrag.engines.steps import MOST_SAMPLES
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_array, shown, whole_number
 from rockfrag.plausibility import (
     LARGEST_IN_G,
-    body_warning,
     gravity_warning,
     interval_warning,
     peak_warning,
@@ -26,9 +27,6 @@ from rockfrag.system.system import System, contact_ends, standing_centres
 
 MOST_CASES = 50_000_000
 """Cases of an ensemble whose results are held in memory."""
-
-MOST_LOOKED_AT = 100
-"""Bodies of an ensemble whose units are looked at: a mistake of unit is one of all."""
 
 STRONGEST = 1e4
 """Peak acceleration [m/s²] beyond any earthquake."""
@@ -53,6 +51,7 @@ def checked_motion(
         If there are fewer than two samples, one is not a finite number or beyond any earthquake, or if the
         interval is missing, given twice or not positive.
     """
+    _refuse_file_name(name, motion)
     if isinstance(motion, Motion):
         if dt is not None:
             raise InputError(
@@ -216,9 +215,16 @@ def ground_motion(
     )
 
 
-def _listed_motions(
-    motions: MotionLike | Sequence[MotionLike], name: str = "motions"
-) -> list[MotionLike]:
+def _refuse_file_name(name: str, motion: object) -> None:
+    if isinstance(motion, (str, os.PathLike)):
+        raise InputError(
+            f"{name}: expected numbers [m/s²], got {shown(os.fspath(motion))}; of a file give what "
+            "rockfrag.read_motion(file, unit=…) returns."
+        )
+
+
+def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
+    _refuse_file_name(name, motions)
     if isinstance(motions, (Motion, GroundMotion)):
         return [motions]
     if isinstance(motions, np.ndarray) and motions.ndim == 1 and motions.dtype != object:
@@ -334,37 +340,38 @@ def check_case_count(count: int) -> None:
         )
 
 
-def warn_of_units(
-    systems: Sequence[System],
-    motions: Sequence[GroundMotion],
-    factors: NDArray[np.float64],
-    g: float,
-) -> None:
-    """Warn of what looks like a mistake of unit: of accelerations, times, gravity and bodies."""
-    largest = np.abs(factors).max(axis=1, initial=0.0)
-    peak = max((m.x.pga * float(s) for m, s in zip(motions, largest, strict=True)), default=0.0)
+class UnitDoubt(UserWarning):
+    """A number looks as if it were given in another unit."""
+
+
+def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
+    """Warn of what looks like a mistake of unit: of accelerations, of times, of gravity.
+
+    Parameters
+    ----------
+    cases
+        Systems, motions and scales.
+    given
+        Motions as the user gave them. Only of an array, which has no unit of its own, is it a reason for doubt
+        that it lifts nothing and would lift something if it were in g.
+    stacklevel
+        Callers between the warning and the user's line.
+    """
+    if not cases.systems or not cases.motions:
+        return
+    g = cases.request.g
+    largest = np.abs(cases.scales).max(axis=1, initial=0.0)
+    peaks = [one.x.pga * float(scale) for one, scale in zip(cases.motions, largest, strict=True)]
+    peak = max(peaks)
+    own = (Motion, GroundMotion)
+    plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
-    doubtful = 0 < peak <= LARGEST_IN_G
-    least = min((least_uplift(system, g) for system in systems), default=0.0) if doubtful else None
-    doubts = [
-        peak_warning(peak, least),
-        system_warning(systems[:MOST_LOOKED_AT]),
-        gravity_warning(g),
-    ]
-    doubts += [interval_warning(max((motion.dt for motion in motions), default=0.0))]
-    for doubt in doubts:
+    doubtful = plain and 0 < peak <= LARGEST_IN_G
+    least = min(least_uplift(system, g) for system in cases.systems) if doubtful else None
+    longest = max(motion.dt for motion in cases.motions)
+    for doubt in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
         if doubt:
-            warnings.warn(doubt, UserWarning, stacklevel=3)
-
-
-def system_warning(systems: Sequence[System]) -> str:
-    """Say that a body looks as if it were in other units, or return an empty text."""
-    for system in systems:
-        for body, shape in zip(system.bodies, system.shapes, strict=True):
-            doubt = body_warning(2 * shape.b, body.height, body.mass, body.centre[2], shape.inertia)
-            if doubt:
-                return doubt
-    return ""
+            warnings.warn(doubt, UnitDoubt, stacklevel=stacklevel)
 
 
 def least_uplift(system: System, g: float) -> float:

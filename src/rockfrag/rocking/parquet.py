@@ -1,5 +1,7 @@
 """Ensembles larger than memory: verdicts, peaks or whole histories straight into a Parquet file."""
 
+from __future__ import annotations
+
 import itertools
 import math
 import os
@@ -20,6 +22,7 @@ from rockfrag.engines.single import samples_of
 from rockfrag.engines.steps import STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
+from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.columns import Table
 from rockfrag.outcomes.outcomes import columns as columns_of
 from rockfrag.rocking.ensemble import Options, prepared, richest, shaken
@@ -40,6 +43,7 @@ WITHIN: dict[Table, dict[str, pa.DataType]] = {
 USUAL = ("overturned", "overturned_body")
 
 
+@named_keywords
 def stream_overturns(
     bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
@@ -168,6 +172,7 @@ SCHEMA = pa.schema(
 )
 
 
+@named_keywords
 def stream_histories(
     bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],

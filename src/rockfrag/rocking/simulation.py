@@ -1,13 +1,16 @@
 """One body, one motion, everything about the response."""
 
+from __future__ import annotations
+
 import math
 import warnings
 
 import numpy as np
 
-from rockfrag.engines.contract import Case, Request, engine_for
+from rockfrag.engines.contract import Case, Cases, Request, engine_for
 from rockfrag.engines.response import Response
 from rockfrag.input_checks import positive_number
+from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.inputs import (
     MotionLike,
@@ -21,6 +24,7 @@ from rockfrag.rocking.options import FrictionInput, StartInput, system_of
 from rockfrag.units import GRAVITY
 
 
+@named_keywords
 def simulate(
     body: Standing,
     motion: MotionLike,
@@ -81,19 +85,33 @@ def simulate(
         If pure rocking needed a contact to pull, so that a real body would have left the ground.
     UserWarning
         If a number looks as if it were given in another unit.
+
+    Examples
+    --------
+    A statue under one second of a sine of 4 m/s²:
+
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, simulate
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(4.0 * np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> response = simulate(Block(width=0.3, height=1.2, mass=180.0), motion)
+    >>> response.overturned, response.overturned_body
+    (True, 'block')
+    >>> response.theta.shape == (response.time.size, 1)
+    True
     """
     shaking = ground_motion(motion, dt, vertical)
     positive_number("g", g, "m/s²")
     system = system_of(body, friction, restitution, theta0, omega0)
     request = Request(history=True, linear=checked_switch("linear", linear), g=g)
     engine = engine_for(system, shaking, request)
-    warn_of_units((system,), (shaking,), np.ones((1, 1)), g)
     response: Response = engine.history(Case(system, shaking, 1.0, request))
+    warn_of_units(Cases((system,), (shaking,), np.ones((1, 1)), request), motion, stacklevel=4)
     if not math.isnan(response.lost_contact):
         warnings.warn(
             f"at {response.lost_contact:.3f} s the body would have left the ground, on which pure rocking holds "
             "it; what follows is no answer. Give friction= to let it fly.",
             LightBodies,
-            stacklevel=2,
+            stacklevel=3,
         )
     return response

@@ -1,5 +1,7 @@
 """How many verdicts hang on the step of the integration."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.input_checks import whole_number
+from rockfrag.keywords import named_keywords
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.case_list import overturned_cases
@@ -16,6 +19,7 @@ from rockfrag.rocking.ensemble import Options, prepared
 from rockfrag.rocking.inputs import MotionLike, Standing
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput
+from rockfrag.short_repr import short_repr
 from rockfrag.units import GRAVITY
 
 
@@ -37,12 +41,15 @@ class FragileVerdicts:
     changed: int
     cases: NDArray[np.int64]
 
+    __repr__ = short_repr
+
     @property
     def share(self) -> float:
         """Share of the sampled verdicts that changed [-]."""
         return self.changed / self.sampled
 
 
+@named_keywords
 def fragile_verdicts(
     bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
@@ -76,10 +83,24 @@ def fragile_verdicts(
     restitution, friction, vertical, theta0, omega0, linear, g, step, threads
         As in :func:`rockfrag.rocking.overturns`.
 
+    Returns
+    -------
+    The :class:`FragileVerdicts`: how many cases were looked at, and which of them changed.
+
     Raises
     ------
     InputError
         If an argument cannot be used; the message says which and why.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, fragile_verdicts
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> found = fragile_verdicts(Block(0.3, 1.2, 180.0), motion, None, np.arange(2.5, 8.0, 0.1))
+    >>> found.sampled, found.changed
+    (55, 0)
     """
     options = Options(
         restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
