@@ -13,6 +13,9 @@ from .cases import DT, random_block, random_motion, random_stack
 
 SCALES = np.linspace(0.3, 1.5, 10)
 
+# where pure rocking loses contact is what these tests ask themselves
+pytestmark = pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
+
 
 class Comparison(NamedTuple):
     """Cases in pure rocking and in contact without limit of friction.

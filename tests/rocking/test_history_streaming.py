@@ -143,7 +143,10 @@ def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"bodies": [BLOCK, "T2"]}, r"bodies\[1\]: expected a Block or a Stack, got 'T2'"),
+        (
+            {"bodies": [BLOCK, "T2"]},
+            r"bodies\[1\]: expected a Block, a Stack, a Column or a System, got 'T2'",
+        ),
         ({"motions": [MOTIONS[0], [1.0]]}, r"motions\[1\]: a motion needs"),
         ({"dt": [DT, DT, DT]}, "dt: expected one number or 2, got 3"),
         ({"dt": 0.0}, "dt: expected a positive number"),
@@ -169,7 +172,5 @@ def test_no_case_is_a_file_without_rows(tmp_path):
     table = pq.read_table(tmp_path / "none")
     assert len(table) == 0
     assert table.schema.names == [
-        "body", "motion", "scale", "time_s",
-        "theta_pedestal_rad", "omega_pedestal_rad_s", "theta_rad", "omega_statue_rad_s",
-        "state_pedestal", "state_statue",
+        "system", "motion", "scale", "time_s", "body", "theta_rad", "omega_rad_s", "state",
     ]  # fmt: skip

@@ -47,7 +47,7 @@ def test_outcomes_alone_take_no_other_columns(tmp_path):
     assert columns == ["system", "motion", "scale", "overturned", "overturned_body"]
 
 
-@pytest.mark.parametrize("rows", [1, 5, 7, 20, 30])
+@pytest.mark.parametrize("rows", [2, 5, 7, 20, 30])
 def test_row_groups_change_no_number(tmp_path, monkeypatch, rows):
     stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "whole.parquet", table="bodies")
     monkeypatch.setattr(parquet, "ROWS", rows)
@@ -99,5 +99,5 @@ def test_a_run_that_fails_leaves_the_file_that_was_there(tmp_path, monkeypatch):
 
 
 def test_wrong_columns_are_named(tmp_path):
-    with pytest.raises(InputError, match='columns: expected "verdict" or "peaks"'):
+    with pytest.raises(InputError, match="columns: 'a' is no column of 'cases'"):
         stream_overturns(BODIES, MOTIONS, DT, SCALES, tmp_path / "x", columns="all")

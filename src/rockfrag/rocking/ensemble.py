@@ -28,6 +28,7 @@ from rockfrag.rocking.inputs import (
 )
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput, systems_of
+from rockfrag.system import geometry
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
@@ -38,9 +39,10 @@ LIGHT = 0.5
 no answer: 64 of 3000 random outcomes of pure rocking are wrong below, and 1 of 5000 above
 (``docs/contact.md``) [-]."""
 
-SQUAT = 1.25
-"""Height of the centre of gravity over half the base below which rocking itself, under a strong horizontal motion,
-may take the weight off a contact (19 of 27 blocks between 0.5 and 1.2, at 1.2 to 4 times their uplift)."""
+LIFTING = 0.7
+"""Fraction of the horizontal acceleration that takes all weight off a pivot at the moment of uplift, from which
+on a warning is given: rocking adds to it (19 of 27 blocks of h/b 0.5 to 1.2 at 1.2 to 4 times their uplift lost
+contact, while slender ones need several g)."""
 
 
 class LightBodies(UserWarning):
@@ -202,11 +204,10 @@ def shaken(cases: Cases) -> Outcomes:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
         outcomes.minimum_gravity_ratio[:] = _minimum_gravity_ratio(cases)
-    if not cases.request.forces:
-        stuck = np.array([not system.loose for system in cases.systems])
-        if stuck.any():
-            _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])
-            _warn_of_squat(cases.systems, outcomes, stuck)
+    stuck = np.array([not system.loose for system in cases.systems])
+    if stuck.any() and not cases.request.forces:
+        _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])
+        _warn_of_lifting(cases, outcomes, stuck)
     return outcomes
 
 
@@ -231,16 +232,37 @@ def _warn_of_weight(ratio: Array) -> None:
         )
 
 
-def _warn_of_squat(systems: Sequence[System], outcomes: Outcomes, stuck: NDArray[np.bool_]) -> None:
-    """Warn of squat bodies that rock: their own motion may take the weight off a contact."""
-    squat = stuck & np.array([any(s.y < SQUAT * s.b for s in one.carried) for one in systems])
+def _warn_of_lifting(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> None:
+    """Warn of bodies whose own rocking may take the weight off a contact: squat ones in strong motions."""
+    peaks = np.array([motion.x.pga for motion in cases.motions])[:, np.newaxis] * np.abs(
+        cases.scales
+    )
+    least = np.array([lifting_acceleration(system, cases.request.g) for system in cases.systems])
+    strong = (peaks > LIFTING * least[:, np.newaxis, np.newaxis]) & stuck[:, np.newaxis, np.newaxis]
     with np.errstate(invalid="ignore"):
-        rocks = int((outcomes.peak_rotation[squat] > 0).any(axis=-1).sum())
-    if rocks:
+        found = int((strong & (outcomes.peak_rotation > 0).any(axis=-1)).sum())
+    if found:
         warnings.warn(
-            f"in {rocks} cases a squat body rocks, its centre of gravity lower than {SQUAT} times half its base; "
-            "its own motion may then take the weight off a contact, which pure rocking holds shut. Give friction= "
-            "to let it leave, or forces=True to see when contact is lost.",
+            f"in {found} cases a squat body rocks so fast that its own motion may take the weight off a contact, "
+            "which pure rocking holds shut. Give friction= to let it leave, or forces=True to see when contact is "
+            "lost.",
             LightBodies,
             stacklevel=4,
         )
+
+
+def lifting_acceleration(system: System, g: float) -> float:
+    """Least horizontal acceleration that takes all weight off a pivot about which a body at rest turns [m/s²].
+
+    The centre of gravity falls with b θ'' where θ'' = m (a h + g b) / I_O brakes the rocking: at g it is free.
+    """
+    shapes = list(system.carried)
+    if system.count == 2:
+        shapes[0] = geometry.joined(system.pile)
+    found = np.inf
+    for shape in shapes:
+        for pivot in (+1, -1):
+            x, y = geometry.arm(shape, pivot)
+            needed = geometry.pole_inertia(shape, pivot) / (shape.mass * abs(x)) - abs(x)
+            found = min(found, g * needed / y)
+    return float(found)

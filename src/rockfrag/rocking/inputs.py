@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.engines.contract import Cases
-from rockfrag.engines.steps import MOST_SAMPLES
+from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_array, shown, whole_number
 from rockfrag.plausibility import (
     LARGEST_IN_G,
+    LONGEST_STEP,
     gravity_warning,
     interval_warning,
     peak_warning,
@@ -369,6 +370,10 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     doubtful = plain and 0 < peak <= LARGEST_IN_G
     least = min(least_uplift(system, g) for system in cases.systems) if doubtful else None
     longest = max(motion.dt for motion in cases.motions)
+    if longest > LONGEST_STEP:
+        # what is far too long is refused before it is doubted
+        for system in cases.systems:
+            step_count(system, longest, g, STEP)
     for doubt in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
         if doubt:
             warnings.warn(doubt, UnitDoubt, stacklevel=stacklevel)

@@ -115,7 +115,8 @@ def stream_overturns(
     total = len(cases.systems) * cases.scales.size
     done = 0
     with new_table(path, schema) as writer:
-        for some, rows, cols in _groups(len(cases.systems), *cases.scales.shape):
+        parts = 1 if table == "cases" else max(system.count for system in cases.systems)
+        for some, rows, cols in _groups(max(1, ROWS // parts), cases.shape):
             part = replace(
                 cases,
                 systems=cases.systems[some],
@@ -140,18 +141,19 @@ def new_table(path: str | os.PathLike[str], schema: pa.Schema) -> Iterator[pq.Pa
         yield writer
 
 
-def _groups(n_bodies: int, n_motions: int, n_scales: int) -> Iterator[tuple[slice, slice, slice]]:
-    """Cut bodies × motions × scales, in this order, into boxes of at most ROWS cases."""
+def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, slice, slice]]:
+    """Cut systems × motions × scales, in this order, into boxes of at most so many cases."""
+    n_systems, n_motions, n_scales = shape
     if n_motions * n_scales == 0:
         return
-    scales = min(n_scales, ROWS)
-    motions = min(n_motions, max(1, ROWS // n_scales))
-    bodies = max(1, ROWS // (n_motions * n_scales))
-    for i in range(0, n_bodies, bodies):
+    scales = min(n_scales, most)
+    motions = min(n_motions, max(1, most // n_scales))
+    systems = max(1, most // (n_motions * n_scales))
+    for i in range(0, n_systems, systems):
         for j in range(0, n_motions, motions):
             for k in range(0, n_scales, scales):
                 yield (
-                    slice(i, min(i + bodies, n_bodies)),
+                    slice(i, min(i + systems, n_systems)),
                     slice(j, min(j + motions, n_motions)),
                     slice(k, min(k + scales, n_scales)),
                 )

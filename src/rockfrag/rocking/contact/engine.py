@@ -106,11 +106,12 @@ class PlanarContact:
 
         motion = case.motion
         theta, omega = started(case.system)
+        mu = frictions(case.system)
         found, loose = contact_history(
             written(case.system),
             case.scale * motion.x.acceleration,
             motion.dt,
-            friction=frictions(case.system),
+            friction=mu if len(mu) > 1 else mu[0],
             vertical=None if motion.z is None else case.scale * motion.z.acceleration,
             theta0=theta,
             omega0=omega,
