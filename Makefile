@@ -2,7 +2,8 @@
 # make smoke    a small study in under a minute
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
-# make torture  a small study killed, starved and misused; make fuzz damaged inputs (INPUTS=10000 for fewer)
+# make torture  a small study killed, starved and misused; make fuzz damaged inputs
+#               (INPUTS=10000 for fewer) and random requests of assess (REQUESTS=200)
 # make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
@@ -14,6 +15,7 @@ unexport PYTHONDONTWRITEBYTECODE
 PYTHON ?= python3
 STUDY ?= config/thesis.yaml
 INPUTS ?= 1000000
+REQUESTS ?= 2000
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
@@ -61,6 +63,7 @@ format: .venv/installed
 
 fuzz: .venv/installed
 	@.venv/bin/python benchmarks/fuzz.py --inputs $(INPUTS)
+	@.venv/bin/python benchmarks/fuzz_requests.py --requests $(REQUESTS)
 
 torture: .venv/installed
 	@.venv/bin/python benchmarks/torture.py

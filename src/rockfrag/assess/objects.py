@@ -11,9 +11,9 @@ from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.measured_restitution import Measured, largest_restitution
-from rockfrag.rocking.shapes import Shape, read_shape
+from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.mesh import Shape, read_shape
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""

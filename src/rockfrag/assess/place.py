@@ -49,6 +49,9 @@ ORDINALS = (
 )
 """Names of floors."""
 
+ENDINGS = {digit: ORDINALS[digit][-2:] for digit in (1, 2, 3)}
+"""Endings of numbers by their last digit."""
+
 _WHOLE = ("masses_", "masses")
 """Keys that only the description of a whole building has begin so."""
 
@@ -307,9 +310,5 @@ def _level(floor: str) -> tuple[int, int]:
 def _ordinal(number: int) -> str:
     if number < len(ORDINALS):
         return ORDINALS[number]
-    last = (
-        {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
-        if number % 100 not in (11, 12, 13)
-        else "th"
-    )
-    return f"{number}{last}"
+    # 21 and 31 end as 1 does; 11 to 13 are exceptions
+    return f"{number}{'th' if number % 100 in (11, 12, 13) else ENDINGS.get(number % 10, 'th')}"

@@ -22,9 +22,7 @@ _OPTIONS = {
 """Options that are not called as their keys are."""
 
 _UNITS = ("_kg_m2", "_years", "_km", "_kg", "_m", "_s")
-_KEY = re.compile(
-    r"(?<!\w)key ([a-z_][a-z0-9_.]*[a-z0-9_])(\[\d+\])?(: (?=true\b|[xyz]\b))?( true)?"
-)
+_KEY = re.compile(r"(?<!\w)key ([a-z_][a-z0-9_.]*[a-z0-9_])(\[\d+\])?(: true\b|: (?=[xyz]\b))?")
 
 
 def on_command_line(words: str, given: Collection[str] | None = None) -> str:
@@ -44,7 +42,7 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
             return found[0]
         name = _OPTIONS.get(key, key.split(".")[0].replace("_", "-"))
         # a flag takes no value, and an axis stands beside its option
-        return f"--{name}" + (" " if found[3] and not found[4] else "")
+        return f"--{name}" + (" " if found[3] == ": " else "")
 
     return _KEY.sub(option, words.replace(_METRES_PER_UNIT, "key mesh.metres_per_unit mm"))
 

@@ -14,6 +14,7 @@ from rockfrag.fragility.empirical import bin_codes, wilson_interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.fragility.pooling import cells
+from rockfrag.short_repr import short_repr
 
 CELLS = 60
 """Cells of the measure in which simulated verdicts are refitted; finer ones move p values by one replicate."""
@@ -50,6 +51,8 @@ class GoodnessOfFit:
     brier: float
     calibration: pd.DataFrame
     words: str
+
+    __repr__ = short_repr
 
 
 def goodness_of_fit(

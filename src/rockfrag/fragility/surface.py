@@ -15,6 +15,7 @@ from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSepar
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.observations import Floats, positive, verdicts
+from rockfrag.short_repr import short_repr
 
 MOST_FOR_THE_PLANE = 20_000
 """Tests up to which separation is found exactly; a linear programme of more takes too long."""
@@ -43,6 +44,8 @@ class FragilitySurface:
     aic: float
     n: int
     method: str
+
+    __repr__ = short_repr
 
     def probability(self, *im: ArrayLike) -> Floats:
         """Probability of overturning at values of the measures, in order; they broadcast."""
