@@ -64,7 +64,7 @@ fuzz: .venv/installed
 	@.venv/bin/python benchmarks/fuzz.py --inputs $(INPUTS)
 
 torture: .venv/installed
-	@.venv/bin/python benchmarks/torture.py
+	@$(RUN) tests.fault_injection
 
 docs: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[docs]"
