@@ -29,6 +29,8 @@ class LogHandler(LogHandlerBase):
 
     def __post_init__(self) -> None:
         """Start with nothing known."""
+        # with Snakemake 9.0 nobody else does
+        logging.Handler.__init__(self)
         self.start = time.monotonic()
         self.report = Path()
         self.failed = False
