@@ -5,36 +5,43 @@ Bodies are numbered from below; interface k lies under body k.  Ends of an inter
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.contact.friction import Friction
+from rockfrag.rocking.kernels import geometry
 from rockfrag.rocking.kernels.elementary import atan2, sin_cos
 
 F, INT = np.float64, np.int64
 
+MOST = 12
+"""Bodies of the longest column."""
+
+TRIES = 1024
+"""Modes that a search tries at most: more than three interfaces have."""
+
 BODY = np.dtype(
     [
-        ("count", INT),  # bodies: 1 or 2
+        ("count", INT),  # bodies: 1 to MOST
         ("g", F),
-        ("mass", F, (2,)),
-        ("inertia", F, (2,)),
-        ("inverse", F, (6,)),  # 1/m, 1/m, 1/I of each body
-        ("corner", F, (2, 2, 2)),  # [body, end] of its base from its centre, x and y [m]
-        (
-            "face",
-            F,
-            (2, 2),
-        ),  # [interface] middle of the face below from the centre of the body below
-        ("half", F, (2,)),  # [interface] half width of the face below; infinite for the ground
-        ("tilt_cos", F, (2,)),  # [interface] tilt of face and base as all stand
-        ("tilt_sin", F, (2,)),
-        ("static", F, (2,)),
-        ("kinetic", F, (2,)),
-        ("critical", F, (2, 2)),  # [body, side] its critical angle to the left, to the right [rad]
-        ("standing", F, (6,)),  # x, y, θ of each body as it stands
+        ("mass", F, (MOST,)),
+        ("inertia", F, (MOST,)),
+        ("inverse", F, (3 * MOST,)),  # 1/m, 1/m, 1/I of each body
+        ("corner", F, (MOST, 2, 2)),  # [body, end] of its base from its centre, x and y [m]
+        # [interface] middle of the face below from the centre of the body below
+        ("face", F, (MOST, 2)),
+        ("half", F, (MOST,)),  # [interface] half width of the face below; infinite for the ground
+        ("tilt_cos", F, (MOST,)),  # [interface] tilt of face and base as all stand
+        ("tilt_sin", F, (MOST,)),
+        ("static", F, (MOST,)),
+        ("kinetic", F, (MOST,)),
+        ("law", INT, (MOST, 2)),  # [interface, corner that comes down] law of the impact ...
+        ("number", F, (MOST, 2)),  # ... and its number
+        ("critical", F, (MOST, 2)),  # [body, side] its critical angle to the left, to the right [rad]
+        ("standing", F, (3 * MOST,)),  # x, y, θ of each body as it stands
         ("weight", F),  # of everything [N]: unit of forces
         ("size", F),  # half width of the uppermost body [m]: unit of lengths
         ("speed", F),  # √(g size) [m/s]: unit of speeds
@@ -43,126 +50,185 @@ BODY = np.dtype(
 
 WORK = np.dtype(
     [
-        ("q", F, (6,)),  # x, y, θ of each body relative to the ground
-        ("v", F, (6,)),
-        ("a", F, (6,)),
-        ("closed", INT, (2, 2)),  # [interface, end] the mode: closed ends ...
-        ("slides", INT, (2,)),  # ... and the sign of slip, 0 where an interface sticks
-        (
-            "kind",
-            INT,
-            (2, 2),
-        ),  # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
-        ("normal", F, (2, 2)),  # forces, or impulses
-        ("shear", F, (2,)),
-        ("out", F, (6,)),  # accelerations, or velocities after an impact
+        ("q", F, (3 * MOST,)),  # x, y, θ of each body relative to the ground
+        ("v", F, (3 * MOST,)),
+        ("a", F, (3 * MOST,)),
+        ("closed", INT, (MOST, 2)),  # [interface, end] the mode: closed ends ...
+        ("slides", INT, (MOST,)),  # ... and the sign of slip, 0 where an interface sticks
+        # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
+        ("kind", INT, (MOST, 2)),
+        ("normal", F, (MOST, 2)),  # forces, or impulses
+        ("shear", F, (MOST,)),
+        ("out", F, (3 * MOST,)),  # accelerations, or velocities after an impact
         # geometry of the configuration that was looked at last
-        ("cos", F, (2,)),
-        ("sin", F, (2,)),
-        # one row per closed end and per interface that sticks
-        ("row", F, (6, 6)),
-        ("column", F, (6, 6)),
+        ("cos", F, (MOST,)),
+        ("sin", F, (MOST,)),
+        # one row per closed end and per interface that sticks: what it takes of the body below (3) and above (3)
+        ("row", F, (3 * MOST, 6)),
+        ("column", F, (3 * MOST, 6)),
         ("light", F, (6,)),
-        ("matrix", F, (6, 7)),
-        ("owner", INT, (6,)),  # 3 k + end, or 3 k + 2 for shear
+        ("matrix", F, (3 * MOST, 3 * MOST)),
+        ("right", F, (3 * MOST,)),
+        ("owner", INT, (3 * MOST,)),  # 3 k + end, or 3 k + 2 for shear
+        ("upto", INT, (MOST + 2,)),  # number of unknowns of the interfaces up to this one
         # a step: start, stages, interpolation
-        ("q0", F, (6,)),
-        ("v0", F, (6,)),
-        ("a0", F, (6,)),
-        ("q1", F, (6,)),
-        ("v1", F, (6,)),
-        ("a1", F, (6,)),
-        ("kv", F, (7, 6)),
-        ("ka", F, (7, 6)),
-        ("fails", INT, (2, 6)),  # [interface, channel] what has become negative
+        ("q0", F, (3 * MOST,)),
+        ("v0", F, (3 * MOST,)),
+        ("a0", F, (3 * MOST,)),
+        ("q1", F, (3 * MOST,)),
+        ("v1", F, (3 * MOST,)),
+        ("a1", F, (3 * MOST,)),
+        ("kv", F, (7, 3 * MOST)),
+        ("ka", F, (7, 3 * MOST)),
+        ("early", F, (MOST, 2)),  # speeds at which open ends part at the start of a step
+        ("fails", INT, (MOST, 6)),  # [interface, channel] what has become negative
         # search for a mode
-        ("touching", INT, (2, 2)),
-        ("moves", INT, (2,)),
-        ("limit", F, (2,)),
-        (
-            "arm",
-            F,
-            (8, 6),
-        ),  # normal and tangent of each touching end: motions along them per coordinate
-        ("free", F, (8,)),  # acceleration or velocity along these without any contact
-        ("give", F, (8, 8)),  # ... and what a unit force along one gives along the other
-        ("along", INT, (6,)),  # of each unknown of a mode: its row in the three above ...
-        ("rub", F, (6,)),  # ... and the share of the tangent after it that friction adds
-        ("old_v", F, (6,)),
-        ("old_closed", INT, (2, 2)),
-        ("old_slides", INT, (2,)),
-        ("best_closed", INT, (2, 2)),
-        ("best_slides", INT, (2,)),
+        ("touching", INT, (MOST, 2)),
+        ("moves", INT, (MOST,)),
+        ("limit", F, (MOST,)),
+        # normal and tangent of each touching end: motions along them per coordinate, bodies below and above
+        ("arm", F, (4 * MOST, 6)),
+        ("free", F, (4 * MOST,)),  # acceleration or velocity along these without any contact
+        # ... and what a unit force along one of the interfaces below, here and above gives along it
+        ("give", F, (4 * MOST, 12)),
+        ("along", INT, (3 * MOST,)),  # of each unknown of a mode: its row in the three above ...
+        ("rub", F, (3 * MOST,)),  # ... and the fraction of the tangent after it that friction adds
+        ("old_v", F, (3 * MOST,)),
+        ("old_closed", INT, (MOST, 2)),
+        ("old_slides", INT, (MOST,)),
+        ("best_closed", INT, (MOST, 2)),
+        ("best_slides", INT, (MOST,)),
+        ("other_closed", INT, (MOST, 2)),
+        ("other_slides", INT, (MOST,)),
+        ("flip", INT, (3,)),  # interface, what and how: the change that mends the worst of a mode
+        ("tried", INT, (TRIES,)),  # numbers of the modes that a search has tried ...
+        ("wrong", F, (TRIES,)),  # ... and how far each is from consistent
+        # laws of an impact: fraction of an end's impulse that the other end gets too, end that leaves at a given
+        # speed (-1: none), and that speed
+        ("share", F, (MOST, 2)),
+        ("drive", INT, (MOST,)),
+        ("depart", F, (MOST,)),
+        ("falls", INT, (MOST,)),  # end that comes down while the other is closed, -1: none
+        ("goal", F, (MOST, 2)),  # speed at which the other end departs: without the law, with it
+        ("hit_v", F, (3 * MOST,)),  # velocities that an impact finds
         # margins of rest, linear in the two accelerations
-        ("rest", F, (8, 3)),
+        ("rest", F, (4 * MOST, 3)),
         # ledgers [J] and counts
         ("work", F),
         ("rubbed", F),  # lost to friction
         ("struck", F),  # lost in impacts
-        ("peak", F, (2,)),  # largest |θ| over the critical angle of its sign, and ...
-        ("peak_speed", F, (2,)),  # ... largest |θ'| [rad/s] of each body
-        ("peak_slip", F, (2,)),  # largest |slip| of each interface [m]
+        ("peak", F, (MOST,)),  # largest |θ| over the critical angle of its sign, and ...
+        ("peak_speed", F, (MOST,)),  # ... largest |θ'| [rad/s] of each body
+        ("peak_slip", F, (MOST,)),  # largest |slip| of each interface [m]
         ("impacts", INT),
         ("slips", INT),  # times that an interface began to slide
-        ("flights", INT),  # times that an interface opened at both ends
-        ("slid", INT, (2,)),  # whether an interface has ever reached its limit, in impacts too
+        ("flights", INT, (MOST,)),  # times that an interface opened at both ends
+        ("hits", INT, (MOST,)),  # impacts of each interface
+        ("slid", INT, (MOST,)),  # whether an interface has ever reached its limit, in impacts too
         ("paradoxes", INT),
         ("forced", INT),
+        ("several", INT),  # times that more than one mode was found consistent
+        ("searches", INT),
+        ("given_way", INT),  # impacts in which a law would have gained energy
         ("fallen", INT),
+        ("parted", INT),  # interface that is open furthest as a body falls, from 1
         ("resting", INT),
     ]
 )
 
 OUTCOME = np.dtype(
     [
-        ("fallen", INT),  # 0 none, 1 the lone block or the pedestal, 2 the statue
+        ("fallen", INT),  # 0 none, or the body that fell first, from 1 below
+        ("parted", INT),  # 0 none, or the interface at which the column parted, from 1 below
         ("time", F),  # of the fall [s]
         ("impacts", INT),
         ("paradoxes", INT),
         ("forced", INT),
-        ("peak", F, (2,)),
-        ("peak_speed", F, (2,)),
-        ("peak_slip", F, (2,)),
-        ("slip", F, (2,)),
-        ("slid", INT, (2,)),
-        ("flights", INT),
+        ("several", INT),
+        ("given_way", INT),
+        ("peak", F, (MOST,)),
+        ("peak_speed", F, (MOST,)),
+        ("peak_slip", F, (MOST,)),
+        ("slip", F, (MOST,)),
+        ("slid", INT, (MOST,)),
+        ("flights", INT, (MOST,)),
+        ("hits", INT, (MOST,)),
     ]
 )
 
 
-def contact_body(body: Body, friction: tuple[Friction, ...], g: float) -> np.void:
-    """Return the record ``BODY`` of a block or a stack with the friction of its interfaces."""
-    p: np.void = np.zeros(1, BODY)[0]
+class Part(NamedTuple):
+    """A block of a column.
+
+    Attributes
+    ----------
+    shape : the block as it stands by itself
+    height : of its top above its base [m]
+    lean : by which its uneven base turns it, and its top [rad]
+    offset : of the middle of its base from the middle of the top below [m]
+    """
+
+    shape: geometry.Shape
+    height: float
+    lean: float
+    offset: float
+
+
+def parts_of(body: Body) -> list[Part]:
+    """Blocks of a body, from below."""
     if isinstance(body, Block):
-        blocks, arms = [body], [[body.arm(pole) for pole in (-1, 1)]]
-    else:
-        blocks = [body.pedestal, body.statue]
-        arms = [[arm(pole) for pole in (-1, 1)] for arm in (body.pedestal.arm, body.statue_arm)]
-    p["count"], p["g"] = len(blocks), g
+        return [Part(body.shape, body.height, body.lean, 0.0)]
+    return [
+        Part(block.shape, block.height, block.lean, offset)
+        for block, offset in ((body.pedestal, 0.0), (body.statue, body.offset))
+    ]
+
+
+def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
+    """Fill geometry and masses of a column into its record.
+
+    A base that reaches beyond the face below is as wide as what lies on it: the two corners of the contact.
+    """
+    p["count"], p["g"] = len(parts), g
     p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
-    for k, (block, pair) in enumerate(zip(blocks, arms, strict=True)):
-        p["mass"][k], p["inertia"][k] = block.mass, block.centroidal_inertia
-        p["inverse"][3 * k : 3 * k + 3] = (
-            1 / block.mass,
-            1 / block.mass,
-            1 / block.centroidal_inertia,
+    middle, tilt = np.zeros(2), 0.0  # of the base of a body, from the middle of the lowest
+    for k, part in enumerate(parts):
+        shape, foot = part.shape, middle
+        if k > 0:
+            below = parts[k - 1]
+            pile = geometry.pile_of(
+                below.shape, part.shape, below.height, below.lean, part.offset
+            )
+            shape = pile.statue
+            foot = middle + geometry.turned(*pile.right, tilt)
+            top = np.array(geometry.turned(0.0, below.height, below.lean))
+            p["face"][k] = geometry.turned(*(top - (below.shape.x, below.shape.y)), tilt)
+            p["half"][k] = below.shape.b
+            beside = geometry.turned(part.offset, below.height, below.lean)
+            middle = middle + geometry.turned(*beside, tilt)
+            tilt += below.lean
+            p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
+        p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia
+        p["inverse"][3 * k : 3 * k + 3] = 1 / shape.mass, 1 / shape.mass, 1 / shape.inertia
+        for end, pole in enumerate((-1, 1)):
+            x, y = geometry.turned(*geometry.arm(shape, pole), tilt)
+            p["corner"][k, end] = -x, -y
+            p["critical"][k, end] = atan2(-pole * x, y)
+        x, y = geometry.turned(*geometry.arm(shape, 1), tilt)
+        p["standing"][3 * k : 3 * k + 2] = (
+            (shape.x, shape.y) if k == 0 else (foot[0] + x, foot[1] + y)
         )
-        for end, arm in enumerate(pair):
-            p["corner"][k, end] = -arm.x, -arm.y
-            p["critical"][k, end] = atan2((1 - 2 * end) * arm.x, arm.y)
-        p["static"][k], p["kinetic"][k] = friction[k]
-    p["standing"][:2] = blocks[0].centre
-    if not isinstance(body, Block):
-        pedestal = body.pedestal
-        sine, cosine = sin_cos(pedestal.lean)
-        top = np.array([sine, cosine]) * pedestal.height
-        p["face"][1], p["half"][1] = top - pedestal.centre, pedestal.b
-        p["tilt_cos"][1], p["tilt_sin"][1] = cosine, sine
-        foot, own = body.interface_pole(1), body.statue_arm(1)
-        p["standing"][3:5] = foot.x + own.x, foot.y + own.y
-    p["weight"] = g * sum(block.mass for block in blocks)
-    p["size"] = blocks[-1].b
-    p["speed"] = math.sqrt(g * blocks[-1].b)
+    p["weight"] = g * sum(part.shape.mass for part in parts)
+    p["size"] = shape.b
+    p["speed"] = math.sqrt(g * shape.b)
+
+
+def contact_body(body: Body, friction: Sequence[Friction], g: float) -> np.void:
+    """Return the record ``BODY`` of a body with the friction of its interfaces."""
+    p: np.void = np.zeros(1, BODY)[0]
+    fill_record(p, parts_of(body), g)
+    for k, pair in enumerate(friction):
+        p["static"][k], p["kinetic"][k] = pair
     return p
 
 
@@ -173,8 +239,8 @@ def working_memory() -> np.void:
 
 
 def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray[np.float64]:
-    """Coordinates and velocities, shape (2, 6), of bodies turned about the corners that this leaves them."""
-    start = np.zeros((2, 6))
+    """Coordinates and velocities, shape (2, 3 MOST), of bodies turned about the corners that this leaves them."""
+    start = np.zeros((2, 3 * MOST))
     standing = p["standing"]
 
     def turned(x: float, y: float, angle: float) -> NDArray[np.float64]:
@@ -188,9 +254,10 @@ def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray
         pole = standing[3 * k : 3 * k + 2] + corner
         speed = np.zeros(2)
         if k:
-            arm = turned(pole[0] - standing[0], pole[1] - standing[1], below[0])
-            pole = start[0, :2] + arm
-            speed = start[1, :2] + below[1] * np.array([arm[1], -arm[0]])
+            at = slice(3 * k - 3, 3 * k - 1)
+            arm = turned(pole[0] - standing[at][0], pole[1] - standing[at][1], below[0])
+            pole = start[0, at] + arm
+            speed = start[1, at] + below[1] * np.array([arm[1], -arm[0]])
         arm = -turned(corner[0], corner[1], theta[k])
         start[0, 3 * k : 3 * k + 2] = pole + arm
         start[1, 3 * k : 3 * k + 2] = speed + omega[k] * np.array([arm[1], -arm[0]])

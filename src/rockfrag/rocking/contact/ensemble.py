@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.rocking.bodies import Body
-from rockfrag.rocking.contact._body import BODY, OUTCOME, contact_body, posed, working_memory
-from rockfrag.rocking.contact._march import EVENT, HISTORY, Book, Cases, march_cases
+from rockfrag.rocking.contact._body import BODY, MOST, OUTCOME, contact_body, posed, working_memory
+from rockfrag.rocking.contact._march import Book, Cases, march_cases
 from rockfrag.rocking.contact.friction import Friction
 from rockfrag.rocking.inputs import free_samples, step_count
-from rockfrag.rocking.kernels.jit import compiling_alone
 
 Array = NDArray[np.float64]
 
@@ -74,7 +73,7 @@ def contact_outcomes(
     """
     bodies, dts = standing.bodies, moving.dts
     table = np.zeros(len(bodies), BODY)
-    starts = np.zeros((len(bodies), 2, 6))
+    starts = np.zeros((len(bodies), 2, 3 * MOST))
     for i, (body, friction, *start) in enumerate(zip(*standing, strict=True)):
         table[i] = contact_body(body, friction, g)
         starts[i] = posed(table[i], *start)
@@ -91,13 +90,12 @@ def contact_outcomes(
     )
     outcome = np.zeros(wanted.size, OUTCOME)
     numbers = np.flatnonzero(wanted)
-    book = Book(np.zeros((0, HISTORY)), np.zeros((0, EVENT)))
+    book = Book(np.zeros((0, 0)), np.zeros((0, 0)))
 
     def work(first: int, last: int) -> None:
         march_cases(numbers[first:last], cases, COARSE_CLOSING, book, working_memory(), outcome)
 
-    with compiling_alone(march_cases):
-        work(0, 0)
+    work(0, 0)
     with ThreadPoolExecutor(threads) as pool:
         firsts = range(0, numbers.size, CHUNK)
         list(pool.map(work, firsts, [first + CHUNK for first in firsts]))
