@@ -14,6 +14,7 @@ from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.contact.friction import Friction
 from rockfrag.rocking.kernels import geometry
 from rockfrag.rocking.kernels.elementary import atan2, sin_cos
+from rockfrag.rocking.measured_restitution import After
 
 F, INT = np.float64, np.int64
 
@@ -223,12 +224,20 @@ def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
     p["speed"] = math.sqrt(g * shape.b)
 
 
-def contact_body(body: Body, friction: Sequence[Friction], g: float) -> np.void:
-    """Return the record ``BODY`` of a body with the friction of its interfaces."""
+def contact_body(
+    body: Body, friction: Sequence[Friction], g: float, laws: Sequence[After] | None = None
+) -> np.void:
+    """Return the record ``BODY`` of a body with the friction of its interfaces.
+
+    ``laws``: of the impacts that end on the right and on the left corner of each interface, from below.
+    """
     p: np.void = np.zeros(1, BODY)[0]
     fill_record(p, parts_of(body), g)
     for k, pair in enumerate(friction):
         p["static"][k], p["kinetic"][k] = pair
+    for place, (law, number) in enumerate(laws or ()):
+        p["law"][place // 2, 1 - place % 2] = law
+        p["number"][place // 2, 1 - place % 2] = number
     return p
 
 

@@ -352,11 +352,49 @@ def _only_touching(p, w):
 
 
 @kernel
-def _open_all(p, w):
-    """Open all ends but those that a given speed of the other end needs."""
+def _try_slips(p, w, impact, force, motion, found, count):
+    """Try the other ways to slide of the interfaces that a consistent mode changes; sticking goes before sliding.
+
+    Returns
+    -------
+    Number of modes in the list, the mode to take, and whether another one was consistent.
+    """
+    several = False
     for k in range(p.count):
-        w.closed[k, 0] = w.closed[k, 1] = w.slides[k] = 0
+        taken = (found >> (4 * k)) & 15
+        old = w.old_closed[k, 0] + 2 * w.old_closed[k, 1] + 4 * (w.old_slides[k] + 1)
+        if taken & 3 == 0 or taken == old or (not impact and w.moves[k] != 0):
+            continue
+        for way in range(-1, 2):
+            take_number(p, w, found)
+            if way == w.slides[k]:
+                continue
+            w.slides[k] = way
+            number = mode_number(p, w.closed, w.slides)
+            if count == w.tried.size or _is_tried(w, count, number):
+                continue
+            margin = try_mode(p, w, impact, force, motion)
+            w.tried[count] = number
+            w.wrong[count] = max(0.0, -margin)
+            count += 1
+            if margin >= -CONSISTENT:
+                several = True
+                if way == 0:
+                    found = number
+    return count, found, several
+
+
+@kernel
+def _set_all(p, w, closed):
+    """Open all ends, or close and let stick all that touch, but for what a given speed of an end needs."""
+    for k in range(p.count):
+        w.slides[k] = 0
+        for end in range(2):
+            w.closed[k, end] = closed * w.touching[k, end]
+        if closed == 1 and w.touching[k, 0] + w.touching[k, 1] > 0:
+            w.slides[k] = w.moves[k]
         if w.drive[k] >= 0:
+            w.closed[k, w.drive[k]] = 0
             w.closed[k, 1 - w.drive[k]] = 1
 
 
@@ -378,13 +416,20 @@ def search(p, w, ah, av, impact, force, motion, exclude):
         for k in range(p.count):
             if w.moves[k] != 0 and w.closed[k, 0] + w.closed[k, 1] > 0:
                 w.slides[k] = w.moves[k]
-    count, found = _descend(p, w, impact, force, motion, exclude, 0)
-    _open_all(p, w)
-    count, other = _descend(p, w, impact, force, motion, exclude, count)
-    if other >= 0 and found >= 0:
+    count, found, several = 0, -1, False
+    for start in range(3):
+        if start > 0:
+            _set_all(p, w, start - 1)
+        count, other = _descend(p, w, impact, force, motion, exclude, count)
+        if other >= 0:
+            several = several or found >= 0
+            if found < 0 or _closed_ends(p, other) < _closed_ends(p, found):
+                found = other
+    if found >= 0:
+        count, found, more = _try_slips(p, w, impact, force, motion, found, count)
+        several = several or more
+    if several:
         w.several += 1
-    if other >= 0 and (found < 0 or _closed_ends(p, other) < _closed_ends(p, found)):
-        found = other
     best = _least_wrong(w, count)
     if found < 0 and w.wrong[best] > ROUNDING:
         count, found = _try_neighbours(p, w, impact, force, motion, exclude, count)

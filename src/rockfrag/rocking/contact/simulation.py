@@ -33,6 +33,7 @@ from rockfrag.rocking.inputs import (
     free_samples,
     step_count,
 )
+from rockfrag.rocking.measured_restitution import Restitution, contact_laws
 from rockfrag.rocking.kernels.single import GRAZING_SPEED
 from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
 from rockfrag.units import GRAVITY
@@ -55,6 +56,7 @@ def simulate_with_friction(
     dt: float,
     *,
     friction: FrictionInput,
+    restitution: Restitution = None,
     vertical: MotionLike | None = None,
     theta0: float | Sequence[float] | None = None,
     omega0: float | Sequence[float] | None = None,
@@ -66,7 +68,7 @@ def simulate_with_friction(
 
     Parameters
     ----------
-    body, acceleration, dt, friction, vertical, theta0, omega0, g
+    body, acceleration, dt, friction, restitution, vertical, theta0, omega0, g
         As in :func:`rockfrag.rocking.simulate`.
     step
         Largest product of the frequency parameter and the step [-].
@@ -82,7 +84,9 @@ def simulate_with_friction(
     values, interval = checked_motion(acceleration, dt)
     up = checked_vertical(vertical, values, interval)
     positive_number("g", g, "m/s²")
-    p = contact_body(body, interface_frictions(body, friction), g)
+    p = contact_body(
+        body, interface_frictions(body, friction), g, contact_laws(body, restitution)
+    )
     blocks = int(p["count"])
     start = posed(p, checked_start(body, theta0, "theta0"), checked_start(body, omega0, "omega0"))
     substeps, free = int(step_count(body, interval, g, step)), int(free_samples(body, interval, g))
