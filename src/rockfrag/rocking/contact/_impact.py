@@ -16,6 +16,8 @@ NO_GAIN = 1e-12
 """Fraction of the kinetic energy below which a gain is rounding."""
 HALVINGS = 40
 """Halvings of the interval in which a law that gives way keeps the energy."""
+CROWD = 100
+"""Events within a sample after which speeds below the closing speed count as none, whatever pulls."""
 UNREACHED = 1e-7
 """Violation above which an impact has no outcome under a law."""
 
@@ -135,12 +137,19 @@ def _outcome(p, w, ah, av, force, motion, part, before):
 
 @kernel
 def _shut_weak(p, w, ah, av, closing):
-    """Close the ends that part so slowly after an impact that they would only chatter; whether there are any."""
+    """Close the ends that part so slowly after an impact that they would only chatter; whether there are any.
+
+    Where events accumulate all that part slowly are closed, and all that slide slowly stick: what pulls depends on
+    the sign of a slip that is as good as none.
+    """
+    crowd = w.met > CROWD
     weak = False
     for k in range(p.count):
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
                 weak = weak or approach(p, w, k, end) < closing
+        if crowd and w.slides[k] != 0:
+            weak = weak or abs(slip_speed(p, w, w.v, k, False)) < closing
     if not weak:
         return False
     solve(p, w, w.q, w.v, ah, av, False)
@@ -152,7 +161,11 @@ def _shut_weak(p, w, ah, av, closing):
                 pull = rate(p, w.q, w.out, k, x, y, -ty, tx) + bias(
                     w.q, w.v, k, x, y, -ty, tx, kind
                 )
-                if pull < 0.0 and rate(p, w.q, w.v, k, x, y, -ty, tx) < closing:
+                slow = rate(p, w.q, w.v, k, x, y, -ty, tx) < closing
+                if (pull < 0.0 or crowd) and slow:
                     w.closed[k, end] = 1
                     found = True
+        if crowd and w.slides[k] != 0 and abs(slip_speed(p, w, w.v, k, False)) < closing:
+            w.slides[k] = 0
+            found = True
     return found

@@ -204,7 +204,7 @@ def march(p, shaking, start, closing, book, w):
         late = _now(shaking, i + 1)
         sample = Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
         tau = 0.0
-        met = 0
+        w.met = 0
         while tau < 1.0:
             if w.resting == 1:
                 if not known_rest:
@@ -219,7 +219,7 @@ def march(p, shaking, start, closing, book, w):
                 count = _handle(
                     p, w, Instant((i + tau) * dt, ah, av), closing, True, True, book.events, count
                 )
-                met += 1
+                w.met += 1
                 if w.resting == 1:
                     # it failed by rounding only
                     tau += 1e-9
@@ -269,16 +269,16 @@ def march(p, shaking, start, closing, book, w):
                 project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
-                met += 1
-                coarser = closing * 10.0 ** (met // MOST_EVENTS)
-                if met >= MOST_EVENTS:
+                w.met += 1
+                coarser = closing * 10.0 ** (w.met // MOST_EVENTS)
+                if w.met >= MOST_EVENTS:
                     w.forced += 1
                 ah, av = ground_at(sample, tau)
                 count = _handle(
                     p, w, Instant((i + tau) * dt, ah, av), coarser, False, False, book.events, count
                 )
                 fresh = True
-                if met > 10 * MOST_EVENTS:
+                if w.met > 10 * MOST_EVENTS:
                     tau = 1.0
             w.work += work
             w.rubbed += rubbed
@@ -327,7 +327,7 @@ def _begin(p, w, start):
         w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
         w.slid[k] = w.flights[k] = w.hits[k] = 0
     w.impacts = w.slips = w.paradoxes = w.forced = w.fallen = w.parted = w.resting = 0
-    w.several = w.searches = w.given_way = 0
+    w.met = w.several = w.searches = w.given_way = 0
 
 
 @kernel
