@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rockfrag.rocking.contact._kernel import entry_kernel
-from rockfrag.rocking.contact._search import (
+from rockfrag.engines.planar.compile import entry_kernel
+from rockfrag.engines.planar.search import (
     CONSISTENT,
     mode_number,
     search,
@@ -11,7 +11,7 @@ from rockfrag.rocking.contact._search import (
     try_mode,
     weigh,
 )
-from rockfrag.rocking.contact._solve import look_at
+from rockfrag.engines.planar.solve import look_at
 
 
 def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarray:

@@ -12,9 +12,9 @@ from rockfrag.assess.objects import Objects
 from rockfrag.fragility.observations import Outcomes
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Body
 
 Floats = NDArray[np.float64]
 

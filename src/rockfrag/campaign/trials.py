@@ -14,9 +14,9 @@ import pandas as pd
 from scipy.stats import qmc
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.measured_restitution import largest_restitution
-from rockfrag.rocking.shapes import Shape
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import Shape
 
 UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution")
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up

@@ -23,7 +23,7 @@ MOTIONS_AT_ONCE = 64
 
 @dataclass(frozen=True)
 class Motion:
-    """One horizontal acceleration history, linear between samples.
+    """One component of acceleration, linear between samples.
 
     Attributes
     ----------
@@ -113,6 +113,13 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
 
     Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and
     ``provenance`` (JSON).
+
+    Parameters
+    ----------
+    motions
+        What is written.
+    path
+        The file.
     """
     table = pd.DataFrame(
         {

@@ -81,6 +81,19 @@ def write_motions(
 ) -> list[Path]:
     """Write each motion into a folder, named as the motion, and return the paths.
 
+    Parameters
+    ----------
+    motions
+        What is written, one file each.
+    folder
+        Where to; it is made if absent.
+    format, unit
+        As of :func:`write_motion`.
+
+    Returns
+    -------
+    The paths of the files, in the order of the motions.
+
     Raises
     ------
     InputError

@@ -6,10 +6,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, checked_threads
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

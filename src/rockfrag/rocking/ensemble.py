@@ -11,8 +11,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.kernels.equations import BODY
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.lanes import block, stack_case
+from rockfrag.engines.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
+from rockfrag.engines.kernels.lanes.scheduler import march_stacks
+from rockfrag.engines.kernels.record import EVENT, SAMPLE, SUMMARY
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
 from rockfrag.rocking.contact.friction import (
@@ -36,14 +41,9 @@ from rockfrag.rocking.inputs import (
     step_count,
     warn_of_peak,
 )
-from rockfrag.rocking.kernels.equations import BODY
-from rockfrag.rocking.kernels.jit import compiling_alone
-from rockfrag.rocking.kernels.lanes import block, stack_case
-from rockfrag.rocking.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
-from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
-from rockfrag.rocking.kernels.record import EVENT, SAMPLE, SUMMARY
 from rockfrag.rocking.measured_restitution import Restitution, lone_restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

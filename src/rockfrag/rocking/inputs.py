@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.input_checks import positive_number, real_array, shown, whole_number
 from rockfrag.plausibility import peak_warning
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.checks import positive_number, real_array, shown, whole_number
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Block, Body, Stack
 
 STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""

@@ -7,10 +7,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.checks import real_number, shown
-from rockfrag.rocking.kernels import geometry
-from rockfrag.rocking.kernels.geometry import COUPLE, RATIO
+from rockfrag.input_checks import real_number, shown
+from rockfrag.system import geometry
+from rockfrag.system.blocks import Block, Body
+from rockfrag.system.geometry import COUPLE, RATIO
 
 Law = Literal["position", "couple", "ratio"]
 """How the restitution of a lone block is carried over to a stack."""
@@ -148,29 +148,6 @@ def stack_restitution(body: Body, restitution: Restitution) -> tuple[After, Afte
         for at, pole in enumerate((+1, -1)):
             afters.append(BY_MOMENTUM if both is None else _after(name, block, both[at], pole, law))
     return afters[0], afters[1], afters[2], afters[3]
-
-
-def contact_laws(body: Body, restitution: Restitution) -> tuple[After, ...]:
-    """Return how each interface, from below, comes off impacts that end on its right and on its left corner.
-
-    Of a lone block too this is an impulse at a place of the base, or a couple, because friction tells them apart.
-
-    Raises
-    ------
-    InputError
-        If the restitution does not fit the body or would add energy.
-    """
-    if isinstance(body, Stack):
-        return stack_restitution(body, restitution)
-    both = lone_restitution(body, restitution)
-    law = restitution.law if isinstance(restitution, MeasuredRestitution) else "position"
-    if both is None:
-        return (BY_MOMENTUM,) * 2
-    right, left = (
-        _after("restitution of the block", body, value, pole, law)
-        for value, pole in zip(both, (+1, -1), strict=True)
-    )
-    return right, left
 
 
 def _after(name: str, block: Block, value: float, pole: int, law: Law) -> After:

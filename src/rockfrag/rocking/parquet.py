@@ -14,9 +14,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.kernels.record import EVENT, SAMPLE
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.inputs import (
@@ -27,9 +27,9 @@ from rockfrag.rocking.inputs import (
     listed,
     step_count,
 )
-from rockfrag.rocking.kernels.record import EVENT, SAMPLE
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Body
+from rockfrag.system.blocks import Body
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -16,9 +16,9 @@ from scipy.optimize import OptimizeResult, brentq, least_squares
 from scipy.stats import t as student
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.checks import real_array
+from rockfrag.input_checks import real_array
 from rockfrag.rocking.simulation import simulate
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]

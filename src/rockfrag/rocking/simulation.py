@@ -7,8 +7,20 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.engines.kernels.equations import STATE
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.record import (
+    CHATTER,
+    CLOSING,
+    EVENT,
+    LIFTING,
+    OPENING,
+    SAMPLE,
+    SUMMARY,
+    fill_energies,
+)
+from rockfrag.engines.kernels.single import Shaking, march, scratch
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.contact.friction import (
     FrictionInput,
@@ -29,21 +41,9 @@ from rockfrag.rocking.inputs import (
     step_count,
     warn_of_peak,
 )
-from rockfrag.rocking.kernels.equations import STATE
-from rockfrag.rocking.kernels.jit import compiling_alone
-from rockfrag.rocking.kernels.record import (
-    CHATTER,
-    CLOSING,
-    EVENT,
-    LIFTING,
-    OPENING,
-    SAMPLE,
-    SUMMARY,
-    fill_energies,
-)
-from rockfrag.rocking.kernels.single import Shaking, march, scratch
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.response import PATTERNS, Response, mode_name
+from rockfrag.system.blocks import Block, Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

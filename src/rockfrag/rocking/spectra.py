@@ -11,15 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.elementary import sin_cos
 from rockfrag.errors import InputError
+from rockfrag.input_checks import real_array
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
-from rockfrag.rocking.kernels.elementary import sin_cos
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -57,6 +57,19 @@ def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
 
     Its size follows from p = √(3g/4R) (thesis eq. 2.17); its density is 1000 kg/m³ for a depth of
     1 m, which matters to nothing.
+
+    Parameters
+    ----------
+    alpha
+        Critical angle [rad].
+    period
+        2π/p [s].
+    g
+        Acceleration of gravity [m/s²].
+
+    Returns
+    -------
+    The block.
 
     Raises
     ------

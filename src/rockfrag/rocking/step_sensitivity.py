@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Body
+from rockfrag.input_checks import whole_number
 from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.checks import whole_number
 from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.checks import real_number, whole_number
+from rockfrag.input_checks import real_number, whole_number
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 LARGEST_PERTURBATION = 0.1

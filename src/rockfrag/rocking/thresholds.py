@@ -14,12 +14,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Body
+from rockfrag.input_checks import positive_number
 from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.checks import positive_number
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, MotionLike, listed
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

@@ -10,9 +10,9 @@ from rockfrag.errors import InputError
 from rockfrag.motions.rotation import rotate
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.thresholds import find_thresholds
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 DIRECTIONS_DEG = tuple(range(0, 360, 10))

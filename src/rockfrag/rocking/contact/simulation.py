@@ -8,10 +8,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.rocking.bodies import Block, Body
-from rockfrag.rocking.checks import positive_number
-from rockfrag.rocking.contact._body import contact_body, posed, working_memory
-from rockfrag.rocking.contact._march import (
+from rockfrag.engines.kernels.single import GRAZING_SPEED
+from rockfrag.engines.planar.integrate import (
     CHANGE,
     FALLEN,
     IMPACT,
@@ -21,9 +19,15 @@ from rockfrag.rocking.contact._march import (
     Shaking,
     event_columns,
     history_columns,
-    march,
+    integrate,
 )
-from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
+from rockfrag.engines.planar.records import posed, working_memory
+from rockfrag.input_checks import positive_number
+from rockfrag.rocking.contact.friction import (
+    FrictionInput,
+    contact_record,
+    interface_frictions,
+)
 from rockfrag.rocking.inputs import (
     STEP,
     MotionLike,
@@ -33,9 +37,9 @@ from rockfrag.rocking.inputs import (
     free_samples,
     step_count,
 )
-from rockfrag.rocking.measured_restitution import Restitution, contact_laws
-from rockfrag.rocking.kernels.single import GRAZING_SPEED
 from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
+from rockfrag.system.blocks import Block, Body
+from rockfrag.system.contact import ImpactLaw
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -56,7 +60,7 @@ def simulate_with_friction(
     dt: float,
     *,
     friction: FrictionInput,
-    restitution: Restitution = None,
+    laws: Sequence[ImpactLaw] | None = None,
     vertical: MotionLike | None = None,
     theta0: float | Sequence[float] | None = None,
     omega0: float | Sequence[float] | None = None,
@@ -68,8 +72,10 @@ def simulate_with_friction(
 
     Parameters
     ----------
-    body, acceleration, dt, friction, restitution, vertical, theta0, omega0, g
+    body, acceleration, dt, friction, vertical, theta0, omega0, g
         As in :func:`rockfrag.rocking.simulate`.
+    laws
+        Laws of the impacts of each contact, from below; momentum if None.
     step
         Largest product of the frequency parameter and the step [-].
     closing
@@ -84,9 +90,7 @@ def simulate_with_friction(
     values, interval = checked_motion(acceleration, dt)
     up = checked_vertical(vertical, values, interval)
     positive_number("g", g, "m/s²")
-    p = contact_body(
-        body, interface_frictions(body, friction), g, contact_laws(body, restitution)
-    )
+    p = contact_record(body, interface_frictions(body, friction), g, laws)
     blocks = int(p["count"])
     start = posed(p, checked_start(body, theta0, "theta0"), checked_start(body, omega0, "omega0"))
     substeps, free = int(step_count(body, interval, g, step)), int(free_samples(body, interval, g))
@@ -96,7 +100,7 @@ def simulate_with_friction(
     capacity = 4096
     while True:
         events = np.zeros((capacity, event_columns(blocks)))
-        done, count, fall = march(p, shaking, start, closing, Book(history, events), work)
+        done, count, fall = integrate(p, shaking, start, closing, Book(history, events), work)
         if count <= capacity:
             break
         capacity = count
