@@ -15,6 +15,7 @@ from scipy.stats import qmc
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import largest_restitution
+from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.system.mesh import Shape
 
@@ -47,6 +48,8 @@ class Trials:
     bodies: tuple[Block, ...]
     restitution: tuple[float | None, ...]
     refused: int
+
+    __repr__ = short_repr
 
 
 def sample_trials(

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
+from rockfrag.short_repr import short_repr
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,6 +50,8 @@ class Motion:
     name: str = ""
     metadata: Mapping[str, Any] = field(default_factory=dict)
     provenance: tuple[Mapping[str, Any], ...] = ()
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         acceleration = _own(self.acceleration)

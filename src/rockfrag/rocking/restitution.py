@@ -6,6 +6,8 @@ the time between them.  So peaks, impact times and whole histories all speak abo
 linearised equation (2.9) the peaks obey φ' = 1 - √(1 - e² (1 - (1 - φ)²)) with φ = θ/θc (Housner 1963).
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -8,12 +8,15 @@ R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwi
 
 import math
 import os
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
+from rockfrag.keywords import named_fields
+from rockfrag.plausibility import inertia_warning, light_giant_warning
 from rockfrag.system import geometry
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
@@ -36,6 +39,11 @@ class Vector(NamedTuple):
         return Vector(self.x - other.x, self.y - other.y)
 
 
+class UnlikelyBlock(UserWarning):
+    """A block whose sizes or inertia are probably given in other units."""
+
+
+@named_fields
 @dataclass(frozen=True)
 class Block:
     """A rigid body that stands on two edges.
@@ -66,8 +74,20 @@ class Block:
     Raises
     ------
     InputError
-        If a length, mass or inertia is not positive, or if the block cannot stand because its centre
-        of gravity is not above its base.
+        If a length, mass or inertia is not positive, if the centre of gravity is above the top, or if the
+        block cannot stand because its centre of gravity is not above its base.
+
+    Warns
+    -----
+    UnlikelyBlock
+        If it is larger than 20 m and lighter than air, or its inertia is that of a body of another size.
+
+    Examples
+    --------
+    >>> from rockfrag import Block
+    >>> statue = Block(width=0.35, height=1.2, mass=180.0)
+    >>> round(statue.alpha, 3), round(statue.frequency(), 2)
+    (0.284, 3.43)
     """
 
     width: float
@@ -89,6 +109,15 @@ class Block:
             positive_number("Block: cg_height", self.cg_height, "metres")
         real_number("Block: cg_offset", self.cg_offset, "metres")
         real_number("Block: lean", self.lean, "radians")
+        if self.cg_height is not None and self.cg_height > self.height:
+            raise InputError(
+                f"Block: cg_height {self.cg_height} m is above the top, which is at height {self.height} m."
+            )
+        doubts = light_giant_warning(self.width, self.height, self.mass) or inertia_warning(
+            self.width, self.height, self.mass, self.centroidal_inertia
+        )
+        if doubts:
+            warnings.warn(f"Block: {doubts}", UnlikelyBlock, stacklevel=4)
         if not geometry.can_stand(self.shape):
             raise InputError(
                 f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
@@ -289,6 +318,7 @@ class Block:
         return geometry.momentum_restitution(self.shape, -pole_before)
 
 
+@named_fields
 @dataclass(frozen=True)
 class Stack:
     """A statue standing on a pedestal, both free to rock.
@@ -310,6 +340,12 @@ class Stack:
     InputError
         If the two together cannot stand, or if the statue reaches so far beyond the pedestal that its edge
         could touch the ground before anything has fallen.
+
+    Examples
+    --------
+    >>> from rockfrag import Block, Stack
+    >>> Stack(pedestal=Block(0.6, 0.4, 300.0), statue=Block(0.35, 1.2, 180.0)).mass
+    480.0
     """
 
     pedestal: Block

@@ -19,6 +19,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from rockfrag.errors import InputError
 from rockfrag.plausibility import LARGEST_SIZE, MEAN_DENSITIES
+from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 
 MESH_ENDINGS = (".obj", ".ply", ".stl")
@@ -67,6 +68,8 @@ class Shape:
     inertia: Array
     volume: float
     name: str = ""
+
+    __repr__ = short_repr
 
     @cached_property
     def cg_height(self) -> float:
