@@ -98,8 +98,7 @@ def _digest() -> str:
     """Digest of all kernels' sources: those of every engine, of the arithmetic and of bodies as they stand."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[2]
-    folders = ("engines", "rocking/contact")
-    sources = [path for folder in folders for path in sorted((package / folder).rglob("*.py"))]
+    sources = sorted((package / "engines").rglob("*.py"))
     for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
         digest.update(path.read_bytes())
     return digest.hexdigest()
