@@ -28,6 +28,9 @@ TESTS = Path(__file__).resolve().parents[1] / "tests" / "assess"
 EARTHQUAKES = 6
 PART = 50
 
+LEAST_ANSWERED = 0.25
+"""Fraction of the requests that must be answered, and not refused."""
+
 
 def main() -> int:
     """Run the draws; return 0 if every answer agreed with itself."""
@@ -46,6 +49,9 @@ def main() -> int:
         wrong += lines
     print(f"{options.requests} requests: {fates[0]} answered, {fates[2]} refused in one sentence")
     print("\n".join(wrong) if wrong else "no contradiction")
+    if fates[0] < LEAST_ANSWERED * options.requests:
+        print("too few of them were answered for this to say anything")
+        return 1
     return 1 if wrong else 0
 
 

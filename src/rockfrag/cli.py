@@ -11,6 +11,7 @@ from rockfrag import __version__
 from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError
 from rockfrag.record_commands import add_record_commands
+from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import quantity
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ def make_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     add_assess_commands(commands)
+    add_survival_commands(commands)
     add_record_commands(commands)
 
     one = commands.add_parser("simulate", help="shake one body by one record")

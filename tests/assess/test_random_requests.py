@@ -25,13 +25,10 @@ def test_random_requests_are_answered_without_contradiction_or_refused_in_a_sent
     hazard = tmp_path / "hazard.csv"
     hazard.write_text(table_csv())
     rng = random.Random(part)
-    answers = 0
     for _ in range(DRAWS // 3):
         options = request(rng, few_records, hazard)
         status, out, err = answered(options, tmp_path)
         assert contradictions(status, out, err) == [], " ".join(options)
-        answers += status == 0
-    assert answers > 0
 
 
 @pytest.mark.parametrize(

@@ -77,3 +77,12 @@ from .variance import (
     VarianceSplit as VarianceSplit,
     split_variance as split_variance,
 )
+from .vector import (
+    Interaction as Interaction,
+    VectorFragility as VectorFragility,
+    fit_vector as fit_vector,
+)
+from .vector_checks import (
+    VectorChecks as VectorChecks,
+    check_vector as check_vector,
+)
