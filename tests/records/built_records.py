@@ -720,7 +720,7 @@ def columns(folder: Path) -> Built:
     lines = ["time,acc_NS(gal),acc_EW(gal),acc_UD(gal)"]
     lines += [",".join([f"{i * 0.01:.2f}", *map(repr, values[:, i].tolist())]) for i in range(N)]
     path.write_text("\n".join(lines) + "\n")
-    return Built(path, "COLUMNS", values, 0.01, "cm/s2", components=("NS", "EW", "UD"))
+    return Built(path, "PLAINTEXT", values, 0.01, "cm/s2", components=("NS", "EW", "UD"))
 
 
 def columns_of_quantities(folder: Path) -> Built:
@@ -729,13 +729,13 @@ def columns_of_quantities(folder: Path) -> Built:
     lines = ["\ufeffTime [s];Acceleration [g];Velocity [m/s];Displacement [m]"]
     lines += [f"{i * 0.01:.2f};{v!r};{2 * v:.6f};0.5" for i, v in enumerate(values.tolist())]
     path.write_text("\n".join([lines[0], *(line.replace(".", ",") for line in lines[1:])]))
-    return Built(path, "COLUMNS", values[None, :], 0.01, "g")
+    return Built(path, "PLAINTEXT", values[None, :], 0.01, "g")
 
 
 def rows_of_numbers(folder: Path) -> Built:
     path, values = folder / "ARL360.g3", wave(58, 0.3, 5)
     path.write_text(rows(values, 5, fortran_e(15, 7)) + " *** End data ***\n")
-    return Built(path, "ROWS", values[None, :], 0.02, "", tolerance=1e-7, stated_dt=False)
+    return Built(path, "PLAINTEXT", values[None, :], 0.02, "", tolerance=1e-7, stated_dt=False)
 
 
 def opensees(folder: Path) -> Built:

@@ -289,7 +289,7 @@ HUNDREDTHS = [f"{i / 100:g}" for i in range(20)]
 def test_titles_of_columns_say_what_they_hold(tmp_path, header, row, components, unit):
     path = tmp_path / "columns.txt"
     path.write_text("\n".join([header, *(row.format(t=t) for t in HUNDREDTHS)]) + "\n")
-    assert claims(str(path)) == ["COLUMNS"]
+    assert claims(str(path)) == ["PLAINTEXT"]
     record = read_record(path)
     assert [channel.component for channel in record.channels] == components
     assert {(channel.unit, channel.dt, channel.npts) for channel in record.channels} == {

@@ -1,4 +1,4 @@
-"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, Kinemetrics EVT, SLIST, TSPAIR"""
+"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, EVT, SLIST, TSPAIR, SeismicHandler."""
 
 import glob
 import gzip
@@ -32,7 +32,7 @@ from rockfrag.records.parsing.text_file import (
     read_head,
 )
 
-_READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR")
+_READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR", "SH_ASC")
 """Formats left to ObsPy. Of its others PICKLE would run what a file says, GSE ends the process on a
 damaged file, and the rest are of other fields."""
 
