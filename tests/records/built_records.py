@@ -686,7 +686,7 @@ def usc_volume_2(folder: Path) -> Built:
         "BIG TUJUNGA STATION, ANGELES NATIONAL FOREST, CA",
         "COMP N08W",
         f"  {N}  INSTRUMENT AND BASELINE CORRECTED DATA",
-        "PEAK ACCELERATION =  -242.39450  CMS/SEC/SEC AT    4.580   SEC.",
+        f"PEAK ACCELERATION =  {np.abs(values).max():.5f}  CMS/SEC/SEC AT    4.580   SEC.",
     ]
     text = "\n".join(words) + "\n" + rows(np.zeros(100), 16, lambda value: f"{int(value):5d}")
     text += rows(np.zeros(100), 8, fixed(10, 3))

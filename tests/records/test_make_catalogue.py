@@ -111,7 +111,7 @@ def test_unreadable_files_copies_and_unstated_units_are_said(tmp_path, builders,
     assert main(["catalogue", str(tmp_path)]) == 1
     told = capsys.readouterr()
     assert told.out.splitlines()[0].startswith("name,event")
-    assert "peer.AT2: the same bytes as" in told.err
+    assert "peer.AT2: the same record as" in told.err
     assert "cut.AT2, line 5: the header promises 43 samples" in told.err
     assert "plain.txt: the file does not state its unit" in told.err
     with pytest.raises(InputError, match="no horizontal component"):

@@ -41,12 +41,16 @@ from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import check_rising, step_of_times
 from rockfrag.records.parsing.written_trace import one_trace
 
-_OF_OBSPY = re.compile(r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|XW01|DELTA\s*:)", re.IGNORECASE)
+_OF_OBSPY = re.compile(
+    r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.IGNORECASE
+)
 """First words of text formats that ObsPy reads, or that are refused by name."""
 
 _MIN_ROWS = 3
 _RISING = 0.9
 """Share of the rows in which a column without title must rise to be one of times."""
+
+_FEW_ROWS = 20
 
 _SMOOTHER = 0.6
 """Ratio of steps along columns to steps along rows below which columns are channels side by side."""
@@ -102,7 +106,11 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
     first = text.table(layout.line, columns, layout.line + 1, layout.table.decimal_comma)
     assert first.size == columns
     values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
-    if layout.titles or _is_timed(values, widths, columns) or _are_channels(text, layout, values, widths):
+    if (
+        layout.titles
+        or _is_timed(values, widths, columns)
+        or _are_channels(text, layout, values, widths)
+    ):
         _check_widths(text, layout, widths)
         return _channels(text, layout, values.reshape(-1, columns), dt)
     return [_series(text, layout, dt)]
@@ -130,7 +138,7 @@ def _layout(text: TextFile, dt: float | None) -> _Layout:
     layout = _Layout(table, stop, facts, titles, facts.npts, facts.dt)
     layout = _with_numbers_above(text, layout, lines)
     if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
-        text.fail(f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt out")
+        text.fail(f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt= out")
     return layout
 
 
@@ -235,10 +243,12 @@ def _is_whole(word: str) -> bool:
 
 
 def _is_timed(values: NDArray[np.float64], widths: NDArray[np.int64], columns: int) -> bool:
-    """Tell whether the first numbers of the rows rise, as times do."""
-    first = values[: values.size // columns * columns : columns] if (widths[:-1] == columns).all() else values[:0]
-    steps = np.diff(first)
-    return bool(steps.size > 1 and (steps > 0).mean() > _RISING)
+    """Tell whether the first numbers of the rows rise, as times do; evenly where the rows are few."""
+    if (widths[:-1] != columns).any():
+        return False
+    steps = np.diff(values[::columns])
+    even = steps.size >= _FEW_ROWS or (steps.size > 1 and np.ptp(steps) <= steps.mean())
+    return bool(even and (steps > 0).mean() > _RISING)
 
 
 def _are_channels(
@@ -261,7 +271,7 @@ def _are_channels(
     along = float(np.median(np.abs(np.diff(rows, axis=1))))
     side_by_side = down < _SMOOTHER * along
     in_rows = along < _SMOOTHER * down or columns > 3
-    if side_by_side and columns > 3 or not (side_by_side or in_rows):
+    if (side_by_side and columns > 3) or not (side_by_side or in_rows):
         text.fail(
             f"{columns} numbers a row may be {columns} columns side by side or one series row after row; "
             "write titles above them, or one number a row",
@@ -352,7 +362,7 @@ def _without_leading(
         return values, layout
     layout = _agreeing(text, layout, layout.table, count, step, layout.line)
     if dt is not None and step is not None and abs(dt - step) > 1e-6 * dt:
-        text.fail(f"states an interval of {step:g} s, not {dt:g} s; leave dt out", layout.line)
+        text.fail(f"states an interval of {step:g} s, not {dt:g} s; leave dt= out", layout.line)
     layout.steps.append({"step": "take first lines as header", "lines": " ".join(words[:skip])})
     return values[skip:], layout
 
@@ -363,7 +373,9 @@ def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
     if _is_whole(word) or not SHORTEST_STEP <= value <= LONGEST_STEP:
         return False
     digits = [_digits(sample) for sample in body]
-    return odd or (_digits(word) <= _LONGEST_ROUND and _digits(word) < float(np.median(digits or [0])))
+    return odd or (
+        _digits(word) <= _LONGEST_ROUND and _digits(word) < float(np.median(digits or [0]))
+    )
 
 
 def _digits(word: str) -> int:
@@ -406,7 +418,10 @@ def _channels(
     chosen = [i for i, column in enumerate(columns) if column.quantity == "acceleration"]
     if not chosen:
         _refuse_other(text, layout, layout.facts.quantity)
-        chosen = [i for i, column in enumerate(columns) if not column.quantity]
+        known = {column.quantity for column in columns} - {""}
+        unnamed = [i for i, column in enumerate(columns) if not column.quantity]
+        # beside a depth what has no name is no acceleration in time
+        chosen = unnamed if not known or known & {"time", "index"} else []
     if not chosen:
         text.refuse(
             f"none of the columns {', '.join(column.title for column in columns)} is acceleration; if one "
@@ -455,7 +470,9 @@ def _refuse_spectra(text: TextFile, layout: _Layout, columns: list[Column]) -> N
         len(columns) == 2 and any(column.quantity == "spectrum" for column in columns)
     ):
         titles = ", ".join(column.title for column in columns)
-        text.refuse(f"the columns {titles} are a spectrum, not acceleration in time", layout.line - 1)
+        text.refuse(
+            f"the columns {titles} are a spectrum, not acceleration in time", layout.line - 1
+        )
 
 
 def _unit(text: TextFile, layout: _Layout, column: Column) -> str:

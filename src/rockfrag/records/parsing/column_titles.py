@@ -118,7 +118,7 @@ def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
     known = [column.quantity for column in columns]
     if len(columns) == 1:
         # above one column any words may stand; with a unit they are its title
-        return bool(columns[0].unit)
+        return bool(columns[0].unit) and known == ["acceleration"]
     if not by_blanks:
         return any(known)
     return all(known) or known[0] not in ("", "acceleration", "velocity", "displacement")
@@ -146,7 +146,9 @@ def _columns(titles: list[str], units: list[str]) -> list[Column]:
         for number, (title, unit) in enumerate(zip(titles, units, strict=True))
     ]
     directed = any(
-        _ORIENTATION.match(c.title) and c.title.lower() not in _AMBIGUOUS for c in columns
+        _ORIENTATION.match(c.title) and c.title.lower() not in _AMBIGUOUS
+        for c in columns
+        if c.quantity != "time"
     )
     # beside N and E a V is the vertical, beside a it is the velocity
     return [
@@ -181,6 +183,8 @@ def _quantity(words: str, unit: str, bare: str) -> str:
     if _SPECTRA.search(bare.replace("_", " ")):
         return "spectrum"
     spaced = words.replace("_", " ")
+    if not bare:
+        return ""
     named = next((name for name, pattern in _WORDS.items() if pattern.search(spaced)), "")
     other = _OTHERS.search(spaced)
     if quantity_of(unit):

@@ -9,7 +9,9 @@ _COMMENT = re.compile(r"^\s*(?:#|%|!|//)")
 _BLANK = re.compile(r"^[\s,;\"]*$")
 _TOUCHING = re.compile(r"(?<=[\d.])([+-])(?=\d*\.)")
 _WITH_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[EeDd][+-]?\d+)?$")
-_NEARLY_A_NUMBER = re.compile(r"[+-]?(?:nan|inf(?:inity)?)$|\*{3,}$|(?=\D*\d)[\d.+\-eEdDxXp_*]+$", re.I)
+_NEARLY_A_NUMBER = re.compile(
+    r"[+-]?(?:nan|inf(?:inity)?)$|\*{3,}$|(?=\D*\d)[\d.+\-eEdDxXp_*]+$", re.I
+)
 _DATE = re.compile(r"\d{1,4}-\d{1,2}-\d{1,4}")
 _MARKS = " \t#%!/\"'"
 _RUN = 4

@@ -37,7 +37,7 @@ _UNIT_WORDS = re.compile(
 )
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
 _QUANTITY_IN = re.compile(
-    rf"{_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=]\s*)(?P<rest>.+)$",
+    rf"{_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$",
     re.IGNORECASE,
 )
 _NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.IGNORECASE)
@@ -174,17 +174,31 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
         if _ONE_VALUE.search(line):
             continue
         match = _QUANTITY_IN.search(line) or _IN_UNIT.search(line)
-        first = next(iter(_units_in(match["rest"])), "") if match else canonical_unit(line)
+        first = next(iter(_units_in(match["rest"])), "") if match else _sure_unit(line)
         named = match.groupdict().get("quantity") if match else None
         if first in TO_SI and (named or first not in ("g", "mg") or not match):
             return "acceleration", first
         if named and quantity_of(first):
             return quantity_of(first), ""
     last = [m["quantity"].lower() for line in lines[-1:] for m in _NAMED_QUANTITY.finditer(line)]
-    everywhere = any(m["quantity"].lower() == "acc" for x in lines for m in _NAMED_QUANTITY.finditer(x))
+    everywhere = any(
+        m["quantity"].lower() == "acc" for x in lines for m in _NAMED_QUANTITY.finditer(x)
+    )
     if last and not everywhere:
         return {"vel": "velocity", "dis": "displacement"}[last[0]], ""
     return "", ""
+
+
+def _sure_unit(line: str) -> str:
+    """Return a unit that only an acceleration has, if a line has one that is not of a value in it."""
+    return next(
+        (
+            unit
+            for part in re.split(r"(?<![\d.])[,;\s]+(?![/\d])", line)
+            if (unit := canonical_unit(part)) in TO_SI and "/s" in unit
+        ),
+        canonical_unit(line),
+    )
 
 
 def _components(line: str) -> list[str]:

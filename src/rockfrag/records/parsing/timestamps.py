@@ -84,12 +84,13 @@ def step_of_times(
             first_line + bad,
         )
     rate = 1 / (dt * seconds)
-    if dt < 9.5 * resolution and abs(rate - round(rate)) > 1e-6 * rate:
+    whole = any(abs(r - round(r)) <= 1e-6 * r for r in (rate, 1 / dt))
+    if dt < 9.5 * resolution and not whole:
         text.fail(
             f"the time column steps by {dt * seconds:g} s, which is {rate:.2f} samples a second and looks "
             f"like a step rounded to {resolution * seconds:g} s (from anything between "
-            f"{(dt - resolution / 2) * seconds:g} and {(dt + resolution / 2) * seconds:g} s); give the true interval "
-            "with dt=",
+            f"{(dt - resolution / 2) * seconds:g} and {(dt + resolution / 2) * seconds:g} s); "
+            "give the true interval with dt=",
             first_line,
         )
     return dt if seconds == 1 else float(f"{dt * seconds:.12g}")
