@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.errors import InputError
+from rockfrag.plain_text import printable
 from rockfrag.records.wording import for_command_line
 
 if TYPE_CHECKING:
@@ -130,7 +131,7 @@ def _info(options: argparse.Namespace) -> int:
     if options.pictures:
         drawn = draw_files(options.files, options.pictures, options.unit, options.dt, options.force)
         print(f"{len(drawn)} pictures drawn in {options.pictures}", file=sys.stderr)
-    named = table["file"].isin([str(Path(file)) for file in options.files])
+    named = table["file"].isin([printable(str(Path(file))) for file in options.files])
     bad = (table["status"] == UNREADABLE) | ((table["status"] != READ) & named)
     return int(bad.any())
 

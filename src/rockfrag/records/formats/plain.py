@@ -106,11 +106,10 @@ def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
     first = text.table(layout.line, columns, layout.line + 1, layout.table.decimal_comma)
     assert first.size == columns
     values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
-    if (
-        layout.titles
-        or _is_timed(values, widths, columns)
-        or _are_channels(text, layout, values, widths)
-    ):
+    # only the last row of a series is shorter
+    _check_widths(text, layout, widths, widths.size - 1)
+    filled = widths[widths > 0]
+    if layout.titles or _is_timed(values, columns) or _are_channels(text, layout, values, filled):
         _check_widths(text, layout, widths)
         return _channels(text, layout, values.reshape(-1, columns), dt)
     return [_series(text, layout, dt)]
@@ -242,10 +241,8 @@ def _is_whole(word: str) -> bool:
     return re.fullmatch(r"[+-]?\d+\.?", word) is not None
 
 
-def _is_timed(values: NDArray[np.float64], widths: NDArray[np.int64], columns: int) -> bool:
+def _is_timed(values: NDArray[np.float64], columns: int) -> bool:
     """Tell whether the first numbers of the rows rise, as times do; evenly where the rows are few."""
-    if (widths[:-1] != columns).any():
-        return False
     steps = np.diff(values[::columns])
     even = steps.size >= _FEW_ROWS or (steps.size > 1 and np.ptp(steps) <= steps.mean())
     return bool(even and (steps > 0).mean() > _RISING)
@@ -260,12 +257,12 @@ def _are_channels(
     differ less from one to the next than those of two.
     """
     columns = layout.table.columns
-    if (widths != columns).any():
-        return False
     if layout.npts in (widths.size, values.size):
         return layout.npts == widths.size
     if len(layout.facts.components) == columns:
         return True
+    if widths[-1] != columns:
+        return False
     rows = values.reshape(-1, columns)
     down = float(np.median(np.abs(np.diff(rows, axis=0))))
     along = float(np.median(np.abs(np.diff(rows, axis=1))))
@@ -281,8 +278,11 @@ def _are_channels(
     return side_by_side
 
 
-def _check_widths(text: TextFile, layout: _Layout, widths: NDArray[np.int64]) -> None:
-    wrong = np.flatnonzero(widths != layout.table.columns)
+def _check_widths(
+    text: TextFile, layout: _Layout, widths: NDArray[np.int64], stop: int | None = None
+) -> None:
+    """Check that rows which are not blank, up to the row ``stop``, have as many numbers as the first."""
+    wrong = np.flatnonzero((widths[:stop] != layout.table.columns) & (widths[:stop] > 0))
     if wrong.size:
         text.fail(
             f"{widths[wrong[0]]} columns here, {layout.table.columns} in the rows above; "
@@ -295,8 +295,7 @@ def _series(text: TextFile, layout: _Layout, dt: float | None) -> Channel:
     """Return the one series of a file, in a column or in rows."""
     values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
     if layout.table.columns == 1:
-        if (widths != 1).any():
-            _check_widths(text, layout, widths)
+        _check_widths(text, layout, widths)
         values, layout = _without_leading(text, layout, values, dt)
     stated = next(iter(layout.titles), Column("", "", "", ""))
     _refuse_other(text, layout, stated.quantity or layout.facts.quantity)
@@ -454,7 +453,7 @@ def _channels(
 def _untitled(text: TextFile, layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
     """Return columns without titles: times that rise, and channels by their number or stated name."""
     count = table.shape[1]
-    timed = _is_timed(table.ravel(), np.full(table.shape[0], count), count)
+    timed = _is_timed(table.ravel(), count)
     if timed and count > 2:
         _refuse_unclear_titles(text, layout.table)
     stated = layout.facts.components
