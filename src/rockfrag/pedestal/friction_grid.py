@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
 from rockfrag.rocking.contact.friction import interface_frictions
 from rockfrag.rocking.inputs import STEP
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -174,7 +174,7 @@ def survived_amplitudes(
             chosen = _least(open_, dominates)
             found = _outcomes(body, frictions, motions, scales[:, [level]], chosen, threads)
             for p, m in np.argwhere(chosen):
-                slid = found[p, m]["slid"] > 0
+                slid = found[p, m]["slid"][: mu.shape[1]] > 0
                 holds = np.where(slid, same[p], higher[p]).all(axis=1) & open_[:, m]
                 if found[p, m]["fallen"]:
                     first[holds, m] = level

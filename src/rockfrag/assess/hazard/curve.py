@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.assess.hazard.measure import Measure
 from rockfrag.errors import InputError
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 
@@ -44,6 +45,8 @@ class HazardCurve:
         Where it comes from, in a few words.
     quantiles
         Curves of the same measure by their quantile, such as 0.16 and 0.84; empty where none are known.
+    is_read
+        Whether it was read; False where one level was continued with an assumed slope.
     """
 
     measure: Measure
@@ -51,6 +54,9 @@ class HazardCurve:
     rates: Floats
     source: str
     quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
+    is_read: bool = True
+
+    __repr__ = short_repr
 
     def rate(self, level: ArrayLike) -> Floats:
         """Annual rate with which levels are exceeded [1/year]; the ends are continued as they slope.
@@ -194,7 +200,8 @@ def curve_of_one_level(
 
     def curve(k: float, source: str) -> HazardCurve:
         factors = np.array([0.1, 1.0, 10.0])
-        return HazardCurve(measure, level * factors, factors**-k / years, source)
+        rates = factors**-k / years
+        return HazardCurve(measure, level * factors, rates, source, is_read=False)
 
     source = (
         f"{measure.name} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
