@@ -125,10 +125,6 @@ UNUSABLE = [
         simulated(friction=0.4, linear=True),
         "friction cannot be had together with the linearised equations",
     ),
-    (
-        simulated(friction=0.4, restitution=0.9),
-        "friction cannot be had together with a measured restitution",
-    ),
     (simulated(vertical=SHAKE[:50]), "vertical: 50 samples for 100 horizontal ones"),
     (
         simulated(vertical=Motion(SHAKE, 0.02)),
@@ -142,10 +138,6 @@ UNUSABLE = [
         "friction of the ground: expected a coefficient or a pair",
     ),
     (swept(friction="0.4"), "friction: expected a number or a list with 1 entries"),
-    (
-        swept(friction=0.4, restitution=[0.9]),
-        "friction cannot be had together with a measured restitution",
-    ),
     (swept(vertical=[SHAKE, SHAKE]), "vertical: expected 1 entries, one per motion, got 2"),
     (swept(vertical=[SHAKE[1:]]), "vertical[0]: 99 samples for 100 horizontal ones"),
     (swept(bodies=["T2"]), "bodies[0]: expected a Block, a Stack, a Column or a System, got 'T2'"),

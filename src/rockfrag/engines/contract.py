@@ -202,7 +202,7 @@ BUILT_IN = (
     "rockfrag.engines.lone_block",
     "rockfrag.engines.two_blocks",
     "rockfrag.engines.single",
-    "rockfrag.rocking.contact.engine",
+    "rockfrag.engines.planar.engine",
 )
 """Modules with an ``ENGINE`` each, in the order in which they are asked; loaded when an engine is first wanted."""
 
