@@ -14,9 +14,9 @@ calculation, and Student's t has the degrees of freedom of Welch and Satterthwai
 - conversion: where hazard in PGA or Sa speaks about velocity, see :mod:`rockfrag.assess.conversion`;
 - hazard: its quantiles, where they are given.
 
-For the widths of a share half an earthquake that topples the object and half of one that does not are added (Haldane
-1956, Anscombe 1956), without which few earthquakes that almost agree would leave the interval without bound; for the
-rate only where one earthquake holds every toppling.
+For the widths of a share half an earthquake that topples the object and half of one that does not are added
+(Haldane 1956, Anscombe 1956), without which few earthquakes that almost agree would leave the interval without
+bound; for the rate only where one earthquake holds every toppling.
 """
 
 import math
@@ -156,8 +156,8 @@ class Target:
         shift
             Logarithm of a factor on all levels.
         added
-            Earthquakes that are added, of which one topples the object wherever it rocks and one does not: a part of
-            each [-].
+            Earthquakes that are added, of which one topples the object wherever it rocks and one does not: a
+            part of each [-].
         """
         shares = verdicts.shares(weights, rocks=self.rocks)
         if added:
@@ -282,7 +282,8 @@ def estimate(
     """
     middle = target.on_scale(verdicts)
     if not math.isfinite(middle):
-        return _bounded(target, verdicts, middle, shifts)
+        return _bounded(target, verdicts, middle, moved, shifts)
+
     def near(one: Verdicts, shift: float = 0.0) -> float:
         return target.on_scale(one, shift=shift, added=target.added)
 
@@ -331,22 +332,52 @@ def _quantile(of_motions: float, total: float, groups: int) -> float:
 
 
 def _bounded(
-    target: Target, verdicts: Verdicts, middle: float, shifts: Mapping[str, float]
+    target: Target,
+    verdicts: Verdicts,
+    middle: float,
+    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    shifts: Mapping[str, float],
 ) -> Estimate:
     """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
     hidden = 1 - (1 - LEVEL) ** (1 / len(set(verdicts.events)))
     shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
-    levels, shares = verdicts.ladder.levels, verdicts.shares(rocks=target.rocks)
-    could = np.where(verdicts.shares(rocks=True) > 0, np.maximum(shares, hidden), 0.0)
+
+    def most(one: Verdicts, shift: float = 0.0) -> float:
+        shares = np.maximum(one.shares(rocks=target.rocks), hidden)
+        could = np.where(one.shares(rocks=True) > 0, shares, 0.0)
+        return target.of(one.ladder.levels, could, -shift)
+
+    def least(one: Verdicts, shift: float = 0.0) -> float:
+        shares = np.minimum(one.shares(rocks=target.rocks), 1 - hidden)
+        return target.of(one.ladder.levels, shares, shift)
+
     if math.isinf(target.certain):
         # never reached: hidden motions could be enough at some level, or it lies above the last one
-        least = target.of(levels, could, -shift)
-        return Estimate(math.inf, min(least, float(levels[-1])), math.inf, {})
+        reached = min(most(verdicts, shift), float(verdicts.ladder.levels[-1]))
+        return Estimate(math.inf, reached, math.inf, {})
     if middle > 0:
-        surely = target.of(levels, np.maximum(shares - hidden, 0.0), shift)
-        return Estimate(1.0, target.back(target.forward(surely)), 1.0, {})
-    bound = target.forward(target.of(levels, could, -shift))
-    return Estimate(0.0, 0.0, target.back(bound), {})
+        return Estimate(
+            1.0, target.back(_limit(target, least, verdicts, moved, shift, -1)), 1.0, {}
+        )
+    return Estimate(0.0, 0.0, target.back(_limit(target, most, verdicts, moved, shift, 1)), {})
+
+
+def _limit(
+    target: Target,
+    of: Callable[..., float],
+    verdicts: Verdicts,
+    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    shift: float,
+    sign: int,
+) -> float:
+    """Limit on the scale, above (1) or below (-1): the bound, with what is not known of the properties."""
+    bound, plain = (target.forward(of(verdicts, by)) for by in (shift, 0.0))
+    ends = [max(sign * target.forward(of(side)) for side in both) for both in moved.values()]
+    if not math.isfinite(plain):
+        # at rest as it is: what could move it decides
+        return sign * max([sign * bound, *ends])
+    further = [max(0.0, end - sign * plain) for end in ends]
+    return bound + sign * _Z * math.sqrt(sum(one**2 for one in further))
 
 
 def estimate_rocking(
