@@ -56,7 +56,7 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
             axes.plot(
                 part["value"].where(inside),
                 part["at_second"],
-                color=BLACK,
+                color=BLUE,
                 linestyle=line,
                 label=f"{probability:.0%}",
             )
