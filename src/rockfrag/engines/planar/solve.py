@@ -3,21 +3,21 @@
 import math
 
 from rockfrag.elementary import sin_cos
-from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+from rockfrag.engines.planar.compile import kernel
 
 AT_EDGE = 1e-9
 """A corner counts as over the face until it is this share of the half width beyond the edge: bases as wide as
 their face stand on it and not on its edges."""
 
 
-@inlined_kernel
+@kernel
 def look_at(p, w, q):
     """Take sines and cosines of the rotations in ``q``."""
     for k in range(p.count):
         w.sin[k], w.cos[k] = sin_cos(q[3 * k + 2])
 
 
-@inlined_kernel
+@kernel
 def face_axis(p, w, k):
     """Tangent of the face below interface k (its normal is (-ty, tx))."""
     if k == 0:
@@ -60,7 +60,7 @@ def end_of(p, w, q, k, end, kind):
     return ex, ey, tx, ty, -ty * (x - ex) + tx * (y - ey), beyond, 0
 
 
-@inlined_kernel
+@kernel
 def rate(p, q, v, k, x, y, dx, dy):
     """Velocity of body k relative to what is below it, at (x, y) along (dx, dy) [m/s].
 
@@ -74,7 +74,7 @@ def rate(p, q, v, k, x, y, dx, dy):
     return found
 
 
-@inlined_kernel
+@kernel
 def bias(q, v, k, x, y, dx, dy, kind):
     """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish."""
     turn = v[3 * k + 2]
@@ -96,19 +96,20 @@ def bias(q, v, k, x, y, dx, dy, kind):
     return dx * ax + dy * ay
 
 
-@inlined_kernel
-def fill_row(p, q, k, x, y, dx, dy, row):
-    row[3 * k] = dx
-    row[3 * k + 1] = dy
-    row[3 * k + 2] = dx * (y - q[3 * k + 1]) - dy * (x - q[3 * k])
+@kernel
+def fill_row(q, k, x, y, dx, dy, row):
+    """Motion of body k relative to what is below it, at (x, y) along (dx, dy), per coordinate of both bodies."""
+    row[3] = dx
+    row[4] = dy
+    row[5] = dx * (y - q[3 * k + 1]) - dy * (x - q[3 * k])
     if k > 0:
-        row[3 * k - 3] = -dx
-        row[3 * k - 2] = -dy
-        row[3 * k - 1] = dy * (x - q[3 * k - 3]) - dx * (y - q[3 * k - 2])
+        row[0] = -dx
+        row[1] = -dy
+        row[2] = dy * (x - q[3 * k - 3]) - dx * (y - q[3 * k - 2])
     else:
-        row[3] = 0.0
-        row[4] = 0.0
-        row[5] = 0.0
+        row[0] = 0.0
+        row[1] = 0.0
+        row[2] = 0.0
 
 
 @kernel
@@ -127,47 +128,115 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     """
     if p.count == 1 and not impact:
         return _solve_lone(p, w, q, v, ah, av)
-    stands = w.closed[0, 0] == 1 and w.closed[0, 1] == 1 and w.slides[0] == 0
-    flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
-    if stands and not impact and not (flat and w.slides[1] == 0):
-        return _solve_statue(p, w, q, v, ah, av)
-    return solve_generally(p, w, q, v, ah, av, impact, rough)
+    standing = 0
+    if not impact:
+        standing = _standing(p, w)
+    if p.count == 2:
+        flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
+        if standing > 0 and not (flat and w.slides[1] == 0):
+            return _solve_statue(p, w, q, v, ah, av)
+        standing = 0
+    if not solve_generally(p, w, q, v, ah, av, impact, rough, standing):
+        return False
+    if standing > 0:
+        _carry(p, w, q, ah, av, standing)
+    return True
 
 
 @kernel
-def solve_generally(p, w, q, v, ah, av, impact, rough):
-    """Solve any mode by elimination, as :func:`solve` does those that it has no formulas for."""
-    m = 0
+def _standing(p, w):
+    """Number of bodies, from the ground up, that stand on what stands."""
     for k in range(p.count):
+        if w.closed[k, 0] == 0 or w.closed[k, 1] == 0 or w.slides[k] != 0:
+            return k
+    return p.count
+
+
+@kernel
+def _fill_equations(p, w, q, v, impact, rough, standing):
+    """Rows, columns and right-hand sides of the mode of the bodies above those that stand; their number."""
+    m = 0
+    for k in range(standing, p.count):
         friction = w.slides[k] * p.kinetic[k] if rough else 0.0
         first = True
         for end in range(2):
             if w.closed[k, end] == 0:
                 continue
             x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
-            fill_row(p, q, k, x, y, -ty, tx, w.row[m])
+            fill_row(q, k, x, y, -ty, tx, w.row[m])
             w.owner[m] = 3 * k + end
             right = -bias(q, v, k, x, y, -ty, tx, kind) if not impact else 0.0
             if w.slides[k] != 0:
-                fill_row(p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
+                fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
             else:
                 for d in range(6):
                     w.column[m, d] = w.row[m, d]
-            w.matrix[m, 6] = right
+            if impact and w.share[k, end] > 0.0:
+                _add_share(p, w, q, k, end, friction, w.column[m])
+            w.right[m] = right
             m += 1
             if first and w.slides[k] == 0:
-                fill_row(p, q, k, x, y, tx, ty, w.row[m])
+                fill_row(q, k, x, y, tx, ty, w.row[m])
                 for d in range(6):
                     w.column[m, d] = w.row[m, d]
                 w.owner[m] = 3 * k + 2
-                w.matrix[m, 6] = -bias(q, v, k, x, y, tx, ty, kind) if not impact else 0.0
+                w.right[m] = -bias(q, v, k, x, y, tx, ty, kind) if not impact else 0.0
                 m += 1
             first = False
+        if impact and w.drive[k] >= 0:
+            end = w.drive[k]
+            x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+            fill_row(q, k, x, y, -ty, tx, w.row[m])
+            _fill_couple(k, w.column[m])
+            w.owner[m] = -1 - k
+            w.right[m] = w.depart[k]
+            m += 1
+        w.upto[k] = m
+    return m
+
+
+@kernel
+def _add_share(p, w, q, k, end, friction, column):
+    """Add what an end's impulse brings about at the other end."""
+    share = w.share[k, end]
+    x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
+    fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.light)
+    for d in range(6):
+        column[d] += share * w.light[d]
+
+
+@kernel
+def _fill_couple(k, column):
+    """Fill what a couple between body k and what is below it turns."""
+    for d in range(6):
+        column[d] = 0.0
+    column[5] = 1.0
+    if k > 0:
+        column[2] = -1.0
+
+
+@kernel
+def _interface_of(w, i):
+    """Interface of an equation."""
+    return w.owner[i] // 3 if w.owner[i] >= 0 else -1 - w.owner[i]
+
+
+@kernel
+def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
+    """Solve any mode by elimination, as :func:`solve` does those that it has no formulas for.
+
+    The first ``standing`` bodies are known to stand still; what they carry is not computed.
+    """
+    m = _fill_equations(p, w, q, v, impact, rough, standing)
     for k in range(p.count):
         if impact:
             w.out[3 * k] = v[3 * k]
             w.out[3 * k + 1] = v[3 * k + 1]
             w.out[3 * k + 2] = v[3 * k + 2]
+        elif k < standing:
+            w.out[3 * k] = 0.0
+            w.out[3 * k + 1] = 0.0
+            w.out[3 * k + 2] = 0.0
         else:
             w.out[3 * k] = -ah
             w.out[3 * k + 1] = -(p.g + av)
@@ -176,31 +245,84 @@ def solve_generally(p, w, q, v, ah, av, impact, rough):
         w.normal[k, 1] = 0.0
         w.shear[k] = 0.0
     for i in range(m):
-        total = w.matrix[i, 6]
-        for d in range(6):
-            total -= w.row[i, d] * w.out[d]
-        w.matrix[i, 6] = total
-        for d in range(6):
-            w.light[d] = w.row[i, d] * p.inverse[d]
-        for j in range(m):
+        k = _interface_of(w, i)
+        total = w.right[i]
+        begin = 3 if k == standing else 0
+        for d in range(begin, 6):
+            total -= w.row[i, d] * w.out[3 * k - 3 + d]
+            w.light[d] = w.row[i, d] * p.inverse[3 * k - 3 + d]
+        w.right[i] = total
+        low = w.upto[k - 2] if k - 2 >= standing else 0
+        high = w.upto[k + 2] if k + 2 < p.count else m
+        for j in range(low, high):
+            other = _interface_of(w, j)
             total = 0.0
-            for d in range(6):
-                total += w.light[d] * w.column[j, d]
+            if other == k:
+                for d in range(begin, 6):
+                    total += w.light[d] * w.column[j, d]
+            elif other == k - 1:
+                for d in range(3):
+                    total += w.light[d] * w.column[j, d + 3]
+            elif other == k + 1:
+                for d in range(3):
+                    total += w.light[d + 3] * w.column[j, d]
             w.matrix[i, j] = total
-    if not eliminate(w.matrix, m):
+    if not eliminate(p, w, m, standing):
         return False
     for i in range(m):
-        force = w.matrix[i, 6]
-        k = w.owner[i] // 3
-        end = w.owner[i] - 3 * k
-        if end == 2:
-            w.shear[k] += force
-        else:
-            w.normal[k, end] = force
-            w.shear[k] -= w.slides[k] * p.kinetic[k] * force
-        for d in range(6):
-            w.out[d] += p.inverse[d] * w.column[i, d] * force
+        force = w.right[i]
+        k = _interface_of(w, i)
+        if w.owner[i] >= 0:
+            end = w.owner[i] - 3 * k
+            if end == 2:
+                w.shear[k] += force
+            else:
+                share = w.share[k, end] if impact else 0.0
+                w.normal[k, end] += force
+                w.normal[k, 1 - end] += share * force
+                w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + share * force)
+        for d in range(3 if k == standing else 0, 6):
+            w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * w.column[i, d] * force
     return True
+
+
+@kernel
+def _carry(p, w, q, ah, av, standing):
+    """Forces under the bodies that stand still: what they carry, and what the ground's acceleration asks for."""
+    push_x, push_y, moment = (
+        0.0,
+        0.0,
+        0.0,
+    )  # of what is above on the body, the moment clockwise about its centre
+    for k in range(standing, 0, -1):
+        body = k - 1
+        push_x, push_y, moment = 0.0, 0.0, 0.0
+        if k < p.count:
+            first = True
+            for end in range(2):
+                if w.closed[k, end] == 0:
+                    continue
+                x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+                fx, fy = -w.normal[k, end] * ty, w.normal[k, end] * tx
+                if first:
+                    fx += w.shear[k] * tx
+                    fy += w.shear[k] * ty
+                first = False
+                push_x += fx
+                push_y += fy
+                moment -= fx * (y - q[3 * body + 1]) - fy * (x - q[3 * body])
+        push_x += p.mass[body] * ah
+        push_y += p.mass[body] * (p.g + av)
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, body, 0, w.kind[body, 0])
+        far_x, far_y, _, _, _, _, _ = end_of(p, w, q, body, 1, w.kind[body, 1])
+        rx, ry = x - q[3 * body], y - q[3 * body + 1]
+        shear = push_x * tx + push_y * ty
+        push = push_y * tx - push_x * ty
+        near = -ty * ry - tx * rx
+        far = -ty * (far_y - q[3 * body + 1]) - tx * (far_x - q[3 * body])
+        w.shear[body] = shear
+        w.normal[body, 1] = -(moment + shear * (tx * ry - ty * rx) + push * near) / (far - near)
+        w.normal[body, 0] = push - w.normal[body, 1]
 
 
 @kernel
@@ -312,29 +434,43 @@ def _solve_statue(p, w, q, v, ah, av):
 
 
 @kernel
-def eliminate(a, m):
-    """Solve m equations whose right-hand side is column 6, in place; False if they are singular."""
+def eliminate(p, w, m, standing):
+    """Solve m equations with right-hand sides in ``w.right``, in place; False if they are singular.
+
+    An interface shares bodies with its neighbours alone: what is further than two from the diagonal is zero.
+    ``w.upto`` says where the equations of each interface end.
+    """
+    a, right = w.matrix, w.right
+    k = standing
     for i in range(m):
+        while w.upto[k] <= i:
+            k += 1
+        rows = w.upto[k + 1] if k + 1 < p.count else m
+        columns = w.upto[k + 2] if k + 2 < p.count else m
         best = i
-        for j in range(i + 1, m):
+        for j in range(i + 1, rows):
             if abs(a[j, i]) > abs(a[best, i]):
                 best = j
         if a[best, i] == 0.0:
             return False
         if best != i:
-            for j in range(i, m):
+            for j in range(i, columns):
                 a[i, j], a[best, j] = a[best, j], a[i, j]
-            a[i, 6], a[best, 6] = a[best, 6], a[i, 6]
+            right[i], right[best] = right[best], right[i]
         pivot = 1.0 / a[i, i]
-        for j in range(i + 1, m):
+        for j in range(i + 1, rows):
             factor = a[j, i] * pivot
             if factor != 0.0:
-                for c in range(i + 1, m):
+                for c in range(i + 1, columns):
                     a[j, c] -= factor * a[i, c]
-                a[j, 6] -= factor * a[i, 6]
+                right[j] -= factor * right[i]
+    k = p.count - 1
     for i in range(m - 1, -1, -1):
-        total = a[i, 6]
-        for j in range(i + 1, m):
-            total -= a[i, j] * a[j, 6]
-        a[i, 6] = total / a[i, i]
+        while k > standing and w.upto[k - 1] > i:
+            k -= 1
+        columns = w.upto[k + 2] if k + 2 < p.count else m
+        total = right[i]
+        for j in range(i + 1, columns):
+            total -= a[i, j] * right[j]
+        right[i] = total / a[i, i]
     return True

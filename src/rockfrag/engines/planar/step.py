@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from rockfrag.engines.kernels.jit import kernel
-from rockfrag.rocking.contact._solve import AT_EDGE, end_of, look_at, rate, solve
+from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.planar.solve import AT_EDGE, end_of, look_at, rate, solve
 
 SLACK, TOUCH = 1e-12, 1e-13
 """Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;
@@ -298,15 +298,23 @@ def first_failure(p, w, at_low, high, at_high, stretch):
 
 @kernel
 def comes_near(p, w):
-    """Whether a gap has narrowed at the start of the step and widens at its end, or slip likewise."""
+    """Whether a gap has narrowed at the start of the step and widens at its end."""
+    some = False
+    look_at(p, w, w.q0)
     for k in range(p.count):
         for end in range(2):
+            w.early[k, end] = 0.0
             if w.closed[k, end] == 0:
-                look_at(p, w, w.q0)
                 x, y, tx, ty, _, _, _ = end_of(p, w, w.q0, k, end, -1)
-                early = rate(p, w.q0, w.v0, k, x, y, -ty, tx)
-                look_at(p, w, w.q1)
+                w.early[k, end] = rate(p, w.q0, w.v0, k, x, y, -ty, tx)
+                some = some or w.early[k, end] < 0.0
+    if not some:
+        return False
+    look_at(p, w, w.q1)
+    for k in range(p.count):
+        for end in range(2):
+            if w.early[k, end] < 0.0:
                 x, y, tx, ty, _, _, _ = end_of(p, w, w.q1, k, end, -1)
-                if early < 0.0 and rate(p, w.q1, w.v1, k, x, y, -ty, tx) > 0.0:
+                if rate(p, w.q1, w.v1, k, x, y, -ty, tx) > 0.0:
                     return True
     return False

@@ -1,4 +1,4 @@
-"""Marching one body through one motion, event by event, with friction and flight."""
+"""Integrating one column through one motion, event by event, with friction and flight."""
 
 import math
 from typing import Any, NamedTuple
@@ -6,16 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.engines.kernels.jit import entry_kernel, kernel
-from rockfrag.rocking.contact._modes import (
-    approach,
-    kinetic_energy,
-    project,
-    settle,
-    strike,
-)
-from rockfrag.rocking.contact._solve import end_of, look_at, solve
-from rockfrag.rocking.contact._step import (
+from rockfrag.engines.planar.compile import entry_kernel, kernel
+from rockfrag.engines.planar.impact import lift_laws, strike
+from rockfrag.engines.planar.modes import approach, kinetic_energy, project, settle
+from rockfrag.engines.planar.search import mode_number
+from rockfrag.engines.planar.solve import end_of, look_at, solve
+from rockfrag.engines.planar.step import (
     EDGE,
     FALL,
     FRICTION,
@@ -37,13 +33,21 @@ MOST_EVENTS = 300
 MOST_IDLE = 30
 """Events on the spot after which a step is taken without looking for more."""
 
-HISTORY = 24
-"""Columns of a history: q (6), v (6), slip (2), normal force (2), shear (2), work, rubbed, struck, mode, angular
-acceleration (2)."""
 
-EVENT = 14
-"""Columns of the events: time, kind, mode before and after, slip of both interfaces [m], kinetic energy before and
-after [J], rotations (2), angular velocities before (2) and after (2)."""
+def history_columns(count: int) -> int:
+    """Columns of a history: q (3 n), v (3 n), slip, normal force, shear and angular acceleration (n each), and
+    work, rubbed, struck, mode.
+    """  # noqa: D205
+    return 10 * count + 4
+
+
+def event_columns(count: int) -> int:
+    """Columns of the events: time, kind, mode before and after, kinetic energy before and after [J], and of each
+    body or interface the slip [m], the rotation, the angular velocity before and after.
+    """  # noqa: D205
+    return 6 + 4 * count
+
+
 CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
 """Kinds of events: the last is a corner that passes an edge while nothing else changes."""
 
@@ -52,7 +56,7 @@ Array = NDArray[np.float64]
 
 
 class Shaking(NamedTuple):
-    """One motion, and in what steps it is marched through.
+    """One motion, and in what steps it is integrated.
 
     Attributes
     ----------
@@ -60,7 +64,7 @@ class Shaking(NamedTuple):
     dt : sampling interval [s]
     scale : factor on the samples
     substeps : steps per sample
-    free_samples : samples that the march goes on after the last one at most
+    free_samples : samples that the integration goes on after the last one at most
     """
 
     horizontal: Array
@@ -76,8 +80,8 @@ class Book(NamedTuple):
 
     Attributes
     ----------
-    history : (samples, HISTORY), or of no rows
-    events : (capacity, EVENT), or of no rows
+    history : (samples, history_columns), or of no rows
+    events : (capacity, event_columns), or of no rows
     """
 
     history: Array
@@ -90,7 +94,7 @@ class Cases(NamedTuple):
     Attributes
     ----------
     bodies : (bodies,) BODY
-    starts : (bodies, 2, 6) coordinates and velocities
+    starts : (bodies, 2, 3 MOST) coordinates and velocities
     horizontal, vertical : all motions end to end; ``vertical`` may be empty
     offsets : (motions + 1,) where each begins
     dts : (motions,) sampling intervals [s]
@@ -118,14 +122,14 @@ class Instant(NamedTuple):
 
 
 @entry_kernel
-def march_cases(numbers, cases, closing, book, w, outcome):
-    """March the cases of some ``numbers``, and keep their outcomes.
+def integrate_cases(numbers, cases, closing, book, w, outcome):
+    """Integrate the cases of some ``numbers``, and keep their outcomes.
 
     Parameters
     ----------
-    numbers : of the cases to march
+    numbers : of the cases to integrate
     cases : Cases
-    closing : as of :func:`march`
+    closing : as of integrate
     book : Book, of no rows
     w : WORK
     outcome : (all cases,) OUTCOME
@@ -144,32 +148,36 @@ def march_cases(numbers, cases, closing, book, w, outcome):
             cases.substeps[b, m],
             cases.free_samples[b, m],
         )
-        _, _, fall = march(cases.bodies[b], shaking, cases.starts[b], closing, book, w)
+        _, _, fall = integrate(cases.bodies[b], shaking, cases.starts[b], closing, book, w)
         out = outcome[number]
         out.fallen = w.fallen
         out.time = fall
         out.impacts = w.impacts
         out.paradoxes = w.paradoxes
         out.forced = w.forced
-        out.flights = w.flights
+        out.several = w.several
+        out.given_way = w.given_way
+        out.parted = w.parted
+        look_at(cases.bodies[b], w, w.q)
         for k in range(cases.bodies[b].count):
             out.peak[k] = w.peak[k]
             out.peak_speed[k] = w.peak_speed[k]
             out.peak_slip[k] = w.peak_slip[k]
             out.slid[k] = w.slid[k]
-            look_at(cases.bodies[b], w, w.q)
+            out.flights[k] = w.flights[k]
+            out.hits[k] = w.hits[k]
             out.slip[k] = slip(cases.bodies[b], w, k)
 
 
 @entry_kernel
-def march(p, shaking, start, closing, book, w):
-    """March one body through ``scale`` × the motion and on until it rests or has fallen.
+def integrate(p, shaking, start, closing, book, w):
+    """Integrate one column through ``scale`` × the motion and on until it rests or has fallen.
 
     Parameters
     ----------
     p : BODY
     shaking : Shaking
-    start : (2, 6) coordinates and velocities
+    start : (2, 3 MOST) coordinates and velocities
     closing : speed over √(g b) below which a contact stays closed after an impact
     book : Book
     w : WORK
@@ -195,7 +203,7 @@ def march(p, shaking, start, closing, book, w):
         late = _now(shaking, i + 1)
         sample = Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
         tau = 0.0
-        met = 0
+        w.met = 0
         while tau < 1.0:
             if w.resting == 1:
                 if not known_rest:
@@ -210,7 +218,7 @@ def march(p, shaking, start, closing, book, w):
                 count = _handle(
                     p, w, Instant((i + tau) * dt, ah, av), closing, True, True, book.events, count
                 )
-                met += 1
+                w.met += 1
                 if w.resting == 1:
                     # it failed by rounding only
                     tau += 1e-9
@@ -260,16 +268,16 @@ def march(p, shaking, start, closing, book, w):
                 project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
-                met += 1
-                coarser = closing * 10.0 ** (met // MOST_EVENTS)
-                if met >= MOST_EVENTS:
+                w.met += 1
+                coarser = closing * 10.0 ** (w.met // MOST_EVENTS)
+                if w.met >= MOST_EVENTS:
                     w.forced += 1
                 ah, av = ground_at(sample, tau)
                 count = _handle(
                     p, w, Instant((i + tau) * dt, ah, av), coarser, False, False, book.events, count
                 )
                 fresh = True
-                if met > 10 * MOST_EVENTS:
+                if w.met > 10 * MOST_EVENTS:
                     tau = 1.0
             w.work += work
             w.rubbed += rubbed
@@ -306,20 +314,19 @@ def _begin(p, w, start):
         w.v[d] = start[1, d]
         w.a[d] = 0.0
     look_at(p, w, w.q)
-    for k in range(2):
+    lift_laws(p, w)
+    for k in range(p.count):
         w.slides[k] = 0
         for end in range(2):
-            w.closed[k, end] = 0
-            w.kind[k, end] = 0
             w.touching[k, end] = 0
-            if k < p.count:
-                _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
-                w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
+            _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
+            w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
     w.work = w.rubbed = w.struck = 0.0
-    for k in range(2):
+    for k in range(p.count):
         w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
-        w.slid[k] = 0
-    w.impacts = w.slips = w.flights = w.paradoxes = w.forced = w.fallen = w.resting = 0
+        w.slid[k] = w.flights[k] = w.hits[k] = 0
+    w.impacts = w.slips = w.paradoxes = w.forced = w.fallen = w.parted = w.resting = 0
+    w.met = w.several = w.searches = w.given_way = 0
 
 
 @kernel
@@ -372,7 +379,7 @@ def _handle(p, w, now, closing, all_ends, exclude, events, count):
     """
     for d in range(3 * p.count):
         w.old_v[d] = w.v[d]
-    for k in range(2):
+    for k in range(p.count):
         w.old_slides[k] = w.slides[k]
         for end in range(2):
             w.old_closed[k, end] = w.closed[k, end]
@@ -381,6 +388,7 @@ def _handle(p, w, now, closing, all_ends, exclude, events, count):
         for k in range(p.count):
             if w.fails[k, FALL] == 1:
                 w.fallen = k + 1
+                w.parted = _parted(p, w, k)
                 return _note(p, w, now.time, FALLEN, events, count)
     look_at(p, w, w.q)
     for k in range(p.count):
@@ -429,6 +437,7 @@ def _handle(p, w, now, closing, all_ends, exclude, events, count):
         for end in range(2):
             if w.touching[k, end] == 1 and approach(p, w, k, end) < -1e-13 * p.speed:
                 hit = True
+                w.hits[k] += 1
     if hit:
         strike(p, w, now.ah, now.av, closing * p.speed, False)
         _touch_closed(p, w)
@@ -444,7 +453,7 @@ def _handle(p, w, now, closing, all_ends, exclude, events, count):
         if w.slides[k] != 0 and w.old_slides[k] == 0:
             w.slips += 1
         if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
-            w.flights += 1
+            w.flights[k] += 1
     return _note(p, w, now.time, kind, events, count)
 
 
@@ -508,20 +517,10 @@ def _rest_ends(p, w, tau, early, late):
 
 
 @kernel
-def _mode_number(p, closed, slides):
-    """Mode as one number: for each interface its closed ends (bits) and 4 × (slip + 1)."""
-    number = 0
-    for k in range(p.count):
-        one = closed[k, 0] + 2 * closed[k, 1] + 4 * (slides[k] + 1)
-        number += one * 16**k
-    return number
-
-
-@kernel
 def _note(p, w, time, kind, events, count):
     """Write an event, if there is room; return the number of events so far."""
-    before = _mode_number(p, w.old_closed, w.old_slides)
-    after = _mode_number(p, w.closed, w.slides)
+    before = mode_number(p, w.old_closed, w.old_slides)
+    after = mode_number(p, w.closed, w.slides)
     if kind == CHANGE and before == after:
         return count
     if count < events.shape[0]:
@@ -530,13 +529,13 @@ def _note(p, w, time, kind, events, count):
         event[1] = kind
         event[2] = before
         event[3] = after
-        event[6] = kinetic_energy(p, w.old_v)
-        event[7] = kinetic_energy(p, w.v)
+        event[4] = kinetic_energy(p, w.old_v)
+        event[5] = kinetic_energy(p, w.v)
         for k in range(p.count):
-            event[4 + k] = slip(p, w, k)
-            event[8 + k] = w.q[3 * k + 2]
-            event[10 + k] = w.old_v[3 * k + 2]
-            event[12 + k] = w.v[3 * k + 2]
+            event[6 + k] = slip(p, w, k)
+            event[6 + p.count + k] = w.q[3 * k + 2]
+            event[6 + 2 * p.count + k] = w.old_v[3 * k + 2]
+            event[6 + 3 * p.count + k] = w.v[3 * k + 2]
     return count + 1
 
 
@@ -553,25 +552,38 @@ def slip(p, w, k):
         return x - p.standing[0] - p.corner[0, end, 0]
     side = 2 * end - 1
     # as it stood: corner and face in the standing configuration
-    dx = p.standing[3] + p.corner[1, end, 0] - p.standing[0] - p.face[1, 0]
-    dy = p.standing[4] + p.corner[1, end, 1] - p.standing[1] - p.face[1, 1]
-    along = dx * p.tilt_cos[1] - dy * p.tilt_sin[1]
-    return side * (beyond + p.half[1]) - along
+    at = 3 * k
+    dx = p.standing[at] + p.corner[k, end, 0] - p.standing[at - 3] - p.face[k, 0]
+    dy = p.standing[at + 1] + p.corner[k, end, 1] - p.standing[at - 2] - p.face[k, 1]
+    along = dx * p.tilt_cos[k] - dy * p.tilt_sin[k]
+    return side * (beyond + p.half[k]) - along
+
+
+@kernel
+def _parted(p, w, body):
+    """Interface, from 1, that is open furthest under a body that falls."""
+    widest, parted = -1.0, 0
+    for k in range(body + 1):
+        turned = abs(w.q[3 * k + 2] - (w.q[3 * k - 1] if k > 0 else 0.0))
+        if turned > widest:
+            widest, parted = turned, k + 1
+    return parted
 
 
 @kernel
 def _keep(p, w, i, now, history):
     look_at(p, w, w.q)
     solve(p, w, w.q, w.v, now.ah, now.av, False)
-    for d in range(3 * p.count):
+    n = p.count
+    for d in range(3 * n):
         history[i, d] = w.q[d]
-        history[i, 6 + d] = w.v[d]
-    for k in range(p.count):
-        history[i, 12 + k] = slip(p, w, k)
-        history[i, 14 + k] = w.normal[k, 0] + w.normal[k, 1]
-        history[i, 16 + k] = w.shear[k]
-        history[i, 22 + k] = w.out[3 * k + 2]
-    history[i, 18] = w.work
-    history[i, 19] = w.rubbed
-    history[i, 20] = w.struck
-    history[i, 21] = _mode_number(p, w.closed, w.slides)
+        history[i, 3 * n + d] = w.v[d]
+    for k in range(n):
+        history[i, 6 * n + k] = slip(p, w, k)
+        history[i, 7 * n + k] = w.normal[k, 0] + w.normal[k, 1]
+        history[i, 8 * n + k] = w.shear[k]
+        history[i, 9 * n + k] = w.out[3 * k + 2]
+    history[i, 10 * n] = w.work
+    history[i, 10 * n + 1] = w.rubbed
+    history[i, 10 * n + 2] = w.struck
+    history[i, 10 * n + 3] = mode_number(p, w.closed, w.slides)
