@@ -12,7 +12,6 @@ from fuzz_damage import changed, damage
 
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.fragility.tests_file import read_tests
-from rockfrag.guests import study_stages
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.study.configurations import read_configurations, read_specimens
@@ -115,9 +114,7 @@ def _sources(folder: Path, ending: str) -> dict[str, bytes]:
 
 
 def _load(path: Path) -> None:
-    study = load_any(path)
-    for stage in study_stages(study):
-        assert stage.output_files(study)
+    assert load_any(path).name
 
 
 def _used(smoke: dict[str, Any], name: str, damaged: Path) -> Path:

@@ -64,7 +64,7 @@ def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[di
     project = folder / "project"
     shutil.rmtree(project, ignore_errors=True)
     project.mkdir()
-    for name in ("Snakefile", "workflow", "profiles"):
+    for name in ("workflow", "profiles"):
         (project / name).symlink_to(ROOT / name)
     begin, before = time.monotonic(), _of_children()
     command = [sys.executable, "workflow/run.py", str(folder / "study.yaml")]
