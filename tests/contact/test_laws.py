@@ -10,7 +10,7 @@ from rockfrag.engines.planar.impact import strike
 from rockfrag.engines.planar.modes import kinetic_energy
 from rockfrag.engines.planar.records import posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
-from rockfrag.rocking import simulate
+from rockfrag.rocking import MeasuredRestitution, simulate
 from rockfrag.system import ImpactLaw, System, geometry
 
 from .cases import DT, random_block, random_motion, random_stack
@@ -173,9 +173,12 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(stacks: bool, law:
         body = random_stack(rng) if stacks else random_block(rng)
         laws = drawn_laws(body.system(), law, rng.uniform(0.8, 1.2))
         system = with_contacts(body, [1e6] * body.system().count, laws)
-        pure = with_contacts(body, [None] * system.count, laws)  # type: ignore[list-item]
+        values = [None if np.isnan(each.right) else (each.right, each.left) for each in laws]
+        measured = (
+            MeasuredRestitution(values if stacks else values[0], law) if any(values) else None
+        )
         motion = random_motion(rng)
-        slow, fast = run(system, motion), simulate(pure, motion, DT)
+        slow, fast = run(system, motion), simulate(body, motion, DT, restitution=measured)
         times = fast.events["time"].to_numpy()
         if len(times) < 5 or fast.lost_contact < times[4] or slow.work["given_way"]:
             continue
