@@ -63,8 +63,8 @@ format: .venv/installed
 	@.venv/bin/python .venv/bin/snakefmt workflow
 
 fuzz: .venv/installed
-	@.venv/bin/python benchmarks/fuzz.py --inputs $(INPUTS)
-	@.venv/bin/python benchmarks/fuzz_requests.py --requests $(REQUESTS)
+	@$(RUN) tests.fuzz --inputs $(INPUTS)
+	@$(RUN) tests.fuzz.requests --requests $(REQUESTS)
 
 torture: .venv/installed
 	@$(RUN) tests.fault_injection
