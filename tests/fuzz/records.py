@@ -11,14 +11,15 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
-from fuzz_damage import damage
 from obspy import Stream, Trace, UTCDateTime
 
 from rockfrag.records.catalogue import load_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
 
-BUILDERS = Path(__file__).resolve().parents[1] / "tests/records/built_records.py"
+from .damage import damage
+
+BUILDERS = Path(__file__).resolve().parents[2] / "tests/records/built_records.py"
 
 
 def records(folder: Path) -> Callable[[random.Random], tuple[Path, Callable[[], object]]]:

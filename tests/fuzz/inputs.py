@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import yaml
-from fuzz_damage import changed, damage
 
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.fragility.tests_file import read_tests
@@ -17,7 +16,9 @@ from rockfrag.shaketable.laboratory_table import read_measured
 from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.study.loading import load_any
 
-ROOT = Path(__file__).resolve().parents[1]
+from .damage import changed, damage
+
+ROOT = Path(__file__).resolve().parents[2]
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 NUMBERS: tuple[Any, ...] = (

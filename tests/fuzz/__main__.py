@@ -1,7 +1,7 @@
 """Give the package damaged inputs of all kinds, and see that each is used or refused.
 
-    python benchmarks/fuzz.py --inputs 1000000
-    python benchmarks/fuzz.py --inputs 1000 --only hazard --seed 7
+    python -m tests.fuzz --inputs 1000000
+    python -m tests.fuzz --inputs 1000 --only hazard --seed 7
 
 Each must be used, or refused with an :class:`InputError` of one line and at most 500 characters, within five
 seconds of processor time and one gibibyte. All processors work. Prints how many there were of each kind, and
@@ -25,12 +25,12 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from fuzz_assess import hazard_files, objects
-from fuzz_inputs import configurations, numbers, tables
-from fuzz_records import records
-
 from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.processes import in_processes
+
+from .assess import hazard_files, objects
+from .inputs import configurations, numbers, tables
+from .records import records
 
 MOST_SECONDS = 5.0
 LONGEST_WAIT_S = 120.0

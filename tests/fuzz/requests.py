@@ -1,13 +1,12 @@
 """Ask `rockfrag assess` at random, and hold every answer against itself.
 
-    python benchmarks/fuzz_requests.py --requests 2000
+    python -m tests.fuzz.requests --requests 2000
 
 Each request must be answered without a contradiction, or be refused in one sentence (``tests/assess/asking.py``).
 Prints how many were answered and refused, and what went wrong; exit status 1 if anything did.
 """
 
 import argparse
-import importlib.util
 import os
 import random
 import sys
@@ -15,7 +14,6 @@ import tempfile
 import traceback
 from collections import Counter
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 
@@ -24,7 +22,8 @@ from rockfrag.processes import in_processes
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 
-TESTS = Path(__file__).resolve().parents[1] / "tests" / "assess"
+from ..assess import asking, samples
+
 EARTHQUAKES = 6
 PART = 50
 
@@ -57,7 +56,6 @@ def main() -> int:
 
 def _part(part: tuple[int, int, int]) -> tuple[Counter[int], list[str]]:
     seed, first, last = part
-    asking, samples = _module("asking"), _module("samples")
     fates: Counter[int] = Counter()
     wrong = []
     with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
@@ -90,14 +88,6 @@ def write_records(folder: Path) -> Path:
     place = folder / "catalogue.csv"
     place.write_text("\n".join(rows) + "\n")
     return place
-
-
-def _module(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, TESTS / f"{name}.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 if __name__ == "__main__":

@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from fuzz_damage import changed, damage
-from fuzz_inputs import DUMPER
 
 from rockfrag.assess.hazard.reading import read_hazard
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.request import read_request
 
-ROOT = Path(__file__).resolve().parents[1]
+from .damage import changed, damage
+from .inputs import DUMPER
+
+ROOT = Path(__file__).resolve().parents[2]
 STATUES: tuple[dict[str, Any], ...] = (
     {
         "name": "A saint", "width": "35 cm", "height": "1.6 m", "depth": "30 cm", "mass_kg": 310,
