@@ -95,7 +95,7 @@ for _module in (elementary, geometry):
 
 @cache
 def _digest() -> str:
-    """Digest of all kernels' sources: those in folders of engines, of the arithmetic and of bodies as they stand."""
+    """Digest of all kernels' sources: those of engines, of the arithmetic and of bodies."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[2]
     sources = sorted((package / "engines").glob("*/**/*.py"))
