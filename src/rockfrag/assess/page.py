@@ -108,7 +108,7 @@ def _answer(found: Assessment) -> Answer:
             lambda: shares_figure(found),
         ),
         rests_on=assumptions(found),
-        could_overturn=[*doubts(found), f"The range comes mostly from {NAMES[found.main.largest]}."]
+        could_change=[*doubts(found), f"The range comes mostly from {NAMES[found.main.largest]}."]
         if found.main.largest
         else doubts(found),
         questions=[

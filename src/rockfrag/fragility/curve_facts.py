@@ -28,7 +28,7 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
     """Say of a row of a fragility table what it rests on, in sentences; empty where nothing is known."""
     parts = []
     if _known(row, "n_motions"):
-        events = f" of {int(row['n_events'])} events" if _known(row, "n_events") else ""
+        events = f" of {int(row['n_events'])} earthquakes" if _known(row, "n_events") else ""
         parts.append(f"{int(row['n_motions'])} motions{events}.")
     if _known(row, "theta_lower") and _known(row, "beta_lower"):
         parts.append(
@@ -73,4 +73,4 @@ def _without_form(row: Mapping[Hashable, Any]) -> str:
         )
         if math.isfinite(value):
             words.append(f"{name} {value:.4g} ({low:.4g} to {high:.4g})")
-    return f"In its place the never-falling share of the tests, without a form: {', '.join(words)}."
+    return f"Use the nonparametric monotone curve instead: {', '.join(words)}."

@@ -50,7 +50,7 @@ def campaign_tables(job: Job[CampaignStudy]) -> Results:
     groups = pd.factorize(tests["group"])[0]
     validated = _validated(study, verdicts, measured, groups)
     job.log.info(
-        "%d tests under %d motions: %.1f %% of the verdicts right",
+        "%d tests under %d motions: %.1f %% of the outcomes right",
         len(tests), groups.max() + 1, 100 * (validated.verdicts == measured).mean(),
     )  # fmt: skip
     yield "tests", judged_tests(tests, validated, measured)

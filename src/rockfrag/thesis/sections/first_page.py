@@ -2,12 +2,13 @@
 
 import pandas as pd
 
-from rockfrag.report.answer import could_overturn, questions, rests_on, study_answer
+from rockfrag.report.answer import could_change, questions, rests_on, study_answer
+from rockfrag.report.findings import friction_sentence
 from rockfrag.report.part import Answer, FigureSpec, Results
 from rockfrag.report.sections.explanation import asks_explanation
 from rockfrag.report.sections.inversion import asks_inversion
 from rockfrag.shaketable.readings import READING
-from rockfrag.thesis.figures.answer import ratios_figure
+from rockfrag.thesis.figures.answer import has_thesis_floors, ratios_figure
 from rockfrag.thesis.first_page import first_page
 from rockfrag.thesis.stages import wide_effects
 
@@ -27,17 +28,25 @@ def thesis_answer(results: Results) -> Answer:
     found = first_page(effects, results.table("claims"), explanation, wide, inversion, wanted)
     here = effects[effects["reading"] == READING]
     return Answer(
-        asked="Does a pedestal make a statue overturn later on the ground and earlier on upper floors, as the "
-        "thesis reports of its shake-table tests, if its towers only rock?",
+        asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
         figure=FigureSpec(
             "answer",
             f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
-            "Overturning amplitude with over that without pedestal, with 95 % intervals over earthquakes; grey is "
-            "±10 %. Arrows show on which side of 1 the thesis reports each floor.",
+            "Amplitude with/without pedestal, 95 % intervals; grey is ±10 %."
+            + (" Arrows: direction in the thesis." if has_thesis_floors(here) else ""),
             lambda: ratios_figure(here, None if wide is None else wide[wide["reading"] == READING]),
         ),
+        advice=_advice(results),
         rests_on=rests_on(results),
-        could_overturn=could_overturn(results),
+        could_change=could_change(results),
         questions=questions(results),
     )
+
+
+def _advice(results: Results) -> list[str]:
+    """What to measure: the friction that rocking without sliding needs, where that is much."""
+    validity = results.table("validity")
+    if results.study.slides or validity.empty:
+        return []
+    return [f"Measure the friction under the statue. {friction_sentence(validity)}."]
