@@ -29,7 +29,7 @@ class Compared(NamedTuple):
     rejected: list[str]
 
 
-def compared_curves(rows: pd.DataFrame) -> Compared:
+def compared_curves(rows: pd.DataFrame, nonparametric: bool | None = None) -> Compared:
     """Choose one estimator for all curves of a comparison.
 
     Lognormal curves are compared where none of them is rejected by its goodness of fit (p < 0.05). Where one is,
@@ -40,6 +40,8 @@ def compared_curves(rows: pd.DataFrame) -> Compared:
     ----------
     rows
         Rows of :func:`rockfrag.fragility.fragility_table` of one measure and one reading.
+    nonparametric
+        The estimator where these rows are a part of a larger comparison, which decides.
 
     Returns
     -------
@@ -48,7 +50,7 @@ def compared_curves(rows: pd.DataFrame) -> Compared:
     """
     below = rows["p_fit"] < REJECTED
     rejected = list(dict.fromkeys(rows.loc[below, "configuration"]))
-    if not rejected:
+    if not (bool(rejected) if nonparametric is None else nonparametric):
         return Compared(rows, False, rejected)
     values = {
         f"{name}{end}": rows[f"{name}_isotonic{end}"]

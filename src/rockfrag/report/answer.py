@@ -94,7 +94,8 @@ def advice(results: Results) -> list[str]:
         curves = headline_curves(results.table("fragility")).rows
         curves = curves[curves["theta"].notna()]
         if len(curves) > 1 and curves["theta"].min() < curves["theta"].max():
-            words.append(f"Secure {curves.loc[curves['theta'].idxmin(), 'configuration']} first.")
+            weakest = min(curves.to_dict("records"), key=lambda row: float(row["theta"]))
+            words.append(f"Secure {weakest['configuration']} first.")
     validity = results.table("validity")
     if not results.study.slides and len(validity):
         demand = validity["friction_demand"].to_numpy(dtype=float)
@@ -193,8 +194,7 @@ def _friction_words(results: Results) -> str:
         cases = int(sliding["cases"].sum())
         return (
             f"Another friction: the assumed one decides {of_all(other, cases, 'outcome')}, and nobody measured "
-            f"it on "
-            "these surfaces."
+            "it on these surfaces."
         )
     validity = results.table("validity")
     if validity.empty:
@@ -214,6 +214,5 @@ def _flight_words(results: Results) -> str:
     share = of_all(light, np.size(results.lightest), "analysis", "analyses")
     return (
         f"Flight: in {share} the ground takes away more than half of all weight, so that bodies may leave it; "
-        f"the key "
-        "friction lets them fly."
+        "the key friction lets them fly."
     )

@@ -19,7 +19,16 @@ from rockfrag.report.figures.campaign import (
 from rockfrag.report.page import Column, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
 from rockfrag.report.study_report import FIGURES, draw, write_captions
-from rockfrag.report.wording import counted, estimate, listed, number, of_all, probability, sentence
+from rockfrag.report.wording import (
+    agree,
+    counted,
+    estimate,
+    listed,
+    number,
+    of_all,
+    probability,
+    sentence,
+)
 from rockfrag.stages.campaign import OURS, TABLES
 from rockfrag.stages.digest import source_digest
 from rockfrag.study.campaign import CampaignStudy
@@ -105,7 +114,7 @@ def _answer(
             "Unmeasured properties of the object are fitted on some motions and judged on the others.",
         ],
         could_change=[
-            f"{sentence(of_all(near, len(tests), 'test'))} {'is' if near == 1 else 'are'} near-critical: "
+            f"{sentence(of_all(near, len(tests), 'test'))} {agree(near, len(tests), 'is', 'are')} near-critical: "
             "plausible ways to set up the object disagree about the outcome in more than one of ten.",
             *(one.headline + "." for one in found[3:]),
         ],
@@ -131,10 +140,9 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
         found.append(
             Finding(
                 f"{sentence(of_all(int((wrong & near).sum()), int(wrong.sum()), 'wrong prediction'))} "
-                f"{'is' if int((wrong & near).sum()) == 1 else 'are'} near-critical",
+                f"{agree(int((wrong & near).sum()), int(wrong.sum()), 'is', 'are')} near-critical",
                 f"Plausible ways to set up the object disagree about the outcome in {int(near.sum())} of "
-                f"{len(tests)} "
-                "tests; the unmeasured properties do not decide the others.",
+                f"{len(tests)} tests; the unmeasured properties do not decide the others.",
             )
         )
     return found
@@ -167,8 +175,7 @@ def _against_rivals(rivals: Sequence[Row]) -> list[Finding]:
             headline,
             "",
             f"{sentence(name)} predicts {_percent(best)} of the same tests: a difference of {more} percentage "
-            f"points "
-            f"(p {_p(best['p'])}; p {_p(adjusted)} after Bonferroni’s adjustment for "
+            f"points (p {_p(best['p'])}; p {_p(adjusted)} after Bonferroni’s adjustment for "
             f"{counted(len(rivals), 'alternative')}).",
         )
     ]
@@ -238,8 +245,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         "agreement",
         f"{sentence(_who(best['who']))} is right most often, in {_percent(best)} of the tests.",
         f"Outcomes predicted right, with {100 * study.confidence:g} % intervals over motions. Filled dots are "
-        f"judged on "
-        "motions that were not used for fitting, open ones are as given.",
+        "judged on motions that were not used for fitting, open ones are as given.",
         lambda: agreement_figure(agreement.assign(who=shown["who"])),
     )
     return Section(
@@ -308,8 +314,7 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         "fragility_beside",
         found[0].headline + "." if found else "No curve rises.",
         f"Measured (dots, line) and simulated (squares, dashes) fragility in {name}; points are fractions in "
-        f"bins of "
-        "equally many tests.",
+        "bins of equally many tests.",
         lambda: beside_figure(
             tests, fragility[fragility["measure"] == measure], measure, f"{name} [{unit}]"
         ),
@@ -433,9 +438,8 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
             FigureSpec(
                 "footprint",
                 f"Plausible bases are {width.min():.1f} to {width.max():.1f} cm wide.",
-                "The object from above: outline, contact polygons for plausible tolerances, centre of gravity, "
-                "and "
-                "plausible directions of shaking.",
+                "The object from above: outline, contact polygons for plausible tolerances, centre of "
+                "gravity, and plausible directions of shaking.",
                 lambda: footprint_figure(footprint, trials),
             )
         )
@@ -474,8 +478,7 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
         f"{len(likely)} of {len(trials)} trials are plausible.",
         [
             "A trial is plausible if its predictions are as right as the best within two standard errors. It "
-            "is chosen "
-            "on all tests and therefore judges nothing."
+            "is chosen on all tests and therefore judges nothing."
         ],
         parts,  # type: ignore[arg-type]
     )

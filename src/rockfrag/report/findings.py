@@ -10,6 +10,7 @@ import pandas as pd
 from rockfrag.fragility.compared import Compared, compared_curves
 from rockfrag.report.part import Finding
 from rockfrag.report.wording import (
+    agree,
     counted,
     decimals_of,
     estimate,
@@ -42,6 +43,8 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     level
         Level of the intervals in words, such as ``90 %``.
     """
+    if curves.empty:
+        return None
     found = headline_curves(curves)
     rows = found.rows[found.rows["theta"].notna()]
     if rows.empty:
@@ -50,10 +53,8 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
     decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
     texts = estimates(rows, ("theta", "theta_lower", "theta_upper"), decimals)
     named = [f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)]
-    low, high = (
-        rows.loc[rows["theta"].idxmin()].to_dict(),
-        rows.loc[rows["theta"].idxmax()].to_dict(),
-    )
+    by_median = sorted(rows.to_dict("records"), key=lambda row: float(row["theta"]))
+    low, high = by_median[0], by_median[-1]
     least, most = (f"{number(row['theta'], decimals)} {unit}" for row in (low, high))
     headline = (
         f"A {measure} of {least} overturns {listed(rows['configuration'].tolist())} with 50 % probability"
@@ -117,8 +118,9 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
         headline = f"At recorded strength {_overturn(fallen, motions)} {by_name.index[0]}"
         numbers = ""
     else:
-        low, high = by_name["sum"].idxmin(), by_name["sum"].idxmax()
-        least, most = (int(by_name.loc[name, "sum"]) for name in (low, high))
+        counts = {str(name): int(n) for name, n in by_name["sum"].items()}
+        low, high = min(counts, key=counts.__getitem__), max(counts, key=counts.__getitem__)
+        least, most = counts[low], counts[high]
         headline = (
             f"At recorded strength {_overturn(least, motions)} each object"
             if least == most
@@ -132,15 +134,14 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     sure = (
         "No outcome changes if the motion is scaled by anything within ±10 %."
         if near == 0
-        else f"{sentence(of_all(near, analyses, 'outcome'))} {'flips' if 1 in (near, analyses) else 'flip'} if "
-        f"the "
-        "motion is scaled within ±10 %."
+        else f"{sentence(of_all(near, analyses, 'outcome'))} {agree(near, analyses, 'flips', 'flip')} if "
+        "the motion is scaled within ±10 %."
     )
     return Finding(headline, sure, numbers)
 
 
 def _overturn(n: int, motions: int) -> str:
-    return f"{of_all(n, motions, 'motion')} {'overturns' if n == 1 or motions == 1 else 'overturn'}"
+    return f"{of_all(n, motions, 'motion')} {agree(n, motions, 'overturns', 'overturn')}"
 
 
 def amplitudes_found(tests: pd.DataFrame) -> Finding:
@@ -151,7 +152,7 @@ def amplitudes_found(tests: pd.DataFrame) -> Finding:
     fallen = len(known) + len(first)
     headline = "No simulated test overturns"
     if fallen:
-        verb = "overturns" if 1 in (fallen, len(tests)) else "overturn"
+        verb = agree(fallen, len(tests), "overturns", "overturn")
         headline = f"{sentence(of_all(fallen, len(tests), 'simulated test'))} {verb}"
     words = []
     if len(known):
@@ -260,9 +261,8 @@ def windows_found(windows: pd.DataFrame, tests: pd.DataFrame) -> Finding:
     factor = float(np.exp(np.log(both.iloc[:, 1] / both.iloc[:, 0]).mean()))
     numbers = (
         f"The amplitude above which every run overturns is on average {factor:.2f} times that of the first "
-        f"overturning (geometric mean of {of_all(len(both), len(fallen), 'analysis', 'analyses')} in which "
-        f"both are "
-        "known)."
+        f"overturning (geometric mean of {of_all(len(both), len(fallen), 'analysis', 'analyses')} in which both "
+        "are known)."
     )
     return Finding(headline, text, numbers)
 
@@ -432,12 +432,12 @@ def friction_sentence(validity: pd.DataFrame) -> str:
     needs = f"a friction coefficient above {FRICTION:g} (dry stone)"
     if not sides:
         n = beyond(validity)
-        verb = "requires" if n == 1 or len(validity) == 1 else "require"
+        verb = agree(n, len(validity), "requires", "require")
         return f"{sentence(of_all(n, len(validity), 'test'))} {verb} {needs}"
     each = [
         f"{of_all(beyond(part), len(part), 'test')} {_WHERE[side]}" for side, part in sides.items()
     ]
-    verb = "requires" if beyond(sides["P"]) == 1 or len(sides["P"]) == 1 else "require"
+    verb = agree(beyond(sides["P"]), len(sides["P"]), "requires", "require")
     return f"{sentence(each[0])} {verb} {needs}, and {each[1]}"
 
 

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 TERMS: Mapping[str, str] = {
     "NP": "no pedestal: the object alone on its floor; P is the object on its pedestal.",
     "P/NP": "overturning amplitude with the pedestal divided by that without it, of the same object under the "
-    "same "
-    "motion. Above 1 the object overturns later with its pedestal.",
+    "same motion. Above 1 the object overturns later with its pedestal.",
     "NP/P": "the inverse: overturning amplitude without the pedestal divided by that with it.",
     "amplitude": "peak acceleration of the motion that shakes the object, in units of g.",
     "overturning amplitude": "largest peak acceleration survived before the first overturning, as the motion "
-    "is raised "
-    "in steps.",
+    "is raised in steps.",
     "PGA, PGV, PGD": "peak ground acceleration, velocity and displacement.",
     "PFA, PFV": "peak floor acceleration and velocity: peaks of the motion of a floor.",
     "AvgSA": "average spectral acceleration: geometric mean of SA over a range of periods.",
@@ -26,15 +24,13 @@ TERMS: Mapping[str, str] = {
     "lognormal": "curve of the form Φ(ln(IM/θ)/β), with Φ the normal distribution and IM the intensity measure.",
     "nonparametric": "without an assumed shape: the monotone curve that is closest to the simulated outcomes.",
     "bound only": "the test says only that the amplitude is above (or below) a value, because nothing "
-    "overturned (or "
-    "everything did).",
+    "overturned (or everything did).",
     "open": "of a limit: the data set none on this side.",
     "undecided": "of a statement: the data neither confirm nor refute it.",
     "survival window": "range of stronger motions that the object survives although a weaker one overturned it.",
     "robust": "of an outcome: the same for the motion scaled by anything within ±10 %.",
     "p value": "probability of data at least this far from the hypothesis if it were true; small values speak "
-    "against "
-    "it.",
+    "against it.",
     "Holm": "adjustment of p values that limits the chance of any false finding in a family of tests (Holm 1979).",
     "Benjamini–Hochberg": "adjustment of p values that limits the expected fraction of false findings among all "
     "findings (Benjamini and Hochberg 1995).",

@@ -25,8 +25,7 @@ TABLES = ("tests", "fragility", "recommendation", "bins", "goodness")
 
 _CAPTIONS = {
     "measures": "Probability of overturning over each measure: tests in bins with binomial limits, a local "
-    "average "
-    "(dashed), and the lognormal curve with its band.",
+    "average (dashed), and the lognormal curve with its band.",
     "surface": "Tests in the first two measures, with lines of equal fitted probability.",
     "calibration": "Observed against fitted fractions of overturned tests; the diagonal is a perfect fit.",
 }
@@ -191,8 +190,7 @@ def _choice(
         [
             message,
             "β is the efficiency, AUC the probability that an overturned test had the larger measure. A small "
-            "p says "
-            "that the residuals depend on that column.",
+            "p says that the residuals depend on that column.",
         ],
         [
             table_html(choice, columns, "Measures compared on the same tests, best first."),

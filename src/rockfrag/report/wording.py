@@ -94,6 +94,11 @@ def of_all(n: int, total: int, one: str, many: str | None = None) -> str:
     return f"{n} of {total} {noun}"
 
 
+def agree(n: int, total: int, one: str, many: str) -> str:
+    """The verb that goes with :func:`of_all`: ``needs`` of one, of none and of the only one, else ``need``."""
+    return one if n in (0, 1) or total == 1 else many
+
+
 def listed(names: Sequence[str]) -> str:
     """``a``, ``a and b``, ``a, b and c``; of many the first ones and how many more."""
     if len(names) > MOST_LISTED:
@@ -101,6 +106,14 @@ def listed(names: Sequence[str]) -> str:
     if len(names) < 2:
         return "".join(names)
     return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+LONGEST_LABEL = 40
+
+
+def label(name: str) -> str:
+    """A name that a reader looks up elsewhere, whole wherever a figure has room for it."""
+    return shortened(name, LONGEST_LABEL)
 
 
 def shortened(name: str, longest: int = LONGEST_NAME) -> str:

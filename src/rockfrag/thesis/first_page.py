@@ -12,7 +12,7 @@ import pandas as pd
 
 from rockfrag.report.part import Finding
 from rockfrag.report.sections.inversion import mechanism_name
-from rockfrag.report.wording import counted, estimate, listed, of_all, sentence
+from rockfrag.report.wording import agree, counted, estimate, listed, of_all, sentence
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.pattern import departures_by_floor
 from rockfrag.thesis.statements.floors import FIFTH, FLOORS, GROUND, THIRD
@@ -107,10 +107,8 @@ def _reported(effects: pd.DataFrame, claims: pd.DataFrame) -> Finding:
         _HEADLINES[found[35]],
         "",
         f"{REPORTED} For rigid blocks that only rock, the amplitude with pedestal divided by that without is "
-        f"{ratios}, "
-        f"and {_whole(effects)} over all {pairs} (95 % intervals over earthquakes). {outcomes}. A difference "
-        f"between "
-        f"thesis and model implies an effect that the model omits.{_why(claims)}",
+        f"{ratios}, and {_whole(effects)} over all {pairs} (95 % intervals over earthquakes). {outcomes}. A "
+        f"difference between thesis and model implies an effect that the model omits.{_why(claims)}",
     )
 
 
@@ -130,7 +128,7 @@ def _what_would(explanation: pd.DataFrame) -> Finding:
     simulated, computed = table[~table["arithmetic"]], table[table["arithmetic"]]
     patterned = list(table.loc[table["beyond_chance"], "name"])
     who = of_all(len(patterned), len(table), "perturbation")
-    verb = "produces" if len(patterned) == 1 or len(table) == 1 else "produce"
+    verb = agree(len(patterned), len(table), "produces", "produce")
     headline = f"{sentence(who)} of the model {verb} the thesis’s pattern"
     words = []
     if patterned:
@@ -160,7 +158,7 @@ def _simulated_words(simulated: pd.DataFrame) -> str:
         f"Benjamini–Hochberg at {100 * DISCOVERY_RATE:g} % over {counted(len(simulated), 'test')}"
     )
     who = sentence(of_all(len(changing), len(simulated), "simulated perturbation"))
-    verb = "changes" if 1 in (len(changing), len(simulated)) else "change"
+    verb = agree(len(changing), len(simulated), "changes", "change")
     words = f"{who} {verb} the ratio over all floors ({rule})"
     size = np.log(simulated["ratio"]).abs()
     largest = simulated.loc[size.nlargest(MOST_NAMED).index].to_dict("records")
@@ -181,18 +179,18 @@ def _inverted(inversion: pd.DataFrame, wanted_percent: Mapping[str, float]) -> s
     pairs = everywhere["factor_2"] != ""
     local = inversion[inversion["acts_on"] != "all floors"]
     closest = [
-        f"{_both(row, wanted_percent)} ({mechanism_name(row)}{_ACTING[row['acts_on']]})"
-        for rows in (everywhere[~pairs], everywhere[pairs], local)
+        f"the closest {what} gives {_both(row, wanted_percent)} ({mechanism_name(row)}{_ACTING[row['acts_on']]})"
+        for what, rows in (
+            ("single one", everywhere[~pairs]),
+            ("pair", everywhere[pairs]),
+            ("one acting at one place only", local),
+        )
         for row in rows.head(1).to_dict("records")
     ]
     reached = int(inversion["reaches"].sum())
     who = sentence(of_all(reached, len(inversion), "mechanism"))
-    verb = "produces" if reached == 1 or len(inversion) == 1 else "produce"
-    return (
-        f"{who} (one perturbation, or two together) {verb} {goal}; the closest single one, pair, and one that "
-        f"acts at "
-        f"one place only give {listed(closest)}."
-    )
+    verb = agree(reached, len(inversion), "produces", "produce")
+    return f"{who} (one perturbation, or two together) {verb} {goal}; {listed(closest)}."
 
 
 _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}

@@ -19,7 +19,7 @@ def _section(results: Results) -> Section:
     found = recorded_found(recorded)
     motions = recorded["motion"].nunique()
     caption = (
-        "Largest rotation over the critical angle, under each motion as recorded; 1 or more is overturning. "
+        "Largest rotation divided by the critical angle, under each motion as recorded. "
         "A dot marks an outcome that flips if the motion is scaled within ±10 %."
     )
     if motions > MOST_ROWS:

@@ -7,7 +7,7 @@ import pandas as pd
 from rockfrag.report.figures.building import AXIS_NAMES, floor_amplitudes
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import number, of_all, sentence
+from rockfrag.report.wording import agree, number, of_all, sentence
 from rockfrag.study.study import Study
 
 _COLUMNS = (
@@ -40,7 +40,7 @@ def _section(results: Results) -> Section:
             "One property of the building is changed at a time. Lines are geometric means of the objects "
             "without pedestal over the motions that overturned them on every floor.",
             f"{sentence(of_all(doubtful, len(variants), 'building'))} "
-            f"{'is' if doubtful == 1 else 'are'} shaken beyond the validity of the building model.",
+            f"{agree(doubtful, len(variants), 'is', 'are')} shaken beyond the validity of the building model.",
         ],
         [
             *(

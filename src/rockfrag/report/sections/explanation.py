@@ -25,6 +25,7 @@ from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import (
+    agree,
     counted,
     has_interval,
     listed,
@@ -190,14 +191,13 @@ def _section(results: Results) -> Section | None:
         "explanation",
         f"Ratios with over without pedestal where one parameter is perturbed. {message}",
         "Overturning amplitude with over that without pedestal, where one parameter of the ideal model is "
-        "perturbed: "
-        "diamonds with 95 % intervals are all floors, small marks single floors. Grey is ±10 %."
+        "perturbed: diamonds with 95 % intervals are all floors, small marks single floors. Grey is ±10 %."
         + (
             f" Shown are the {MOST_DRAWN} of {len(simulated)} perturbations with the largest effect."
             if len(simulated) > MOST_DRAWN
             else ""
         ),
-        lambda: explanation_figure(effects),
+        lambda: explanation_figure(effects, list(results.study.floors)),
     )
     return Section(
         "explanation",
@@ -205,8 +205,7 @@ def _section(results: Results) -> Section | None:
         message,
         [
             "One parameter at a time is perturbed, with the amplitudes and steps of the protocol; the rest is "
-            "as in "
-            "the study.",
+            "as in the study.",
             *_beyond(simulated),
             adjusted_words(simulated),
             *_arithmetic_words(computed),
@@ -221,7 +220,7 @@ def within_ten_percent(simulated: pd.DataFrame) -> str:
         return "No perturbation was simulated."
     small = int(simulated["ratio"].between(*NONE).sum())
     who = sentence(of_all(small, len(simulated), "simulated perturbation"))
-    verb = "leaves" if 1 in (small, len(simulated)) else "leave"
+    verb = agree(small, len(simulated), "leaves", "leave")
     return f"{who} {verb} the mean ratio with/without pedestal within ±10 %."
 
 
@@ -231,11 +230,10 @@ def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
     left = int((simulated["p_adjusted"] < level).sum())
     return (
         f"{sentence(of_all(outside, len(simulated), 'simulated perturbation'))} "
-        f"{'has a' if 1 in (outside, len(simulated)) else 'have'} 95 % "
-        f"{'interval that excludes' if 1 in (outside, len(simulated)) else 'intervals that exclude'} 1. Chance "
-        f"alone "
-        f"makes some of so many do so: with the Benjamini–Hochberg adjustment for {len(simulated)} tests, {left} "
-        f"{'differs' if left == 1 else 'differ'} from 1 at the {100 * level:g} % level."
+        f"{agree(outside, len(simulated), 'has a', 'have')} 95 % "
+        f"{agree(outside, len(simulated), 'interval that excludes', 'intervals that exclude')} 1. Chance alone "
+        f"makes some of so many do so: with the Benjamini–Hochberg adjustment for {len(simulated)} tests, "
+        f"{left} {'differs' if left == 1 else 'differ'} from 1 at the {100 * level:g} % level."
     )
 
 
@@ -262,9 +260,8 @@ def _arithmetic_words(computed: pd.DataFrame) -> list[str]:
         return []
     return [
         f"{sentence(counted(len(computed), 'further value'))} {'is' if len(computed) == 1 else 'are'} "
-        f"arithmetic and "
-        "not simulation: a mass that is moved but not counted multiplies each amplitude by a known factor. Their "
-        "intervals are scatter of the same pairs, and no adjustment applies."
+        "arithmetic and not simulation: a mass that is moved but not counted multiplies each amplitude by a "
+        "known factor. Their intervals are scatter of the same pairs, and no adjustment applies."
     ]
 
 
@@ -285,22 +282,25 @@ def _laws_differ(whole: pd.DataFrame, beyond: pd.Series) -> pd.Series:
     return beyond.groupby([base, whole["level"]]).transform("nunique") > 1
 
 
-def explanation_figure(effects: pd.DataFrame) -> Figure:
+def explanation_figure(effects: pd.DataFrame, order: Sequence[str] = ()) -> Figure:
     """Draw the ratio with over without pedestal of the perturbations with the largest effect.
 
     Parameters
     ----------
     effects
         As :func:`rockfrag.stages.explanation.explanation_tables` returns them.
+    order
+        Floors in the order of the legend; others follow.
     """
     simulated = departures(effects)
     simulated = simulated[~simulated["arithmetic"]]
-    largest = np.log(simulated["ratio"].astype(float)).abs().nlargest(MOST_DRAWN).index
+    largest = simulated["ratio"].astype(float).map(np.log).abs().nlargest(MOST_DRAWN).index
     shown = simulated.loc[largest].sort_values("ratio", kind="stable")
     ideal = effects[(effects["floor"] == "all") & (effects["level"] == REFERENCE)].head(1)
     ideal = ideal.assign(name="ideal model", lower=ideal["ratio_lower"], upper=ideal["ratio_upper"])
     rows = pd.concat([ideal, shown], ignore_index=True)
-    floors = [floor for floor in dict.fromkeys(effects["floor"]) if floor != "all"]
+    own = set(effects["floor"]) - {"all"}
+    floors = [one for one in dict.fromkeys([*order, *effects["floor"]]) if one in own]
     with figure_style():
         figure = new_figure(WIDEST, 1.0 + 0.26 * len(rows))
         axes = figure.subplots()
@@ -326,13 +326,18 @@ def explanation_figure(effects: pd.DataFrame) -> Figure:
         return figure
 
 
-_LABEL_WIDTH = 30
+_LABEL_WIDTH = 34
 
 
 def _figure_label(name: str) -> str:
     """A name of a perturbation on two lines at most, without words that stand in the caption."""
     return fill(
-        sentence(str(name).replace("the object's ", "").replace("a friction", "friction")),
+        sentence(
+            str(name)
+            .replace("the object's ", "")
+            .replace("a friction", "friction")
+            .replace(" × ", "\u00a0×\u00a0")
+        ),
         _LABEL_WIDTH,
     )
 

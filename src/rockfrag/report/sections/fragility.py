@@ -18,6 +18,7 @@ from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.wording import (
+    agree,
     decimals_of,
     estimates,
     listed,
@@ -44,14 +45,12 @@ def _section(results: Results) -> Section:
         message,
         [
             *(opened(found) if found else []),
-            "Lognormal curves have the form Φ(ln(IM/θ)/β). The reading “mean probability” counts every amplitude, "
-            "survival windows included; “first overturning” and “always overturning” take one amplitude per "
-            "motion. "
-            f"The {level} intervals resample earthquakes or motions, not amplitudes; “open” is a limit that "
-            f"the data "
-            "do not set. A small p of the fit rejects the lognormal curve. The last column of each table gives "
-            "the "
-            "factor on the median without the most influential earthquake or motion.",
+            "Lognormal curves have the form Φ(ln(IM/θ)/β). The reading “mean probability” counts every "
+            "amplitude, survival windows included; “first overturning” and “always overturning” take one "
+            f"amplitude per motion. The {level} intervals resample earthquakes or motions, not amplitudes; "
+            "“open” is a limit that the data do not set. A small p of the fit rejects the lognormal curve. "
+            "The last column of each table gives the factor on the median without the most influential "
+            "earthquake or motion.",
             *_rejected_words(known_curves),
             *([f"Some readings give no curve for {listed(without)}."] if without else []),
             *_notes(curves),
@@ -79,25 +78,21 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
     bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
     measure = str(results.table("fragility")["im"].iloc[0])
     level = f"{100 * results.study.fragility.confidence:g} %"
+    same = curves[(curves["im"] == measure) & (curves["estimator"] == "mean_probability")]
+    same, nonparametric, _ = compared_curves(same)
     specs = []
     for name in results.objects:
         own = [one.name for one in results.study.configurations if one.object == name]
-        chosen = curves[
-            curves["configuration"].isin(own)
-            & (curves["im"] == measure)
-            & (curves["estimator"] == "mean_probability")
-        ]
+        chosen = same[same["configuration"].isin(own)]
         caption = (
             f"{name}: probability of overturning over {measure}, with {level} limits (band). Points are "
-            f"fractions of all "
-            "analyses in bins, with binomial limits."
+            "fractions of all analyses in bins, with binomial limits."
         )
-        if compared_curves(chosen).nonparametric:
+        if nonparametric:
             caption += (
                 " Line: nonparametric monotone curve; dotted: lognormal curve, rejected for at least one of "
-                "them. The "
-                "band is wide where all earthquakes agree, because few earthquakes cannot bound a probability "
-                "closely."
+                "them. The band is wide where all earthquakes agree, because few earthquakes cannot bound a "
+                "probability closely."
             )
         medians = "; ".join(
             f"{row['configuration']} {number(row['theta'], decimals_of(row['theta']))} {row['unit']}"
@@ -114,10 +109,9 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
                 partial(
                     fragility_figure,
                     chosen,
-                    *(
-                        t[t["configuration"].isin(own) & (t["im"] == measure)]
-                        for t in (bands, bins)
-                    ),
+                    bands[bands["configuration"].isin(own) & (bands["im"] == measure)],
+                    bins[bins["configuration"].isin(own) & (bins["im"] == measure)],
+                    nonparametric,
                 ),
             )
         )
@@ -143,7 +137,9 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
             Column("lean_text", "Most influential"),
             *_nonparametric_columns(rows),
         )
-        caption = f"{sentence(measure)}, {str(reading).replace('_', ' ')}, with {level} intervals."
+        caption = (
+            f"{sentence(str(measure))}, {str(reading).replace('_', ' ')}, with {level} intervals."
+        )
         tables.append(table_html(shown, columns, caption))
     return tables
 
@@ -155,12 +151,10 @@ def _rejected_words(curves: pd.DataFrame) -> list[str]:
         return []
     who = sentence(of_all(rejected, len(curves), "lognormal curve"))
     return [
-        f"{who} {'is' if 1 in (rejected, len(curves)) else 'are'} rejected (p below {REJECTED:g}). Where one "
-        f"is, all "
+        f"{who} {agree(rejected, len(curves), 'is', 'are')} rejected (p below {REJECTED:g}). Where one is, all "
         "curves of that measure and reading are compared by the nonparametric monotone curve: the columns "
         "“nonparametric” give its median and half the distance from its 16 to its 84 % point; its points with "
-        "their "
-        "intervals are in the table fragility_shares."
+        "their intervals are in the table fragility_shares."
     ]
 
 

@@ -60,11 +60,10 @@ def _section(results: Results) -> Section | None:
         _first(words),
         [
             *words[1:],
-            "Bodies slide, rock and fly on surfaces with these friction coefficients, with the amplitudes of the "
-            "protocol. Without pedestal an object stands on the ground. A pair has no ratio where nothing "
-            "overturns "
-            "with or without the pedestal: a body slides and never rocks if the friction coefficient is below its "
-            "width over its height.",
+            "Bodies slide, rock and fly on surfaces with these friction coefficients, with the amplitudes of "
+            "the protocol. Without pedestal an object stands on the ground. A pair has no ratio where nothing "
+            "overturns with or without the pedestal: a body slides and never rocks if the friction "
+            "coefficient is below its width over its height.",
         ],
         [
             table_html(
@@ -141,11 +140,9 @@ def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
     words = [f"{_coefficient(one)} and {_coefficient(two)}" for one, two in signs]
     usual = sum(map(_is_ordinary, signs))
     return [
-        f"{len(signs)} of {len(ground)} pairs of friction coefficients (ground, interface) give the signs "
-        f"asked for "
-        f"({goal}): {listed(words[:6])}{' among them' if len(words) > 6 else ''}. The intervals have these "
-        f"signs too "
-        f"in {len(clear)}; {usual} are of ordinary surfaces."
+        f"{len(signs)} of {len(ground)} pairs of friction coefficients (ground, interface) give the signs asked "
+        f"for ({goal}): {listed(words[:6])}{' among them' if len(words) > 6 else ''}. The intervals have these "
+        f"signs too in {len(clear)}; {usual} are of ordinary surfaces."
     ]
 
 

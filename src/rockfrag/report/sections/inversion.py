@@ -55,12 +55,10 @@ def _section(results: Results) -> Section | None:
         [
             *rest,
             "Between the values tried, ln(with/without pedestal) is interpolated linearly; nothing is said "
-            "beyond them. "
-            "The changes of two parameters are added; the closest pairs, and friction at both interfaces, were "
-            "also "
-            "simulated together. A mechanism is ruled out if no value of it lies within the scatter between "
-            "earthquakes (Hotelling’s T² at 5 %, Bonferroni over all mechanisms). Few earthquakes rule out "
-            "little.",
+            "beyond them. The changes of two parameters are added; the closest pairs, and friction at both "
+            "interfaces, were also simulated together. A mechanism is ruled out if no value of it lies within "
+            "the scatter between earthquakes (Hotelling’s T² at 5 %, Bonferroni over all mechanisms). Few "
+            "earthquakes rule out little.",
         ],
         [table_html(shown, columns, caption)],
     )

@@ -26,10 +26,9 @@ def _section(results: Results) -> Section:
     named = set(best["configuration"])
     none = [name for name in dict.fromkeys(choice["configuration"]) if name not in named]
     words = [
-        "Measures are compared by how well they predict the first overturning amplitude of each motion, over all "
-        f"floors. The table recommends one of all {choice['measure'].nunique()} that were compared, whether or "
-        f"not "
-        "the study gives curves in it."
+        "Measures are compared by how well they predict the first overturning amplitude of each motion, over "
+        f"all floors. The table recommends one of all {choice['measure'].nunique()} that were compared, whether "
+        "or not the study gives curves in it."
     ]
     if none:
         words.append(f"No measure can be recommended for {', '.join(none)}.")

@@ -46,8 +46,7 @@ def _section(results: Results) -> Section:
         [
             *([f"These are {listed(names)}."] if names else []),
             "The reading “step protocol shaker” of the pedestal’s effect includes these limits. The other "
-            "readings "
-            "do not, because the position at which the table starts is an assumption.",
+            "readings do not, because the position at which the table starts is an assumption.",
         ],
         [
             figure,

@@ -76,8 +76,7 @@ def _what_friction_did(sliding: pd.DataFrame) -> Section:
             *opened(found),
             "Bodies stick, slide, rock and fly with the friction of this study, at every amplitude of every "
             "motion. Each analysis is repeated without sliding. “Saved by sliding” overturns only without "
-            "sliding, "
-            "“overturned by it” only with sliding and flight.",
+            "sliding, “overturned by it” only with sliding and flight.",
         ],
         [table_html(shown, _SLIDING, "Sliding and flight in all analyses.")],
     )

@@ -3,7 +3,7 @@
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.explanation import asks_explanation
-from rockfrag.report.wording import listed, of_all, sentence
+from rockfrag.report.wording import agree, listed, of_all, sentence
 from rockfrag.thesis.pattern import departures_by_floor
 from rockfrag.thesis.statements.floors import FLOORS
 
@@ -12,15 +12,15 @@ def _section(results: Results) -> Section:
     table = departures_by_floor(results.table("explanation/effects"))
     named = list(table.loc[table["signs"], "name"])
     clear = list(table.loc[table["beyond_chance"], "name"])
-    verb = "gives" if 1 in (len(named), len(table)) else "give"
+    verb = agree(len(named), len(table), "gives", "give")
     message = (
         f"{sentence(of_all(len(named), len(table), 'perturbation'))} {verb} mean ratios with the signs "
         f"of the thesis."
     )
     words = [
         "The thesis reports a ratio above 1 on the ground floor and below 1 on the other two. The "
-        "perturbations share "
-        "the same pairs of tests, and many leave the ratio at exactly 1, so no chance level is given for them.",
+        "perturbations share the same pairs of tests, and many leave the ratio at exactly 1, so no chance "
+        "level is given for them.",
         f"The mean ratios have these signs for {listed(named)}." if named else "",
         f"The intervals have them for {listed(clear)}."
         if clear

@@ -44,17 +44,12 @@ def words_on_verdicts(claims: pd.DataFrame) -> str:
     inferred = int(claims["p"].notna().sum())
     return (
         "A simulation can reproduce what a laboratory reports or not; only measured tests can confirm or "
-        "reject it. "
-        "Statements about the model’s equations are confirmed or refuted, for the specimens or in general. "
-        "Each rule "
-        "of inference uses the printed 95 % interval and errs in at most 2.5 % of tables each way, so up to "
-        f"{number(0.05 * inferred, 1)} of the {inferred} statements inferred here may be wrong by chance; the "
-        f"second "
-        "p value of each is adjusted for all of them (Holm). Where the sign of a change is not shown but a "
-        "change of "
-        "10 % or more is excluded, just that is said: 10 % is the smallest mean change that the thesis’s own "
-        "tests "
-        "could detect (80 % power)."
+        "reject it. Statements about the model’s equations are confirmed or refuted, for the specimens or in "
+        "general. Each rule of inference uses the printed 95 % interval and errs in at most 2.5 % of tables "
+        f"each way, so up to {number(0.05 * inferred, 1)} of the {inferred} statements inferred here may be "
+        "wrong by chance; the second p value of each is adjusted for all of them (Holm). Where the sign of a "
+        "change is not shown but a change of 10 % or more is excluded, just that is said: 10 % is the smallest "
+        "mean change that the thesis’s own tests could detect (80 % power)."
     )
 
 

@@ -145,13 +145,11 @@ def margin(parts: Parts) -> float:
 
 ONE_RULE = (
     "The 95 % interval decides: above 1 for it, below 1 against it; if neither and it ends below 1.1, a change "
-    "of 10 % "
-    "or more is excluded"
+    "of 10 % or more is excluded"
 )
 SEVERAL_RULE = (
     "The 95 % intervals decide: all above 1 for it, one below 1 against it (Bonferroni); if neither, 10 % or "
-    "more is "
-    "excluded where all end below 1.1, or one of those called noticeable (Bonferroni)"
+    "more is excluded where all end below 1.1, or one of those called noticeable (Bonferroni)"
 )
 """What is said beside every statement about an order, so that a reader can apply it to the row."""
 
