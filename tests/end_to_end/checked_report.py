@@ -19,9 +19,7 @@ GUEST = re.compile(
 )
 NO_NUMBER = re.compile(r"\b(?:nan|NaN|NaT|inf|infinity|null|True|False)\b|<NA>|mathdefault|\(s\)")
 INTERVAL = re.compile(r"(?:([−\d.]+) )?\[([−\d.]+|open), ([−\d.]+|open)\]")
-NOUNS = (
-    "record|test|motion|event|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
-)
+NOUNS = "record|test|motion|event|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
 SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
 VOID = {"meta", "link", "br", "img", "input", "hr"}
@@ -181,12 +179,15 @@ def check_first_page(results: Results) -> None:
 
 
 def words_before_opening(page: str) -> int:
-    """Words of a page outside its chapters, with the headings and messages of these."""
+    """Words of a page outside its drawings before anything is opened, with the summaries of what can be."""
+    return len(open_words(page))
+
+
+def open_words(page: str) -> list[str]:
+    """Words that stand open on a page, outside its drawings."""
     shown = re.sub(r"<(script|style|svg|head)\b.*?</\1>", " ", page, flags=re.DOTALL)
-    shown = re.sub(
-        r"<details\b[^>]*>\s*(<summary\b.*?</summary>)(?:(?!<details\b).)*?</details>",
-        r"\1",
-        shown,
-        flags=re.DOTALL,
-    )
-    return len(re.sub(r"<[^>]*>", " ", shown).split())
+    inside = r"(?:(?!<details\b).)*?"
+    innermost = rf"<details\b[^>]*>\s*<summary\b[^>]*>({inside})</summary>{inside}</details>"
+    while (fewer := re.sub(innermost, r"\1", shown, flags=re.DOTALL)) != shown:
+        shown = fewer
+    return re.sub(r"<[^>]*>", " ", shown).split()

@@ -59,7 +59,9 @@ def test_no_factor_alone_makes_it_and_the_words_say_so():
     alone = table[(table["factor_2"] == "") & (table["acts_on"] == "all floors")]
     assert not alone["reaches"].any() and not alone["plausible"].any()
     words = " ".join(inversion_words(table, WANTED))
-    assert "No single perturbed parameter can produce +10 % on the ground and −5 % above it" in words
+    assert (
+        "No single perturbed parameter can produce +10 % on the ground and −5 % above it" in words
+    )
     assert "lowers_loft with raises_ground" in words
     assert "No mechanism acting on only one of them can." in words
 

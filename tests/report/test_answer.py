@@ -80,7 +80,7 @@ def recorded(*cases: tuple[str, str, bool, float]) -> pd.DataFrame:
     [
         (
             recorded(("a", "x", True, 1.0)),
-            "At recorded strength the one motion overturns everything",
+            "At recorded strength the only motion overturns everything",
             "No outcome changes",
         ),
         (

@@ -354,7 +354,11 @@ def test_ledger_has_all_34_statements_with_columns_and_reasons(made):
     assert table["number"].tolist() == list(range(25, 59))
     assert table.loc[table["number"] == 58, "remark"].item().startswith("these data cannot decide")
     undecided = table[(table["verdict"] == "undecided") & table["number"].between(27, 51)]
-    assert undecided["remark"].str.contains("80 % power|has no power|power is not known", regex=True).all()
+    assert (
+        undecided["remark"]
+        .str.contains("80 % power|has no power|power is not known", regex=True)
+        .all()
+    )
     # what is inferred says how often it errs, and what is left when all statements are counted
     inferred = table[table["p"].notna()]
     assert len(inferred) > 20

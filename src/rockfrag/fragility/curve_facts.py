@@ -32,8 +32,8 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
         parts.append(f"{int(row['n_motions'])} motions{events}.")
     if _known(row, "theta_lower") and _known(row, "beta_lower"):
         parts.append(
-            f"{float(row['level']):.0%} limits: theta {row['theta_lower']:.4g} to "
-            f"{row['theta_upper']:.4g}, beta {row['beta_lower']:.4g} to {row['beta_upper']:.4g}."
+            f"{100 * float(row['level']):g} % limits: theta {row['theta_lower']:.4g} to "
+            f"{row['theta_upper']:.4g}, beta {_beta_limits(row)}."
         )
     elif "theta_lower" in row:
         parts.append("No confidence limits.")
@@ -57,6 +57,13 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
     if row.get("warnings"):
         parts.append(str(row["warnings"]))
     return " ".join(parts)
+
+
+def _beta_limits(row: Mapping[Hashable, Any]) -> str:
+    """Limits of β, or that the estimate is one: that of tests which a single threshold separates."""
+    if row["beta_lower"] <= 0 and row["beta_upper"] <= row.get("beta", math.inf):
+        return f"at most {row['beta_upper']:.4g} (not resolved)"
+    return f"{row['beta_lower']:.4g} to {row['beta_upper']:.4g}"
 
 
 def _known(row: Mapping[Hashable, Any], name: str) -> bool:

@@ -22,8 +22,8 @@ FEW = 10
 """Intervals over fewer earthquakes than this rest on little."""
 
 QUESTIONS = (
-    ("Which motions overturn it?", "as_recorded"),
-    ("Does the pedestal help?", "pedestal"),
+    ("As recorded?", "as_recorded"),
+    ("With pedestal?", "pedestal"),
     ("How strong?", "fragility"),
     ("How sure?", "grounds"),
     ("Try it", "live"),
@@ -106,7 +106,7 @@ def advice(results: Results) -> list[str]:
     events = results.study.catalogue["event"].nunique()
     if events < FEW and not words[1:]:
         words.append(
-            f"Add records of other earthquakes; {events} {'is' if events == 1 else 'are'} too few."
+            f"Add records of other earthquakes; {'one is' if events == 1 else f'{events} are'} too few."
         )
     return words
 

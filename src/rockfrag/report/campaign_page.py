@@ -233,6 +233,7 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     )
     columns = (
         Column("who", "Predicted by"),
+        Column("tests", "Tests", 0),
         Column("right_text", "Right", numeric=True),
         Column("false_alarms", "False alarms", 1),
         Column("missed", "Missed", 1),

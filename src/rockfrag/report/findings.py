@@ -106,7 +106,7 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     near = int(recorded["share_near"].between(0, 1, inclusive="neither").sum())
     by_name = recorded.groupby("configuration", sort=False)["overturned"].agg(["sum", "size"])
     motions = int(by_name["size"].max())
-    subject = "the one motion" if motions == 1 else f"all {motions} motions"
+    subject = "the only motion" if motions == 1 else f"all {motions} motions"
     each = [f"{name} {row['sum']}" for name, row in by_name.iterrows()]
     numbers = f"Motions that overturn, of {motions}: {', '.join(each)}." if motions > 1 else ""
     if fallen in (0, analyses):
@@ -224,13 +224,13 @@ def mean_sentence(means: pd.DataFrame) -> str:
     rows = means[means["by"] == "configuration"]
     most, of = int(rows["motions"].max()), int(rows["of"].max())
     if most == of:
-        every = "the one motion" if of == 1 else f"all {of} motions"
+        every = "the only motion" if of == 1 else f"all {of} motions"
         return f"Means are over {every}, each of which overturned everything compared."
     if most == 0:
         return (
             f"None of the {of} motions overturned everything compared, so no means are compared."
             if of > 1
-            else "The one motion did not overturn everything compared, so no means are compared."
+            else "The only motion did not overturn everything compared, so no means are compared."
         )
     return (
         f"Means are over the {counted(most, 'motion')} of {of} that overturned everything compared; "
@@ -331,7 +331,7 @@ def _ratio_sentence(row: Mapping[Any, Any]) -> str:
     bounds = int(row["at_bound"])
     text = (
         "Amplitude with pedestal divided by that without"
-        + (f", geometric mean of {pairs} pairs" if pairs > 1 else ", of the one pair")
+        + (f", geometric mean of {pairs} pairs" if pairs > 1 else ", of the only pair")
         + (f", {bounds} of which have one test that gives a bound only" if bounds else "")
         + f": {ratio_text(row)}"
     )
@@ -429,7 +429,7 @@ def friction_sentence(validity: pd.DataFrame) -> str:
         return int((~(part["friction_demand"].astype(float) <= FRICTION)).sum())
 
     sides = _sides(validity)
-    needs = f"a friction coefficient above {FRICTION:g} (dry stone)"
+    needs = f"a friction coefficient above {FRICTION:g}"
     if not sides:
         n = beyond(validity)
         verb = agree(n, len(validity), "requires", "require")

@@ -34,7 +34,9 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     """An estimate with its limits, ``1.01 [0.98, 1.04]``; without them where they say nothing.
 
     Limits say nothing where there are none, or where they are the same to the decimals shown: a
-    ladder of steps cannot show that something is exactly so.
+    set of steps cannot show that something is exactly so. An estimate that is its own upper limit, with none
+    below,
+    is a bound: ``≤ 0.04``.
     """
     if not math.isfinite(value):
         return "–"
@@ -43,6 +45,9 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
         number(limit, decimals) if value / _FAR < limit < value * _FAR else "open"
         for limit in (lower, upper)
     )
+    if lower <= 0 and upper <= value:
+        # such as the dispersion of tests that a single threshold separates: only a bound is known
+        return f"≤ {middle}"
     if low == high or not has_interval(lower, upper, decimals):
         return middle
     return f"{middle} [{low}, {high}]"
@@ -85,12 +90,12 @@ def counted(n: int, one: str, many: str | None = None) -> str:
 
 
 def of_all(n: int, total: int, one: str, many: str | None = None) -> str:
-    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the one test``."""
+    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``."""
     noun = one if total == 1 else many or one + "s"
     if n == 0:
-        return f"none of {total} {noun}" if total > 1 else f"not the one {noun}"
+        return f"none of {total} {noun}" if total > 1 else f"no {noun}"
     if n == total:
-        return f"all {total} {noun}" if total > 1 else f"the one {noun}"
+        return f"all {total} {noun}" if total > 1 else f"the only {noun}"
     return f"{n} of {total} {noun}"
 
 

@@ -163,9 +163,18 @@ def _agreement(
         )
     codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
     rows = [agreement_row(OURS, validated.verdicts, measured, groups, level)]
+    ours = np.atleast_2d(validated.verdicts)
     for name, verdicts in {**rivals, **codes}.items():
-        row = agreement_row(name, verdicts, measured, groups, level)
-        row.update(paired_row(validated.verdicts, verdicts, measured, groups, level, study.seed))
+        # other programs may have done a part of the tests only: all are compared on that part
+        given = ~np.isnan(np.atleast_2d(verdicts).astype(float)).any(axis=0)
+        theirs = np.atleast_2d(verdicts)[:, given].astype(bool)
+        own_groups = pd.factorize(groups[given])[0]
+        if own_groups.max(initial=0) < 1:
+            raise InputError(
+                f"{name}: its tests are of a single input motion; give those of two or more."
+            )
+        row = agreement_row(name, theirs, measured[given], own_groups, level)
+        row |= paired_row(ours[:, given], theirs, measured[given], own_groups, level, study.seed)
         rows.append(row)
     table = pd.DataFrame(rows)
     table["judged"] = ["as given" if name in codes else "by other motions" for name in table["who"]]

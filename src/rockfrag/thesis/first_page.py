@@ -30,12 +30,12 @@ DISCOVERY_RATE = 0.05
 MOST_NAMED = 3
 """So many perturbations are named with their ratios; the table has all."""
 
-_REPORTS = "The thesis reports that the pedestal delays overturning on the ground floor"
+_REPORTS = "The thesis reports a gain on the ground floor"
 _HEADLINES = {
-    Evidence.FOR: f"{_REPORTS}, and the model of pure rocking reproduces it",
-    Evidence.AGAINST: f"{_REPORTS}; the model of pure rocking gives the opposite",
-    Evidence.OPEN: f"{_REPORTS}; these simulations leave it undecided for pure rocking",
-    Evidence.BOUNDED: f"{_REPORTS}; pure rocking excludes a gain of 10 % or more there, but not a smaller one",
+    Evidence.FOR: f"{_REPORTS}; pure rocking reproduces it",
+    Evidence.AGAINST: f"{_REPORTS}; pure rocking gives the opposite",
+    Evidence.OPEN: f"{_REPORTS}; for pure rocking it is undecided",
+    Evidence.BOUNDED: f"{_REPORTS}; for pure rocking a gain of 10 % or more is excluded, a smaller one is not",
 }
 _ON_FLOOR = {
     Evidence.FOR: "reproduced",
@@ -129,7 +129,7 @@ def _what_would(explanation: pd.DataFrame) -> Finding:
     patterned = list(table.loc[table["beyond_chance"], "name"])
     who = of_all(len(patterned), len(table), "perturbation")
     verb = agree(len(patterned), len(table), "produces", "produce")
-    headline = f"{sentence(who)} of the model {verb} the thesis’s pattern"
+    headline = f"{sentence(who)} of the model {verb} its pattern"
     words = []
     if patterned:
         words.append(
@@ -206,9 +206,9 @@ def _beside(wide: pd.DataFrame) -> Finding:
     earthquakes = counted(int(row["units"]), "earthquake")
     within = bool(row["equivalent"])
     headline = (
-        f"Records of {earthquakes} give the same: the pedestal changes the amplitude by less than 10 %"
+        f"Over {earthquakes} the pedestal changes the amplitude by less than 10 %"
         if within
-        else f"Records of {earthquakes} do not exclude an effect of the pedestal of 10 % or more"
+        else f"Over {earthquakes} an effect of 10 % or more is not excluded"
     )
     return Finding(
         headline,

@@ -33,8 +33,8 @@ def thesis_answer(results: Results) -> Answer:
         figure=FigureSpec(
             "answer",
             f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
-            "Amplitude with/without pedestal, 95 % intervals; grey is ±10 %."
-            + (" Arrows: direction in the thesis." if has_thesis_floors(here) else ""),
+            "Ratio with/without pedestal, 95 % intervals; grey: ±10 %."
+            + (" Arrows: thesis." if has_thesis_floors(here) else ""),
             lambda: ratios_figure(here, None if wide is None else wide[wide["reading"] == READING]),
         ),
         advice=_advice(results),
