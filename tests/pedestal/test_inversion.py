@@ -63,7 +63,7 @@ def test_no_factor_alone_makes_it_and_the_words_say_so():
         "No single perturbed parameter can produce +10 % on the ground and −5 % above it" in words
     )
     assert "lowers_loft with raises_ground" in words
-    assert "No mechanism acting on only one of them can." in words
+    assert "No mechanism that acts on the ground alone, or above it alone, can." in words
 
 
 def test_factor_that_acts_on_the_ground_alone_is_a_mechanism_of_its_own():

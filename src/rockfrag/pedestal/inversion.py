@@ -328,7 +328,7 @@ def _one_place(table: pd.DataFrame) -> str:
     ]
     if names:
         return f"Mechanisms that act at one place only and can: {', '.join(names[:3])}."
-    return "No mechanism acting on only one of them can."
+    return "No mechanism that acts on the ground alone, or above it alone, can."
 
 
 _PLACES = {"ground": "on the ground alone", "above": "above it alone"}

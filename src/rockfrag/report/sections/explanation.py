@@ -226,14 +226,17 @@ def within_ten_percent(simulated: pd.DataFrame) -> str:
 
 def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
     """Say how many intervals exclude 1, and how many still do when all of them are counted."""
+    tests = len(simulated)
     outside = int(((simulated["lower"] > 1) | (simulated["upper"] < 1)).sum())
     left = int((simulated["p_adjusted"] < level).sum())
+    has = agree(
+        outside, tests, "has a 95 % interval that excludes", "have 95 % intervals that exclude"
+    )
     return (
-        f"{sentence(of_all(outside, len(simulated), 'simulated perturbation'))} "
-        f"{agree(outside, len(simulated), 'has a', 'have')} 95 % "
-        f"{agree(outside, len(simulated), 'interval that excludes', 'intervals that exclude')} 1. Chance alone "
-        f"makes some of so many do so: with the Benjamini–Hochberg adjustment for {len(simulated)} tests, "
-        f"{left} {'differs' if left == 1 else 'differ'} from 1 at the {100 * level:g} % level."
+        f"{sentence(of_all(outside, tests, 'simulated perturbation'))} {has} 1. Chance alone produces some of "
+        f"these: "
+        f"after the Benjamini–Hochberg adjustment for {counted(tests, 'test')}, {left or 'none'} "
+        f"{agree(left, tests, 'differs', 'differ')} from 1 at the {100 * level:g} % level."
     )
 
 

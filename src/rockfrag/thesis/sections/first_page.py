@@ -3,10 +3,11 @@
 import pandas as pd
 
 from rockfrag.report.answer import could_change, questions, rests_on, study_answer
-from rockfrag.report.findings import friction_sentence
+from rockfrag.report.findings import FRICTION
 from rockfrag.report.part import Answer, FigureSpec, Results
 from rockfrag.report.sections.explanation import asks_explanation
 from rockfrag.report.sections.inversion import asks_inversion
+from rockfrag.report.wording import agree, of_all
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.figures.answer import has_thesis_floors, ratios_figure
 from rockfrag.thesis.first_page import first_page
@@ -49,4 +50,8 @@ def _advice(results: Results) -> list[str]:
     validity = results.table("validity")
     if results.study.slides or validity.empty:
         return []
-    return [f"Measure the friction under the statue. {friction_sentence(validity)}."]
+    with_pedestal = validity[validity["pedestal"] == "P"]
+    beyond = int((~(with_pedestal["friction_demand"].astype(float) <= FRICTION)).sum())
+    who = of_all(beyond, len(with_pedestal), "test with", "tests with")
+    verb = agree(beyond, len(with_pedestal), "needs", "need")
+    return [f"Measure the friction under the statue: {who} pedestal {verb} more than {FRICTION:g}."]

@@ -91,8 +91,8 @@ def _known(results: Results) -> pd.DataFrame:
 
 def _reproduced(right: int, total: int) -> str:
     if right == total:
-        return f"All {total} printed values are reproduced"
-    return f"{right} of {total} printed values are reproduced"
+        return f"All {total} printed values of Tables 3.1, 3.3 and 4.1 are"
+    return f"{right} of {total} printed values of Tables 3.1, 3.3 and 4.1 are"
 
 
 def _differing(results: Results) -> list[str]:
@@ -110,7 +110,7 @@ def _message(results: Results) -> str:
     if known.empty:
         return "None of these values is printed in the thesis."
     right = int(known["agrees"].sum())
-    return f"{_reproduced(right, len(known))} of Tables 3.1, 3.3 and 4.1."
+    return f"{_reproduced(right, len(known))} reproduced."
 
 
 PRINTED = Part(tuple(_CAPTIONS), _section)
