@@ -1,4 +1,4 @@
-"""Reports speak as an engineer writes: subject first, with the words of the field, and short where they stand open."""
+"""Reports speak as an engineer writes: subject first, in words of the field, short where they stand open."""
 
 import ast
 import re

@@ -21,8 +21,8 @@ from rockfrag.study.loading import load_any, load_study
 from rockfrag.yaml_file import read_yaml
 
 from .conftest import study_content, write_study
-from .test_measured_table import write_example, write_synthetic
-from .test_run import ROOT, snakemake
+from .measured_example import write_example, write_synthetic
+from .running import ROOT, snakemake
 
 
 def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
@@ -283,7 +283,14 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
     )
     done = subprocess.run(
         [
-            *(sys.executable, "-c", program, "--snakefile", str(ROOT / "Snakefile"), "--dry-run"),
+            *(
+                sys.executable,
+                "-c",
+                program,
+                "--snakefile",
+                str(ROOT / "workflow" / "Snakefile"),
+                "--dry-run",
+            ),
             *("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml")),
         ],
         capture_output=True,

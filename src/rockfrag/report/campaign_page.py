@@ -30,7 +30,7 @@ from rockfrag.report.wording import (
     sentence,
 )
 from rockfrag.stages.campaign import OURS, TABLES
-from rockfrag.stages.digest import source_digest
+from rockfrag.stages.digest import package_digest
 from rockfrag.study.campaign import CampaignStudy
 
 
@@ -72,7 +72,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
             "Configuration": study.source.name,
             "Tests": study.tests.name,
             "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('rockfrag.guests')}",
+            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
         },
         basis="measured",
     )

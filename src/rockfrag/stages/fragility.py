@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
+from rockfrag.stages.job import Job, Results
 from rockfrag.stages.measure_choice import CANDIDATES, best_of, measure_choice
 from rockfrag.stages.read_sweeps import sweeps_of
-from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 
 if TYPE_CHECKING:
@@ -145,22 +145,3 @@ def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
     return table.assign(
         im=table["im"].replace({"PGA": "peak base acceleration", "PGV": "peak base velocity"})
     )
-
-
-STAGE = Stage(
-    name="fragility",
-    run=run,
-    inputs=lambda study: ("measures", "motions/records.parquet", *study.sweep_files),
-    outputs=(
-        "fragility",
-        "fragility_bands",
-        "fragility_bins",
-        "fragility_shares",
-        "survival_windows",
-        "measure_choice",
-        "fragility_floors",
-        "fragility_floors_shares",
-        "exports/",
-    ),
-    settings=("fragility", "seed", "bodies", "building", "friction", "vertical"),
-)

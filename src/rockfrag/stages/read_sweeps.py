@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from rockfrag.shaketable.swept import Swept, read_swept
-from rockfrag.stages.stage import Job
+from rockfrag.stages.job import Job
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
 

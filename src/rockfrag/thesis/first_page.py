@@ -49,7 +49,6 @@ def first_page(
     effects: pd.DataFrame,
     claims: pd.DataFrame,
     explanation: pd.DataFrame | None = None,
-    wide: pd.DataFrame | None = None,
     inversion: pd.DataFrame | None = None,
     wanted_percent: Mapping[str, float] | None = None,
 ) -> list[Finding]:
@@ -64,8 +63,6 @@ def first_page(
         The ledger of the study, columns of `rockfrag.thesis.statements.COLUMNS`.
     explanation
         Effects of departures from the ideal model, see `rockfrag.pedestal.explanation.explain`.
-    wide
-        Effects in a study of many more earthquakes, to be set beside.
     inversion
         Departures that come closest to an effect that was asked for, see `rockfrag.pedestal.inversion.invert`.
     wanted_percent
@@ -80,8 +77,6 @@ def first_page(
             found[-1] = replace(
                 last, numbers=f"{last.numbers} {_inverted(inversion, wanted_percent)}"
             )
-    if wide is not None and len(wide):
-        found.append(_beside(wide[wide["reading"] == READING]))
     return found
 
 
@@ -198,24 +193,6 @@ _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above 
 
 def _both(row: Mapping[Any, Any], wanted: Mapping[str, float]) -> str:
     return listed([f"{row[name]:.3f}" for name in wanted])
-
-
-def _beside(wide: pd.DataFrame) -> Finding:
-    """Say what the same model gives for many more earthquakes."""
-    row = _rows(wide, "whole")[0]
-    earthquakes = counted(int(row["units"]), "earthquake")
-    within = bool(row["equivalent"])
-    headline = (
-        f"Over {earthquakes} the pedestal changes the amplitude by less than 10 %"
-        if within
-        else f"Over {earthquakes} an effect of 10 % or more is not excluded"
-    )
-    return Finding(
-        headline,
-        "",
-        f"The wide study, whose results are beside this one’s, gives an amplitude ratio with/without pedestal of "
-        f"{_ratio(row)} on the ground, from {counted(int(row['pairs']), 'pair')}.",
-    )
 
 
 def _rows(effects: pd.DataFrame, scope: str) -> list[dict[Any, Any]]:

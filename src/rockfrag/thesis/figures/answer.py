@@ -20,19 +20,17 @@ def has_thesis_floors(effects: pd.DataFrame) -> bool:
     return bool(set(effects.loc[effects["scope"] == "floor", "level"]) & set(REPORTED_SIDE))
 
 
-def ratios_figure(effects: pd.DataFrame, wide: pd.DataFrame | None) -> Figure:
-    """Draw the ratio with over without pedestal: of all pairs, on each floor, and in a study of more earthquakes.
+def ratios_figure(effects: pd.DataFrame) -> Figure:
+    """Draw the ratio with over without pedestal, of all pairs and on each floor.
 
     Parameters
     ----------
-    effects, wide
+    effects
         Rows of one reading of :func:`rockfrag.pedestal.effects_table`.
     """
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
     rows = [("all pairs", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
-    if wide is not None:
-        rows += [("wide study", row) for row in wide[wide["scope"] == "whole"].to_dict("records")]
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 1.0 + 0.33 * len(rows))
         axes = figure.subplots()

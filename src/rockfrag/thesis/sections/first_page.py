@@ -1,7 +1,5 @@
 """What stands first on the page of a study that is compared with the thesis."""
 
-import pandas as pd
-
 from rockfrag.report.answer import could_change, questions, rests_on, study_answer
 from rockfrag.report.findings import FRICTION
 from rockfrag.report.part import Answer, FigureSpec, Results
@@ -11,7 +9,6 @@ from rockfrag.report.wording import agree, of_all
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.figures.answer import has_thesis_floors, ratios_figure
 from rockfrag.thesis.first_page import first_page
-from rockfrag.thesis.stages import wide_effects
 
 
 def thesis_answer(results: Results) -> Answer:
@@ -21,12 +18,10 @@ def thesis_answer(results: Results) -> Answer:
         return study_answer(results)
     effects = results.table("pedestal/effects")
     explanation = results.table("explanation/effects") if asks_explanation(study) else None
-    beside = wide_effects(study, results.folder.parent)
-    wide = pd.read_parquet(beside[0]) if beside else None
     inversion = results.table("explanation/inversion") if asks_inversion(study) else None
     settings = study.more.explanation
     wanted = {} if settings is None else settings.wanted_percent
-    found = first_page(effects, results.table("claims"), explanation, wide, inversion, wanted)
+    found = first_page(effects, results.table("claims"), explanation, inversion, wanted)
     here = effects[effects["reading"] == READING]
     return Answer(
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
@@ -36,7 +31,7 @@ def thesis_answer(results: Results) -> Answer:
             f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
             "Ratio with/without pedestal, 95 % intervals; grey: ±10 %."
             + (" Arrows: thesis." if has_thesis_floors(here) else ""),
-            lambda: ratios_figure(here, None if wide is None else wide[wide["reading"] == READING]),
+            lambda: ratios_figure(here),
         ),
         advice=_advice(results),
         rests_on=rests_on(results),
