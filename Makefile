@@ -63,15 +63,15 @@ format: .venv/installed
 	@.venv/bin/python .venv/bin/snakefmt workflow
 
 fuzz: .venv/installed
-	@.venv/bin/python benchmarks/fuzz.py --inputs $(INPUTS)
-	@.venv/bin/python benchmarks/fuzz_requests.py --requests $(REQUESTS)
+	@$(RUN) tests.fuzz --inputs $(INPUTS)
+	@$(RUN) tests.fuzz.requests --requests $(REQUESTS)
 
 torture: .venv/installed
 	@$(RUN) tests.fault_injection
 
 docs: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[docs]"
-	@$(RUN) sphinx -q -b html docs docs/_build
+	@$(RUN) sphinx -q -W --keep-going -b html docs docs/_build
 	@echo "docs/_build/index.html"
 
 bench: .venv/installed

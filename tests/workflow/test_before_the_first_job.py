@@ -91,6 +91,10 @@ def test_a_building_or_shaker_that_is_no_text_is_refused(
             "fragility.measures[0]: expected one",
         ),
         ({"fragility": {"measures": ["d5_95_s"], "confidence": 0.9}}, "found d5_95_s"),
+        (
+            {"fragility": {"measures": ["pga_g", ["pga_g"]], "confidence": 0.9}},
+            "expected a pair of intensity measures",
+        ),
         ({"compare_with": "someone"}, "compare_with"),
     ],
 )
@@ -104,8 +108,10 @@ def test_every_measure_that_a_study_may_ask_for_is_measured_and_grows_with_the_a
     items = read_schema("study")["properties"]["fragility"]["properties"]["measures"]["items"]
     wave = Motion([0.0, 1.0, -1.0, 0.5] * 200, 0.01, "wave")
     measured = list(measure_motion(wave))
-    assert set(items["enum"]) <= set(measured)
-    assert all(scale_power(name) > 0 for name in items["enum"])
+    pair, single = items["oneOf"]
+    assert set(single["enum"]) | set(pair["items"]["enum"]) <= set(measured)
+    assert all(scale_power(name) > 0 for name in single["enum"])
+    assert all(scale_power(name) >= 0 for name in pair["items"]["enum"])
 
 
 def test_null_is_the_same_as_no_building(study_folder: Path):

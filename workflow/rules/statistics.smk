@@ -39,6 +39,7 @@ rule fragility:
         table("fragility", "fragility_bands", "fragility_bins", "fragility_shares"),
         table("fragility_floors", "fragility_floors_shares"),
         table("survival_windows", "measure_choice"),
+        table("fragility_two_measures", "fragility_contours", "fragility_cells"),
         exports=directory(f"{RESULTS}/exports"),
     log:
         f"{RESULTS}/logs/fragility.log",

@@ -12,6 +12,7 @@ from rockfrag.campaign.comparison import (
     judged_tests,
     paired_row,
 )
+from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
 from rockfrag.campaign.table_motions import missing_motions, table_motions
 from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.thresholds import cross_validated_threshold
@@ -21,11 +22,13 @@ from rockfrag.campaign.verdicts import simulate_tests
 from rockfrag.errors import InputError
 from rockfrag.motions.filtering import highpass
 from rockfrag.motions.intensity import pga, pgv
+from rockfrag.motions.processing import process
+from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.url import fetch_url
 from rockfrag.stages.job import Job, Results
-from rockfrag.study.campaign import CampaignStudy
+from rockfrag.study.campaign import PULSE_MEASURES, CampaignStudy
 from rockfrag.system.blocks import Block
 from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
@@ -57,7 +60,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     groups = pd.factorize(tests["group"])[0]
     validated = _validated(study, verdicts, measured, groups)
     job.log.info(
-        "%d tests under %d motions: %.1f %% of the verdicts right",
+        "%d tests under %d motions: %.1f %% of the outcomes right",
         len(tests), groups.max() + 1, 100 * (validated.verdicts == measured).mean(),
     )  # fmt: skip
     yield "tests", judged_tests(tests, validated, measured)
@@ -93,6 +96,12 @@ def _campaign_with_motions(job: Job[CampaignStudy]) -> tuple[Campaign, list[Moti
 
 
 def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> list[Motion]:
+    if study.pulse_cycles:
+        settings = campaign.tests[list(PULSE_MEASURES)].to_numpy()
+        return [
+            process(commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles), conditioning)
+            for a, ratio in settings
+        ]
     motions = table_motions(
         study.motions,
         list(campaign.tests["motion"]),
@@ -170,12 +179,24 @@ def _agreement(
         )
     codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
     rows = [agreement_row(OURS, validated.verdicts, measured, groups, level)]
+    if (majority := majority_of_repeats(tests["motion"].to_numpy(), measured)) is not None:
+        rivals[REPEATS] = majority
+    ours = np.atleast_2d(validated.verdicts)
     for name, verdicts in {**rivals, **codes}.items():
-        row = agreement_row(name, verdicts, measured, groups, level)
-        row.update(paired_row(validated.verdicts, verdicts, measured, groups, level, study.seed))
+        # other programs may have done a part of the tests only: all are compared on that part
+        given = ~np.isnan(np.atleast_2d(verdicts).astype(float)).any(axis=0)
+        theirs = np.atleast_2d(verdicts)[:, given].astype(bool)
+        own_groups = pd.factorize(groups[given])[0]
+        if own_groups.max(initial=0) < 1:
+            raise InputError(
+                f"{name}: its tests are of a single input motion; give those of two or more."
+            )
+        row = agreement_row(name, theirs, measured[given], own_groups, level)
+        row |= paired_row(ours[:, given], theirs, measured[given], own_groups, level, study.seed)
         rows.append(row)
     table = pd.DataFrame(rows)
-    table["judged"] = ["as given" if name in codes else "by other motions" for name in table["who"]]
+    judged = dict.fromkeys(codes, "as given") | {REPEATS: "by repeats of the same test"}
+    table["judged"] = table["who"].map(judged).fillna("by other motions")
     return table
 
 

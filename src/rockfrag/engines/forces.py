@@ -1,0 +1,145 @@
+"""Contact forces and energies of a computed response: was the model allowed to be used?
+
+The forces follow from the absolute accelerations of the centres of gravity: N2 = m2 (g + y2''),
+T2 = m2 x2'', and the sums over both blocks at the ground.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.elementary import hypot
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.record import fill_sines
+from rockfrag.system import geometry
+from rockfrag.system.system import System
+
+Array = NDArray[np.float64]
+Pair = tuple[float, float]
+
+
+class _Turning(NamedTuple):
+    """A rotation at some samples: its sine and cosine, rate and acceleration."""
+
+    sine: Array
+    cosine: Array
+    omega: Array
+    alpha: Array
+
+
+def _acceleration(arm: Pair, turning: _Turning) -> tuple[Array, Array]:
+    """Acceleration of the tip of ``arm`` that turns clockwise about its foot [m/s²]."""
+    sine, cosine, omega, alpha = turning
+    x, y = arm[0] * cosine + arm[1] * sine, -arm[0] * sine + arm[1] * cosine
+    return alpha * y - omega * omega * x, -alpha * x - omega * omega * y
+
+
+def centres(system: System, state: NDArray[np.int64], theta: Array) -> Array:
+    """Centres of gravity of a body that rocks without sliding, relative to the moving ground [m].
+
+    Parameters
+    ----------
+    state, theta
+        As in :class:`Response`, shape (n, blocks).
+
+    Returns
+    -------
+    x and y, shape (n, blocks, 2).
+    """
+    found = np.zeros((*theta.shape, 2))
+    sine, cosine = _sines(theta)
+    signs = np.where(state == 0, 1, state)
+
+    def turned(arm: Pair, rows: NDArray[np.bool_], block: int) -> Array:
+        s, c = sine[rows, block], cosine[rows, block]
+        return np.column_stack([arm[0] * c + arm[1] * s, -arm[0] * s + arm[1] * c])
+
+    lowest = system.shapes[0]
+    if system.count == 1:
+        for pole in (+1, -1):
+            rows, arm = signs[:, 0] == pole, geometry.arm(lowest, pole)
+            found[rows, 0] = turned(arm, rows, 0)
+            found[rows, 0, 0] += lowest.x - arm[0]
+        return found
+    pile = system.pile
+    for one in (+1, -1):
+        arm = geometry.arm(lowest, one)
+        for two in (+1, -1):
+            rows = (signs[:, 0] == one) & (signs[:, 1] == two)
+            found[rows, 0] = turned(arm, rows, 0)
+            found[rows, 1] = turned(geometry.reach(pile, one, two), rows, 0)
+            found[rows, 1] += turned(geometry.statue_arm(pile, two), rows, 1)
+            found[rows, :, 0] += lowest.x - arm[0]
+    return found
+
+
+def _sines(theta: Array) -> tuple[Array, Array]:
+    """Sine and cosine of rotations, the same on every processor."""
+    sine, cosine = np.empty_like(theta), np.empty_like(theta)
+    with compiling_alone(fill_sines):
+        fill_sines(theta, sine, cosine)
+    return sine, cosine
+
+
+def contact_forces(
+    system: System,
+    ground: Array,
+    state: NDArray[np.int64],
+    theta: Array,
+    omega: Array,
+    alpha: Array,
+    gravity: Array,
+) -> tuple[Array, Array]:
+    """Normal and friction force of each interface on what stands on it.
+
+    Parameters
+    ----------
+    ground, gravity
+        Ground acceleration, and gravity with the ground's upward acceleration [m/s²], shape (n,).
+    state, theta, omega, alpha
+        As in :class:`Response`, shape (n, blocks).
+
+    Returns
+    -------
+    Normal force and friction force across and along the face that carries, up and to the right [N], each of
+    shape (n, blocks).
+    """
+    normal = np.zeros_like(theta)
+    friction = np.zeros_like(theta)
+    sine, cosine = _sines(theta)
+
+    def turning(rows: NDArray[np.bool_], block: int) -> _Turning:
+        return _Turning(*(values[rows, block] for values in (sine, cosine, omega, alpha)))
+
+    lowest = system.shapes[0]
+    if system.count == 1:
+        for pole in (+1, -1):
+            rows = (state[:, 0] == pole) | (state[:, 0] == 0) & (pole == 1)
+            ax, ay = _acceleration(geometry.arm(lowest, pole), turning(rows, 0))
+            friction[rows, 0] = lowest.mass * (ground[rows] + ax)
+            normal[rows, 0] = lowest.mass * (gravity[rows] + ay)
+        return normal, friction
+    pile = system.pile
+    m1, m2 = pile.pedestal.mass, pile.statue.mass
+    for one in (+1, -1):
+        for two in (+1, -1):
+            rows = (state[:, 0] == one) | (state[:, 0] == 0) & (one == 1)
+            rows &= (state[:, 1] == two) | (state[:, 1] == 0) & (two == 1)
+            first, second = turning(rows, 0), turning(rows, 1)
+            x1, y1 = _acceleration(geometry.arm(lowest, one), first)
+            xd, yd = _acceleration(geometry.reach(pile, one, two), first)
+            x2, y2 = _acceleration(geometry.statue_arm(pile, two), second)
+            friction[rows, 1] = m2 * (ground[rows] + xd + x2)
+            normal[rows, 1] = m2 * (gravity[rows] + yd + y2)
+            friction[rows, 0] = friction[rows, 1] + m1 * (ground[rows] + x1)
+            normal[rows, 0] = normal[rows, 1] + m1 * (gravity[rows] + y1)
+    # of the interface so far upright and level: the pedestal's top turns with it
+    x, y = pile.right[0] - pile.left[0], pile.right[1] - pile.left[1]
+    length = hypot(x, y)
+    tx = (x * cosine[:, 0] + y * sine[:, 0]) / length
+    ty = (y * cosine[:, 0] - x * sine[:, 0]) / length
+    across = tx * normal[:, 1] - ty * friction[:, 1]
+    friction[:, 1] = tx * friction[:, 1] + ty * normal[:, 1]
+    normal[:, 1] = across
+    return normal, friction

@@ -1,0 +1,187 @@
+"""What a simulation returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.short_repr import short_repr
+from rockfrag.system.system import System
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PATTERNS = {
+    (0, 0): "rest",
+    (1, 1): "1a",
+    (-1, -1): "1b",
+    (1, -1): "2a",
+    (-1, 1): "2b",
+    (1, 0): "3a",
+    (-1, 0): "3b",
+    (0, 1): "4a",
+    (0, -1): "4b",
+}
+"""Names of thesis Fig. 2.3 for the contact states (ground, interface)."""
+
+FLIGHT = 2
+"""Contact state of an interface that is open at both ends."""
+
+MODES = {
+    0: "stands",
+    +1: "rocks right",
+    -1: "rocks left",
+    FLIGHT: "flies",
+}
+"""What an interface does in each contact state."""
+
+
+def pattern_name(ground: int, interface: int) -> str:
+    """Name of the pattern of two contact states: that of the thesis, or "flight"."""
+    return "flight" if FLIGHT in (ground, interface) else PATTERNS[ground, interface]
+
+
+def mode_name(state: int, slides: int) -> str:
+    """Say what an interface does, such as "rocks right, slides left"."""
+    way = "" if slides == 0 else ("slides right" if slides > 0 else "slides left")
+    if state == 0 and way:
+        return way
+    return MODES[state] + (f", {way}" if way else "")
+
+
+@dataclass(frozen=True)
+class Response:
+    """Response of one body to one motion.
+
+    Columns are bodies, or the contacts under them, from below.
+
+    Attributes
+    ----------
+    system
+        The system that was simulated.
+    time
+        Times of the samples [s], shape (n,); the motion and the free rocking after it.
+    ground_acceleration
+        Acceleration of the ground at these times [m/s²], shape (n,).
+    position
+        x and y of the centres of gravity relative to the moving ground [m], shape (n, blocks, 2); the middle of
+        the lowest base stood at 0.
+    theta, omega, alpha
+        Rotations [rad], angular velocities [rad/s] and accelerations [rad/s²], shape (n, blocks).
+    state
+        Contact states +1, -1 (rocking on the right, left pole), 0 (full contact) or, with friction, 2 (flight),
+        shape (n, blocks).
+    slides
+        Whether the upper side of each interface sticks (0) or slides to the right (+1) or left (-1), shape
+        (n, blocks).
+    slip
+        Displacement along each interface of the corner that carries, from where it stood at first [m], shape
+        (n, blocks); positive to the right.
+    events
+        One row per opening, impact or closed chatter: ``time`` [s], ``kind``, ``from``, ``to`` (patterns),
+        ``omega_before``, ``omega_after`` [rad/s], ``theta`` [rad] (tuples), ``energy_before``, ``energy_after``
+        (kinetic) [J].  With friction there are also the kinds ``slip`` and ``stick``, ``flight``, ``edge`` (a
+        corner of the statue passes an edge of the pedestal), ``closing`` (a contact closes without an impact),
+        ``paradox`` and ``fall``, and the columns ``modes`` (what each interface does from now on) and ``slip`` [m]
+        (tuples).
+    overturned
+        Whether a block fell.
+    overturned_body
+        Name of the body that fell, or ``""``.
+    overturning_time
+        When it lay down [s], NaN if it did not.
+    energy
+        Table over time [J]: ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_contact_1``
+        and on (in impacts of each contact so far, the ground's first), with friction ``lost_friction``, and
+        ``residual``, which is zero but for rounding.
+    normal_force, friction_force
+        Forces of each interface on the block above it, across and along the face that carries [N], shape (n,
+        blocks).
+    friction_demand
+        Largest |T| / N that the response asked of each interface [-], shape (blocks,): by forces and by impulses,
+        between samples too, until the last time that the block which falls was on this side of its balance.
+        Infinite where a normal force was not positive.  With friction, by the forces at the samples.
+    least_normal_force
+        Least normal force of each interface until then [N], shape (blocks,).
+    lost_contact
+        When a normal force first was none [s], NaN if they pushed throughout: the body would have jumped, and
+        what follows is beyond pure rocking.  NaN with friction, where flight is among the modes.
+    impacts, grazings
+        Numbers of impacts, and of contacts that met with less than 1e-3 rad/s.
+    paradoxes, forced
+        With friction, times that no mode of contact was consistent, and that accumulating events were ended more
+        coarsely than usual (``docs/contact.md``).
+    given_way
+        Number of impacts in which the law of a measured restitution had to give way, lest energy grow.
+    unstable_distance
+        Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
+        p times it for the velocity).  A verdict with a small one hangs on little; a large one promises nothing,
+        since impacts and chaos decide too (see :func:`rockfrag.rocking.sureness.verdict_sureness`).  NaN once
+        a block has slid or flown.
+    """
+
+    system: System
+    time: NDArray[np.float64]
+    ground_acceleration: NDArray[np.float64]
+    position: NDArray[np.float64]
+    theta: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    alpha: NDArray[np.float64]
+    state: NDArray[np.int64]
+    slides: NDArray[np.int64]
+    slip: NDArray[np.float64]
+    events: pd.DataFrame
+    overturned: bool
+    overturned_body: str
+    overturning_time: float
+    energy: pd.DataFrame
+    normal_force: NDArray[np.float64]
+    friction_force: NDArray[np.float64]
+    friction_demand: NDArray[np.float64]
+    least_normal_force: NDArray[np.float64]
+    lost_contact: float
+    impacts: int
+    grazings: int
+    paradoxes: int
+    forced: int
+    given_way: int
+    unstable_distance: float
+
+    __repr__ = short_repr
+
+    def plot(self, title: str = "") -> Figure:
+        """Draw the ground's acceleration [g], rotations over the critical angle, any slip, and patterns."""
+        # matplotlib is loaded only by those who draw
+        from rockfrag.engines.response_figure import response_figure
+
+        return response_figure(self, title)
+
+    @property
+    def pattern(self) -> NDArray[np.str_]:
+        """Pattern of rocking at each sample ("rest", "4a", …, "flight"), shape (n,)."""
+        state = self.state
+        if state.shape[1] == 1:
+            state = np.column_stack([np.zeros(len(state), dtype=int), state])
+        return np.array([pattern_name(int(one), int(two)) for one, two in state])
+
+    @property
+    def mode(self) -> NDArray[np.str_]:
+        """What each interface does at each sample ("stands", "rocks right, slides left", …), shape (n, blocks)."""
+        codes = self.state * 3 + self.slides
+        known, which = np.unique(codes, return_inverse=True)
+        slides = (known + 1) % 3 - 1
+        names = [mode_name(int((c - s) // 3), int(s)) for c, s in zip(known, slides, strict=True)]
+        return np.asarray(np.array(names)[which.reshape(codes.shape)])
+
+
+def sampled_demand(
+    normal: NDArray[np.float64], friction: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the largest |T| / N of each interface over the samples, infinite where N is not positive."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.abs(friction) / normal
+    return np.asarray(np.where(normal > 0, ratio, np.inf).max(axis=0))

@@ -1,0 +1,100 @@
+"""One response: the ground's acceleration, the rotations, any slip, and the pattern of rocking."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from rockfrag.engines.response import Response
+from rockfrag.figure_style import (
+    BLACK,
+    BLUE,
+    COLUMN_WIDTH,
+    OKABE_ITO,
+    ORANGE,
+    RED,
+    figure_style,
+    new_figure,
+)
+from rockfrag.system import geometry
+from rockfrag.system.system import System
+from rockfrag.units import GRAVITY
+
+_PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
+
+
+def response_figure(response: Response, title: str) -> Figure:
+    """Draw acceleration [g], rotations over the critical angle with impacts, slip and the pattern over time."""
+    critical, names = critical_angles(response.system), response.system.names
+    single = len(names) == 1
+    # the object has its colour wherever it stands
+    colours = [BLUE, ORANGE, *OKABE_ITO[2:]][: len(names)][::-1]
+    slides = bool((response.slides != 0).any())
+    heights = [2, 3, 2, 2] if slides else [2, 3, 2]
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 0.6 * sum(heights))
+        panels = figure.subplots(
+            len(heights), 1, sharex=True, gridspec_kw={"height_ratios": heights}
+        )
+        ground, rotation, *between, pattern = panels
+        ground.plot(response.time, response.ground_acceleration / GRAVITY, color=BLACK, lw=0.5)
+        ground.set_ylabel("Ground [g]")
+        ground.set_title(title, loc="left")
+        for i, name in enumerate(names):
+            rotation.plot(
+                response.time,
+                response.theta[:, i] / critical[i],
+                color=colours[i],
+                lw=0.8,
+                label=name,
+            )
+        rotation.axhline(1, color="#999999", lw=0.6, ls="--")
+        rotation.axhline(-1, color="#999999", lw=0.6, ls="--")
+        # a body that never rocked has a panel, too
+        largest = float(np.abs(response.theta / critical).max()) or 1.0
+        rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
+        rotation.set_ylabel("Rotation / critical [-]")
+        impacts = response.events.loc[response.events["kind"] == "impact", "time"]
+        rotation.plot(
+            impacts, np.zeros(len(impacts)), "|", color=BLACK, ms=5, mew=0.5, label="impact"
+        )
+        if not single or len(impacts):
+            rotation.legend(loc="upper right", ncols=3)
+        if response.overturned:
+            for panel in panels:
+                panel.axvline(response.overturning_time, color=RED, lw=0.8)
+        for panel in between:
+            _slips(panel, response, colours)
+        _patterns(pattern, response)
+        pattern.set_xlabel("Time [s]")
+        pattern.set_xlim(0, response.time[-1])
+        return figure
+
+
+def critical_angles(system: System) -> list[float]:
+    """Smaller critical angle of each body [rad]: of the uppermost by itself, of lower ones with all above them."""
+    shapes = list(system.shapes)
+    if system.count == 2:
+        shapes[0] = geometry.joined(system.pile)
+    return [min(geometry.critical_angle(shape, side) for side in (+1, -1)) for shape in shapes]
+
+
+def _slips(panel: Axes, response: Response, colours: list[str]) -> None:
+    """Draw how far each interface has slid."""
+    names = ["ground", *(f"under {name}" for name in response.system.names[1:])]
+    for i, (name, colour) in enumerate(zip(names, colours, strict=True)):
+        panel.plot(response.time, 1000 * response.slip[:, i], color=colour, lw=0.8, label=name)
+    panel.set_ylabel("Slip [mm]")
+    if len(colours) > 1:
+        panel.legend(loc="upper right", ncols=2)
+
+
+def _patterns(panel: Axes, response: Response) -> None:
+    """Mark at which times each pattern of rocking is there."""
+    labels = response.pattern
+    seen = [name for name in _PATTERNS if (labels == name).any()]
+    for row, name in enumerate(seen):
+        times = response.time[labels == name]
+        panel.plot(times, np.full(times.size, row), "|", color=OKABE_ITO[row], ms=6, mew=0.6)
+    panel.set_yticks(range(len(seen)), seen)
+    panel.set_ylim(-0.6, max(len(seen), 1) - 0.4)
+    panel.set_ylabel("Pattern")

@@ -1,0 +1,212 @@
+"""An oracle: time stepping with complementarity (Stewart and Trinkle 1996), plain and slow.
+
+It knows no modes and no events.  In each step of constant length the velocities are those after impulses that
+keep every corner from sinking through the face under it and obey Coulomb's law, found by Gauss-Seidel
+iteration over the contacts.  Candidates are each corner of a base over the face below, and each edge of a face
+under the base above, as long as one lies over the other.  The method is of first order in the step.
+"""
+
+import math
+
+import numba
+import numpy as np
+
+from rockfrag.system import Block, Column, Stack, System, as_system
+
+from .standing import standing
+
+
+def body_table(system: System) -> np.ndarray:
+    """Mass, inertia, corners and top edges from the centre, tilt of the base and of the top, start (x, y)."""
+    return np.array(
+        [
+            [b.mass, b.inertia, *b.corners.ravel(), *b.edges.ravel(), b.base, b.face, *b.centre]
+            for b in standing(system)
+        ]
+    )
+
+
+@numba.njit(cache=True)
+def _candidates(table, q, points, axes, gaps, below):
+    """Contact points, axis angles (of the face), gaps and the body above; number of them."""
+    n = 0
+    for k in range(table.shape[0]):
+        x, y, th = q[3 * k], q[3 * k + 1], q[3 * k + 2]
+        c, s = math.cos(th), math.sin(th)
+        corners = np.empty((2, 2))
+        for i in range(2):
+            cx, cy = table[k, 2 + 2 * i], table[k, 3 + 2 * i]
+            corners[i, 0], corners[i, 1] = x + cx * c + cy * s, y - cx * s + cy * c
+        if k == 0:
+            for i in range(2):
+                points[n] = corners[i]
+                axes[n], gaps[n], below[n] = 0.0, corners[i, 1], k
+                n += 1
+            continue
+        xl, yl, tl = q[3 * k - 3], q[3 * k - 2], q[3 * k - 1]
+        c, s = math.cos(tl), math.sin(tl)
+        edges = np.empty((2, 2))
+        for i in range(2):
+            ex, ey = table[k - 1, 6 + 2 * i], table[k - 1, 7 + 2 * i]
+            edges[i, 0], edges[i, 1] = xl + ex * c + ey * s, yl - ex * s + ey * c
+        for segment, others, angle, sign in (
+            (edges, corners, tl + table[k - 1, 11], 1.0),
+            (corners, edges, th + table[k, 10], -1.0),
+        ):
+            tx, ty = math.cos(angle), -math.sin(angle)
+            length = (segment[1, 0] - segment[0, 0]) * tx + (segment[1, 1] - segment[0, 1]) * ty
+            for i in range(2):
+                dx, dy = others[i, 0] - segment[0, 0], others[i, 1] - segment[0, 1]
+                along = dx * tx + dy * ty
+                if -1e-12 <= along <= length + 1e-12:
+                    points[n] = others[i]
+                    axes[n], gaps[n], below[n] = angle, sign * (-dx * ty + dy * tx), k
+                    n += 1
+    return n
+
+
+@numba.njit(cache=True)
+def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q, v, rows):
+    """March; fills rows (samples, 6 n) with q, v at samples.
+
+    Returns the body that fell (0: none), when, and the number of rows.
+    """
+    n = table.shape[0]
+    h = dt / substeps
+    m = 4 * n
+    points, axes, gaps = np.zeros((m, 2)), np.zeros(m), np.zeros(m)
+    below = np.zeros(m, np.int64)
+    jn, jt = np.zeros((m, 3 * n)), np.zeros((m, 3 * n))
+    wn, wt = np.zeros(m), np.zeros(m)
+    pn, pt = np.zeros(m), np.zeros(m)
+    inverse = np.zeros(3 * n)
+    for k in range(n):
+        inverse[3 * k] = inverse[3 * k + 1] = 1.0 / table[k, 0]
+        inverse[3 * k + 2] = 1.0 / table[k, 1]
+    last = horizontal.size - 1
+    previous = 0
+    for i in range(last + tail):
+        rows[i, : 3 * n] = q
+        rows[i, 3 * n :] = v
+        for j in range(substeps):
+            part = (j + 0.5) / substeps
+            ah = av = 0.0
+            if i < last:
+                ah = horizontal[i] + part * (horizontal[i + 1] - horizontal[i])
+                av = vertical[i] + part * (vertical[i + 1] - vertical[i])
+            count = _candidates(table, q, points, axes, gaps, below)
+            if count != previous:
+                pn[:] = 0.0
+                pt[:] = 0.0
+            previous = count
+            for k in range(n):
+                v[3 * k] -= h * ah
+                v[3 * k + 1] -= h * (g + av)
+            for c in range(count):
+                tx, ty = math.cos(axes[c]), -math.sin(axes[c])
+                jn[c, :] = 0.0
+                jt[c, :] = 0.0
+                wn[c] = wt[c] = 0.0
+                for k, sign in ((below[c], 1.0), (below[c] - 1, -1.0)):
+                    if k < 0:
+                        continue
+                    rx, ry = points[c, 0] - q[3 * k], points[c, 1] - q[3 * k + 1]
+                    jt[c, 3 * k], jt[c, 3 * k + 1] = sign * tx, sign * ty
+                    jt[c, 3 * k + 2] = sign * (tx * ry - ty * rx)
+                    jn[c, 3 * k], jn[c, 3 * k + 1] = -sign * ty, sign * tx
+                    jn[c, 3 * k + 2] = sign * (-ty * ry - tx * rx)
+                for d in range(3 * n):
+                    wn[c] += jn[c, d] ** 2 * inverse[d]
+                    wt[c] += jt[c, d] ** 2 * inverse[d]
+                for d in range(3 * n):
+                    v[d] += inverse[d] * (jn[c, d] * pn[c] + jt[c, d] * pt[c])
+            for _ in range(2000):
+                change = 0.0
+                largest = 1e-300
+                for c in range(count):
+                    speed = 0.0
+                    for d in range(3 * n):
+                        speed += jn[c, d] * v[d]
+                    new = max(0.0, pn[c] - (speed + gaps[c] / h) / wn[c])
+                    delta = new - pn[c]
+                    pn[c] = new
+                    change = max(change, abs(delta))
+                    largest = max(largest, new)
+                    for d in range(3 * n):
+                        v[d] += inverse[d] * jn[c, d] * delta
+                    speed = 0.0
+                    for d in range(3 * n):
+                        speed += jt[c, d] * v[d]
+                    limit = friction[below[c]] * pn[c]
+                    new = min(max(pt[c] - speed / wt[c], -limit), limit)
+                    delta = new - pt[c]
+                    pt[c] = new
+                    change = max(change, abs(delta))
+                    for d in range(3 * n):
+                        v[d] += inverse[d] * jt[c, d] * delta
+                if change <= 1e-10 * largest:
+                    break
+            moving = 0.0
+            for d in range(3 * n):
+                q[d] += h * v[d]
+                moving = max(moving, abs(v[d]))
+            for k in range(n):
+                relative = q[3 * k + 2] - (q[3 * k - 1] if k else 0.0)
+                off = k > 0 and _apart(table, q, k)
+                if abs(q[3 * k + 2]) >= math.pi / 2 or abs(relative) >= math.pi / 2 or off:
+                    return k + 1, i * dt + (j + 1) * h, i + 1
+        if i >= last and moving < 1e-4:
+            return 0, math.nan, i + 1
+    return 0, math.nan, last + tail
+
+
+@numba.njit(cache=True)
+def _apart(table, q, above):
+    """Whether a base no longer lies over the face below."""
+    tl = q[3 * above - 1] + table[above - 1, 11]
+    tx, ty = math.cos(tl), -math.sin(tl)
+    ends = np.empty((2, 2))
+    for part, k, first in ((0, above - 1, 6), (1, above, 2)):
+        c, s = math.cos(q[3 * k + 2]), math.sin(q[3 * k + 2])
+        for i in range(2):
+            ex, ey = table[k, first + 2 * i], table[k, first + 1 + 2 * i]
+            px, py = q[3 * k] + ex * c + ey * s, q[3 * k + 1] - ex * s + ey * c
+            ends[part, i] = px * tx + py * ty
+    return ends[1, 0] > ends[0, 1] or ends[1, 1] < ends[0, 0]
+
+
+def time_stepping(
+    body: Block | Stack | Column | System,
+    acceleration: np.ndarray,
+    dt: float,
+    friction: tuple[float, ...],
+    *,
+    step: float = 2e-5,
+    vertical: np.ndarray | None = None,
+    theta0: float = 0.0,
+    tail: float = 8.0,
+    g: float = 9.81,
+) -> tuple[bool, int, float, np.ndarray]:
+    """Whether, which and when a body fell, and q, v at the samples; ``theta0`` turns the uppermost body."""
+    table = body_table(as_system(body))
+    n = len(table)
+    q = np.zeros(3 * n)
+    for k in range(n):
+        q[3 * k : 3 * k + 2] = table[k, 12:]
+    if theta0:
+        k = n - 1
+        first = 4 if theta0 > 0 else 2
+        corner = table[k, first : first + 2]
+        c, s = math.cos(theta0), math.sin(theta0)
+        turned = np.array([corner[0] * c + corner[1] * s, -corner[0] * s + corner[1] * c])
+        q[3 * k : 3 * k + 2] += corner - turned
+        q[3 * k + 2] = theta0
+    steps = round(tail / dt)
+    rows = np.zeros((len(acceleration) + steps, 6 * n))
+    values = np.ascontiguousarray(acceleration, dtype=float)
+    up = np.zeros_like(values) if vertical is None else np.ascontiguousarray(vertical, dtype=float)
+    fallen, when, count = step_through(
+        table, np.array(friction, dtype=float), g, values, up, dt, max(1, math.ceil(dt / step - 1e-9)),
+        steps, q, np.zeros(3 * n), rows,
+    )  # fmt: skip
+    return fallen > 0, fallen, when, rows[:count]
