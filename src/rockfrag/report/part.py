@@ -178,7 +178,12 @@ class Results:
     def lightest(self) -> NDArray[np.float64]:
         """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
         paths = [self.folder / path for path in self.study.sweep_files]
-        parts = [pq.read_table(path, columns=["lightest"])["lightest"].to_numpy() for path in paths]
+        parts = [
+            pq.read_table(path, columns=["minimum_gravity_ratio"])[
+                "minimum_gravity_ratio"
+            ].to_numpy()
+            for path in paths
+        ]
         return np.concatenate(parts)
 
     @property
