@@ -52,7 +52,8 @@ def response_figure(response: Response, title: str) -> Figure:
             )
         rotation.axhline(1, color="#999999", lw=0.6, ls="--")
         rotation.axhline(-1, color="#999999", lw=0.6, ls="--")
-        largest = float(np.abs(response.theta / critical).max())
+        # a body that never rocked has a panel, too
+        largest = float(np.abs(response.theta / critical).max()) or 1.0
         rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
         rotation.set_ylabel("Rotation / critical [-]")
         impacts = response.events.loc[response.events["kind"] == "impact", "time"]
