@@ -83,7 +83,7 @@ class Outcomes:
     parted_contact: Small = column(
         "cases",
         "",
-        "Number from below, from 1, of the contact open furthest under the body that fell; 0: no fall, or not told.",
+        "Number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told.",
         np.int8(0),
     )
     several_modes: Whole = column(
