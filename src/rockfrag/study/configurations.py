@@ -97,12 +97,13 @@ def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
     needed = ("width_m", "height_m", "mass_kg")
     rows = read_rows(path, ["name", *needed], shape, quantities=(*needed, *shape))
     blocks: dict[str, Block] = {}
+    checked: dict[str, str] = {}
     for row in rows:
         name = row.text("name")
         if name in blocks:
             raise row.error("name", f"{name} is given twice")
         try:
-            distinct_file_names([*blocks, name])
+            distinct_file_names([name], checked)
         except InputError as error:
             raise row.error("name", str(error)) from None
         blocks[name] = _block(row)
@@ -144,6 +145,7 @@ def read_configurations(
         the object does not fit on the pedestal.
     """
     found: dict[str, Configuration] = {}
+    checked: dict[str, str] = {}
     for row in read_rows(path, ["name", "object"], ["pedestal"]):
         name = row.text("name")
         object_name, *behind = names_from_above(row.text("object")) or ("",)
@@ -159,7 +161,7 @@ def read_configurations(
             raise row.error("name", f"{name} is given twice")
         try:
             body = arranged([blocks[one] for one in (object_name, *below)])
-            distinct_file_names([*found, name])
+            distinct_file_names([name], checked)
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
         found[name] = Configuration(name, object_name, "|".join(below), body)
