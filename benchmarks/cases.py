@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.motions.synthetic import evolutionary
-from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.system.blocks import Block, Body, Stack
 
 DT = 0.01
 SAMPLES = 4000

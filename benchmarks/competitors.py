@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from rockfrag.rocking.bodies import Block, Body
+from rockfrag.system.blocks import Block, Body
 
 G = 9.81
 Array = NDArray[np.float64]

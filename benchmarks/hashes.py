@@ -15,9 +15,9 @@ import numpy as np
 from cases import DT, blocks, cases, motions, stacks
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
+from rockfrag.system.blocks import Block, Body, Stack
 
 
 def digest(arrays: list[NDArray[Any]]) -> str:

@@ -15,13 +15,13 @@ import numpy as np
 from cases import Cases
 from numpy.typing import NDArray
 
+from rockfrag.engines.kernels.jit import entry_kernel
+from rockfrag.engines.kernels.lanes import block, stack_one, stack_two
+from rockfrag.engines.kernels.lanes.case import LANES
 from rockfrag.rocking import ensemble
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
-from rockfrag.rocking.kernels.jit import entry_kernel
-from rockfrag.rocking.kernels.lanes import block, stack_one, stack_two
-from rockfrag.rocking.kernels.lanes.case import LANES
 from rockfrag.rocking.simulation import simulate
+from rockfrag.system.blocks import Block, Body, Stack
 
 SEPARATE = Path(__file__).with_name("separate.py")
 Array = NDArray[np.float64]

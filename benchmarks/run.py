@@ -38,11 +38,11 @@ from scipy_stack import scipy_stack
 from rockfrag.figure_style import save_figure
 from rockfrag.files import write_table, write_text
 from rockfrag.report.figures.benchmark import draw_benchmark
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP
 from rockfrag.rocking.parquet import stream_overturns
 from rockfrag.rocking.step_sensitivity import fragile_verdicts
+from rockfrag.system.blocks import Block, Body, Stack
 
 BEGIN, END = "<!-- results of make bench -->", "<!-- end of results -->"
 NAMES = {"lone": "single block", "stack": "two blocks"}

@@ -12,9 +12,9 @@ import numpy as np
 from competitors import SLOWEST_IMPACT, Array, G
 from scipy.integrate import solve_ivp
 
-from rockfrag.rocking.bodies import Body, Stack
 from rockfrag.rocking.reference.integrator import LONGEST_TAIL
 from rockfrag.rocking.reference.model import Model, Pair, State
+from rockfrag.system.blocks import Body, Stack
 
 Ground = Callable[[float], float]
 Watch = Callable[[float, Array], float]

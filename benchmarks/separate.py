@@ -12,8 +12,8 @@ def first_verdict(kind: str) -> float:
     start = time.perf_counter()
     import numpy as np
 
-    from rockfrag.rocking.bodies import Block, Stack
     from rockfrag.rocking.ensemble import overturns
+    from rockfrag.system.blocks import Block, Stack
 
     block = Block(0.3, 1.2, 200.0)
     body = block if kind == "lone" else Stack(Block(0.4, 0.3, 100.0), block)
@@ -26,8 +26,8 @@ def streamed_memory(kind: str, count: int) -> float:
     """Largest resident memory [MiB] of a process that streams ``count`` short histories to a file."""
     import numpy as np
 
-    from rockfrag.rocking.bodies import Block, Body, Stack
     from rockfrag.rocking.parquet import stream_overturns
+    from rockfrag.system.blocks import Block, Body, Stack
 
     blocks = [Block(0.3 + 0.001 * i, 1.2, 200.0) for i in range(100)]
     bodies: list[Body] = (

@@ -16,7 +16,7 @@ with warnings.catch_warnings():
 
 ROOMS = (
     *("", ".assess", ".rocking", ".motions", ".building", ".shaketable", ".fragility"),
-    ".pedestal",
+    *(".pedestal", ".records", ".campaign"),
 )
 FORM = {"GL05", "GL06", "GL07", "GL08", "PR02", "PR03", "YD01"}
 PARAMETERS = "PR01"
@@ -29,7 +29,9 @@ def public() -> list[str]:
         package = importlib.import_module(f"rockfrag{room}")
         for name in getattr(package, "__all__", ()):
             value = getattr(package, name)
-            if inspect.isfunction(value) or inspect.isclass(value):
+            if inspect.isfunction(value) or (
+                inspect.isclass(value) and not issubclass(value, Exception)
+            ):
                 names.add(f"{value.__module__}.{value.__qualname__}")
     return sorted(names)
 

@@ -1,53 +1,53 @@
 """Rocking and overturning of free-standing objects in earthquakes.
 
->>> from rockfrag import Block, Stack, simulate, overturns, read_motion
+Lengths are in metres, masses in kilograms, accelerations in m/s², angles in radians.
+
+>>> import numpy as np
+>>> from rockfrag import Block, Motion, simulate
+>>> time = np.arange(0, 2, 0.01)
+>>> motion = Motion(4.0 * np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+>>> statue = Block(width=0.3, height=1.2, mass=180.0)
+>>> simulate(statue, motion).overturned
+True
+
+What is most used stands here; the rest is in the subpackages, and ``dir()`` of each lists it:
+
+==========  ======================================================================
+records     read, write and list strong-motion records
+motions     filter, scale, rotate, measure; spectra, pulses, synthetic motions
+building    motions of the floors of a building
+system      what is shaken: bodies, contacts, blocks, stacks and columns
+outcomes    what comes out: tables of outcomes, limit states
+rocking     single histories, ensembles, thresholds, rocking spectra
+shaketable  what a shaking table can do, and protocols of its tests
+fragility   curves and their intervals, choice of the intensity measure, exports
+pedestal    paired comparison of objects with and without a pedestal
+campaign    a laboratory's tests, simulated one by one
+assess      one object at one place: what ``rockfrag assess`` does
+==========  ======================================================================
 """
 
-from typing import TYPE_CHECKING
+from typing import Any
 
-from rockfrag._lazy import loader
+import lazy_loader
 
-if TYPE_CHECKING:
-    from rockfrag.records.motion import Motion
-    from rockfrag.records.read import read_motion
-    from rockfrag.rocking import (
-        Block,
-        EnsembleResult,
-        Response,
-        Stack,
-        overturns,
-        simulate,
-    )
+__version__ = "0.2.0"
 
-__version__ = "0.1.0"
-
-__all__ = [
-    "Block",
-    "EnsembleResult",
-    "Motion",
-    "Response",
-    "Stack",
-    "overturns",
-    "read_motion",
-    "simulate",
-]
-
-
-def __dir__() -> list[str]:
-    """Names that `help` and completion show, though they are loaded only when used."""
-    return [*__all__, "__version__"]
-
-
-__getattr__ = loader(
-    __name__,
-    {
-        "Motion": "rockfrag.records.motion",
-        "read_motion": "rockfrag.records.read",
-        "Block": "rockfrag.rocking.bodies",
-        "EnsembleResult": "rockfrag.rocking.ensemble",
-        "Response": "rockfrag.rocking.response",
-        "Stack": "rockfrag.rocking.bodies",
-        "overturns": "rockfrag.rocking.ensemble",
-        "simulate": "rockfrag.rocking.simulation",
-    },
+_find, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_SUBPACKAGES = (
+    *("records", "motions", "building", "system", "outcomes", "rocking", "shaketable", "fragility"),
+    *("pedestal", "campaign", "assess"),
 )
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first used; say where a name stands that is looked for in vain."""
+    if name in __all__:
+        return _find(name)
+    if not name.startswith("_"):
+        for package in _SUBPACKAGES:
+            if name in _find(package).__all__:
+                raise AttributeError(
+                    f"module 'rockfrag' has no attribute '{name}'; it is rockfrag.{package}.{name}"
+                )
+    raise AttributeError(f"module 'rockfrag' has no attribute '{name}'")

@@ -11,6 +11,7 @@ from rockfrag import __version__
 from rockfrag.assess.commands import add_assess_commands
 from rockfrag.errors import InputError
 from rockfrag.record_commands import add_record_commands
+from rockfrag.survival.commands import add_survival_commands
 from rockfrag.units import quantity
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ def make_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     add_assess_commands(commands)
+    add_survival_commands(commands)
     add_record_commands(commands)
 
     one = commands.add_parser("simulate", help="shake one body by one record")
@@ -180,8 +182,8 @@ def _block(option: str, given: Sequence[str]) -> "Block":
             )
         width, height = (quantity(text, "m", "m") for text in given[:2])
         mass = quantity(given[2], "kg", "kg") if len(given) == 3 else STONE * width**2 * height
-        block = Block(width, height, mass)
         check_density(width, height, mass)
+        block = Block(width, height, mass)
     except InputError as error:
         raise InputError(f"{option}: {error}") from None
     if doubt := size_warning(width, height):
@@ -192,16 +194,10 @@ def _block(option: str, given: Sequence[str]) -> "Block":
 def _acceleration_doubt(peak: float, body: "Body") -> str:
     """Say that the motion looks as if it were in another unit, or return an empty text."""
     from rockfrag.plausibility import peak_warning
-    from rockfrag.rocking import Block
+    from rockfrag.rocking.inputs import least_uplift
     from rockfrag.units import GRAVITY
 
-    arms = (
-        [body.arm(pole) for pole in (1, -1)]
-        if isinstance(body, Block)
-        else [arm(pole) for arm in (body.common_arm, body.statue_arm) for pole in (1, -1)]
-    )
-    # thesis eq. 2.1 and 2.21 to 2.25: the least acceleration that opens a contact
-    return peak_warning(peak, min(abs(arm.x) / arm.y for arm in arms) * GRAVITY)
+    return peak_warning(peak, least_uplift(body, GRAVITY))
 
 
 def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]

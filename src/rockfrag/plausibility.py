@@ -8,6 +8,9 @@ from rockfrag.units import GRAVITY
 DENSITIES = (20.0, 22_600.0)
 """Least and largest density of a whole object [kg/m³]: packaging foam, and osmium."""
 
+AIR = 1.2
+"""Density of air [kg/m³]."""
+
 STONE = 2500.0
 """Density of stone [kg/m³], where nobody says how heavy an object is."""
 
@@ -17,6 +20,9 @@ MEAN_DENSITIES = (100.0, DENSITIES[1])
 DEPTHS = (0.1, 3.0)
 """Least depth of an object over its width, largest over the longer of width and height: a panel rocking in its
 strong direction, and a long shelf seen from its end."""
+
+GYRATIONS = (1e-3, 30.0)
+"""Least and largest radius of gyration of a body over the diagonal of its width and height [-]."""
 
 LARGEST_SIZE = 20.0
 """Free-standing objects are hardly taller [m]."""
@@ -68,6 +74,33 @@ def check_density(width: float, height: float, mass: float) -> None:
     raise InputError(
         f"a block {width:g} m wide, {height:g} m high and of {mass:g} kg would have a density of "
         f"{wrong}; check the units."
+    )
+
+
+def light_giant_warning(width: float, height: float, mass: float) -> str:
+    """Say that a block is as large as a house and lighter than air, or return an empty text.
+
+    So looks a block whose sizes are given in centimetres or millimetres. One that is only heavy or light may be an
+    ideal one: an immovable pedestal, or a lone block, whose mass matters to nothing.
+    """
+    # the depth is not known; the thinnest that is admitted
+    densest = mass / width / width / height / DEPTHS[0]
+    if max(width, height) <= LARGEST_SIZE or densest >= AIR:
+        return ""
+    return (
+        f"{width:g} m wide, {height:g} m high and of {mass:g} kg it would be lighter than air; give metres and "
+        "kilograms"
+    )
+
+
+def inertia_warning(width: float, height: float, mass: float, inertia: float) -> str:
+    """Say that a moment of inertia [kg m²] is that of a body of another size, or return an empty text."""
+    gyration = math.sqrt(inertia) / math.sqrt(mass) / math.hypot(width, height)
+    if GYRATIONS[0] <= gyration <= GYRATIONS[1]:
+        return ""
+    return (
+        f"an inertia of {inertia:g} kg m² for {mass:g} kg has a radius of gyration of {gyration:.2g} times the "
+        "diagonal, where a uniform block has 0.29; give kg m² about the centre of gravity"
     )
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.rocking.contact._body import contact_body, posed, working_memory
 from rockfrag.rocking.contact._solve import look_at, solve, solve_generally
 from rockfrag.rocking.contact.friction import interface_frictions
-from rockfrag.rocking.kernels.jit import entry_kernel
 
 from .cases import random_block, random_stack
 

@@ -16,7 +16,7 @@ from rockfrag.pedestal.simulated_explanation import (
     with_references,
 )
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.system.blocks import Block, Stack
 
 TOWER = Block(0.124, 0.496, 2.79)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)

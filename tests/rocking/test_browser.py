@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from rockfrag.rocking import Block, Stack, simulate
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.rocking.inputs import STEP, free_samples, step_count
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 NODE = shutil.which("node")

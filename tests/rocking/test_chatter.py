@@ -5,19 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking import Block, Stack
-from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.kernels.chatter import Hop, closed
-from rockfrag.rocking.kernels.equations import STATE
-from rockfrag.rocking.kernels.impact import stuck
-from rockfrag.rocking.kernels.jit import entry_kernel
-from rockfrag.rocking.kernels.lanes.stack_constants import (
+from rockfrag.engines.kernels.chatter import Hop, closed
+from rockfrag.engines.kernels.equations import STATE
+from rockfrag.engines.kernels.impact import stuck
+from rockfrag.engines.kernels.jit import entry_kernel
+from rockfrag.engines.kernels.lanes.stack_constants import (
     IMPACT,
     ONE,
     TWO,
     fill_constants,
     number_of,
 )
+from rockfrag.rocking import Block, Stack
+from rockfrag.rocking.body_record import body_record
 
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)))
 

@@ -7,8 +7,8 @@ from competitors import numpy_lone, scipy_lone
 from measures import over_limit
 from scipy_stack import scipy_stack
 
-from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
+from rockfrag.system.blocks import Block, Stack
 
 DT = 0.01
 STATUE = Block(0.3, 1.2, 200.0)

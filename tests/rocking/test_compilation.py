@@ -14,12 +14,12 @@ from numba.core.base import BaseContext
 from numba.core.types.functions import BaseFunction
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Block, Stack
+from rockfrag.engines.kernels import jit
+from rockfrag.engines.kernels.by_reference import by_reference
+from rockfrag.engines.kernels.lanes.block import march_blocks
+from rockfrag.engines.kernels.lanes.scheduler import march_stacks
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.kernels import jit
-from rockfrag.rocking.kernels.by_reference import by_reference
-from rockfrag.rocking.kernels.lanes.block import march_blocks
-from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
+from rockfrag.system.blocks import Block, Stack
 
 BLOCK = Block(0.3, 1.2, 200.0)
 STACK = Stack(Block(0.4, 0.3, 100.0), BLOCK)
@@ -110,8 +110,8 @@ UNKNOWN = """
 import numba, numpy as np
 numba.__version__ = "9.9.9"
 from rockfrag.rocking import Block, overturns
-from rockfrag.rocking.kernels import jit
-from rockfrag.rocking.kernels.by_reference import by_reference
+from rockfrag.engines.kernels import jit
+from rockfrag.engines.kernels.by_reference import by_reference
 assert not jit.KNOWN
 found = overturns(Block(0.3, 1.2, 200.0), 6.0 * np.sin(np.arange(300) * 0.06), 0.01, [0.5, 1.0])
 print(found.peak_velocity.ravel().tolist())

@@ -9,9 +9,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from rockfrag.rocking.kernels import elementary
-from rockfrag.rocking.kernels.elementary import acos, atan2, cos, hypot, sin, sin_cos
-from rockfrag.rocking.kernels.jit import entry_kernel
+from rockfrag import elementary
+from rockfrag.elementary import acos, atan2, cos, hypot, sin, sin_cos
+from rockfrag.engines.kernels.jit import entry_kernel
 
 COUNT = 3000
 

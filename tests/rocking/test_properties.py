@@ -8,8 +8,8 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from rockfrag.engines.kernels.chatter import HISTORY
 from rockfrag.rocking import Block, Body, Response, Stack, overturns, simulate
-from rockfrag.rocking.kernels.chatter import HISTORY
 
 G = 9.81
 DT = 0.01

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.engines.kernels.equations import STATE
+from rockfrag.engines.kernels.impact import impact
+from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.errors import InputError
 from rockfrag.rocking import MeasuredRestitution
 from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.kernels.equations import STATE
-from rockfrag.rocking.kernels.impact import impact
-from rockfrag.rocking.kernels.jit import entry_kernel
 from rockfrag.rocking.measured_restitution import LAWS, largest_restitution
 from rockfrag.rocking.reference.model import Model
 

@@ -7,8 +7,8 @@ import pytest
 import trimesh
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.shapes import read_shape
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import read_shape
 
 WIDTH, DEPTH, HEIGHT, MASS = 0.4, 0.6, 1.0, 300.0
 

@@ -7,9 +7,9 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.rocking import parquet
-from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.parquet import stream_overturns
+from rockfrag.system.blocks import Block, Stack
 
 DT = 0.01
 TIME = np.arange(600) * DT

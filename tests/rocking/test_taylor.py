@@ -5,9 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking import Block, Stack
-from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.kernels.equations import (
+from rockfrag.engines.kernels.equations import (
     STATE,
     coupling,
     first_moment1,
@@ -15,8 +13,10 @@ from rockfrag.rocking.kernels.equations import (
     inertia1,
     inertia2,
 )
-from rockfrag.rocking.kernels.jit import entry_kernel
-from rockfrag.rocking.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
+from rockfrag.engines.kernels.jit import entry_kernel
+from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
+from rockfrag.rocking import Block, Stack
+from rockfrag.rocking.body_record import body_record
 
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)))
 H, GROUND, RISE = 0.01, 2.0, -1.5

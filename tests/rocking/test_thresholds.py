@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.case_list import overturns_of_cases
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.thresholds import find_thresholds
+from rockfrag.system.blocks import Block
 
 G = 9.81
 

@@ -5,8 +5,8 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.worst_direction import worst_direction
+from rockfrag.system.blocks import Block
 
 
 def straight(angle_deg):

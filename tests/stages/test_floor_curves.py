@@ -6,9 +6,9 @@ import pytest
 
 from rockfrag.fragility import with_measures
 from rockfrag.fragility.sweep_data import TableSweep
-from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.shaketable.swept import displaced
 from rockfrag.stages.floor_curves import export_curves, floor_curves, uplift_amplitude
+from rockfrag.system.blocks import Block, Stack
 
 STATUE, PEDESTAL = Block(0.2, 0.8, 50.0), Block(0.4, 0.4, 60.0)
 FLOORS = {"hall": 0, "loft": 2}

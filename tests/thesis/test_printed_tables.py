@@ -8,9 +8,9 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.study.loading import load_study
+from rockfrag.system.blocks import Block, Stack
 from rockfrag.thesis.printed_tables import (
     FOLDER,
     TABLE_3_1,

@@ -5,12 +5,12 @@ import pandas as pd
 import pytest
 
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.stages.digest import source_digest, source_files
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.stages.sweep import sweep_table
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
+from rockfrag.system.blocks import Block, Stack
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)

@@ -39,6 +39,7 @@ from rockfrag.assess.verdicts import (
 from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import BETA_MODEL
 from rockfrag.fragility.estimators import Fragility, fragility_of
+from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
 """Folder of fetched records."""
@@ -106,6 +107,8 @@ class Assessment:
     effects: tuple[Moved[float], ...]
     rules: tuple[RuleCheck, ...]
     sliding_share: float
+
+    __repr__ = short_repr
 
     @property
     def measure(self) -> Measure:

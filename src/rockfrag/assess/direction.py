@@ -8,8 +8,8 @@ from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.verdicts import Ladder, believable_scales
 from rockfrag.motions.rotation import rotate
-from rockfrag.rocking.bodies import Body, Stack
 from rockfrag.rocking.ensemble import overturns
+from rockfrag.system.blocks import Body, Stack
 
 STEP_DEG = 15
 """Angle between directions that are tried [degrees]."""

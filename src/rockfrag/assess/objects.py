@@ -10,8 +10,8 @@ from typing import Any
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
-from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.shapes import read_shape
+from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.mesh import read_shape
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""

@@ -9,7 +9,7 @@ from scipy import stats
 from rockfrag.assess.objects import Objects, higher, wider
 from rockfrag.assess.risk import LEVEL, Target, event_weights
 from rockfrag.assess.verdicts import Verdicts
-from rockfrag.rocking.bodies import Body, Stack
+from rockfrag.system.blocks import Body, Stack
 from rockfrag.units import GRAVITY
 
 WIDER = 1.25

@@ -12,9 +12,9 @@ from rockfrag.assess.objects import Objects
 from rockfrag.fragility.observations import Outcomes
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Body
 
 Floats = NDArray[np.float64]
 
@@ -237,9 +237,8 @@ def share_with_sliding(
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
     fallen = overturns(
         body,
-        [motion.acceleration for motion in motions.base],
-        [motion.dt for motion in motions.base],
-        np.minimum(scales[:, np.newaxis], believable_scales(motions.base)),
+        motions.base,
+        scales=np.minimum(scales[:, np.newaxis], believable_scales(motions.base)),
         restitution=[objects.restitution_of(body)],
         friction=objects.friction,
     ).overturned[0, :, 0]

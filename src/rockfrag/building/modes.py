@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.building.model import RayleighDamping, ShearBuilding
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +34,8 @@ class Modes:
     participation: Floats
     mass_share: Floats
     damping: Floats
+
+    __repr__ = short_repr
 
     @property
     def frequency(self) -> Floats:

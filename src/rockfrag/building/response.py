@@ -9,6 +9,7 @@ from rockfrag.building.model import ShearBuilding
 from rockfrag.building.modes import find_modes
 from rockfrag.motions.spectra import oscillator_response
 from rockfrag.records.motion import Motion
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 
@@ -37,6 +38,8 @@ class EnergyLedger:
     damping: Floats
     hysteretic: Floats
 
+    __repr__ = short_repr
+
     @property
     def gap(self) -> float:
         """Largest gap of the ledger over the largest input [-]."""
@@ -64,6 +67,8 @@ class BuildingResponse:
     acceleration: Floats
     drift: Floats
     energy: EnergyLedger | None = None
+
+    __repr__ = short_repr
 
     @property
     def peak_drift(self) -> Floats:

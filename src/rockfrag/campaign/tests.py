@@ -11,6 +11,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.tests_file import read_columns, read_titles
+from rockfrag.short_repr import short_repr
 
 MEASURED = "overturned"
 """Column of what the laboratory saw."""
@@ -38,6 +39,8 @@ class Campaign:
     tests: pd.DataFrame
     measures: tuple[str, ...]
     codes: pd.DataFrame
+
+    __repr__ = short_repr
 
     def only(self, keep: "pd.Series[bool]") -> "Campaign":
         """Return the campaign with some of its tests."""

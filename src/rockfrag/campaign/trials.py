@@ -14,9 +14,10 @@ import pandas as pd
 from scipy.stats import qmc
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.measured_restitution import largest_restitution
-from rockfrag.rocking.shapes import Shape
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import Shape
 
 UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution")
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
@@ -47,6 +48,8 @@ class Trials:
     bodies: tuple[Block, ...]
     restitution: tuple[float | None, ...]
     refused: int
+
+    __repr__ = short_repr
 
 
 def sample_trials(

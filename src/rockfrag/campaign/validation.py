@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.short_repr import short_repr
+
 STANDARD_ERRORS = 2.0
 """A trial is plausible if its share of right verdicts is within this many standard errors of the best."""
 
@@ -33,6 +35,8 @@ class Validated:
 
     votes: Floats
     plausible: NDArray[np.int64]
+
+    __repr__ = short_repr
 
     @property
     def verdicts(self) -> Bools:

@@ -41,9 +41,7 @@ def simulate_tests(
         batch = motions[first : first + BATCH]
         result = overturns(
             trials.bodies,
-            [one.acceleration for one in batch],
-            [one.dt for one in batch],
-            [1.0],
+            batch,
             restitution=trials.restitution,
             threads=threads,
         )

@@ -1,0 +1,1 @@
+"""Engines: who computes how a system moves, behind one contract (``rockfrag.engines.contract``)."""

@@ -33,6 +33,7 @@ from rockfrag.fragility.lognormal import (
     curve_parameters,
 )
 from rockfrag.fragility.observations import Floats, labels, name_and_unit, numbers
+from rockfrag.short_repr import short_repr
 
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 
@@ -58,6 +59,8 @@ class Brackets:
     event: NDArray[np.object_]
     name: str = "PGA"
     unit: str = "g"
+
+    __repr__ = short_repr
 
     @property
     def n_overturned(self) -> int:

@@ -4,6 +4,8 @@ Rocking bodies overturn at one amplitude and survive a larger one; a fitted curv
 these stand beside it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 
 import numpy as np

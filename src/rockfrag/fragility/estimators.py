@@ -19,6 +19,8 @@ from rockfrag.fragility.empirical import survival_windows
 from rockfrag.fragility.intervals import Interval, IntervalMethod, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Outcomes, outcomes_from_table
+from rockfrag.keywords import named_keywords
+from rockfrag.short_repr import short_repr
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ class Fragility:
     fit: FragilityFit
     interval: Interval
     checks: Checks
+
+    __repr__ = short_repr
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -77,6 +81,8 @@ class IncrementalFragility:
     probability: Fragility
     windows: pd.DataFrame
     share_with_windows: float
+
+    __repr__ = short_repr
 
 
 def fragility_of(
@@ -118,6 +124,7 @@ def fragility_of(
     return Fragility(fit, limits, checks_of_verdicts(outcomes, fit, limits, dependence, seed))
 
 
+@named_keywords
 def fit_cloud(
     table: pd.DataFrame,
     im: str,
@@ -148,6 +155,7 @@ def fit_cloud(
     return fragility_of(outcomes, level=level)
 
 
+@named_keywords
 def fit_stripes(
     table: pd.DataFrame,
     im: str,
@@ -189,6 +197,7 @@ def fit_stripes(
     return whole if trials is not None else replace(whole, fit=fit_lognormal(_pooled(outcomes)))
 
 
+@named_keywords
 def fit_incremental(
     sweep: pd.DataFrame,
     *,

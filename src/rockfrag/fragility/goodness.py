@@ -14,6 +14,7 @@ from rockfrag.fragility.empirical import bin_codes, wilson_interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.fragility.pooling import cells
+from rockfrag.short_repr import short_repr
 
 CELLS = 60
 """Cells of the measure in which simulated verdicts are refitted; finer ones move p values by one replicate."""
@@ -50,6 +51,8 @@ class GoodnessOfFit:
     brier: float
     calibration: pd.DataFrame
     words: str
+
+    __repr__ = short_repr
 
 
 def goodness_of_fit(
@@ -96,7 +99,7 @@ def goodness_of_fit(
     trials = by_bin(outcomes.trials)
     expected = by_bin(outcomes.trials * probability)
     observed = by_bin(outcomes.overturned)
-    deviance = float(_deviance(observed, expected, trials))
+    deviance = float(binned_deviance(observed, expected, trials))
     rng = np.random.default_rng(seed)
     # cells within the bins: what is simulated and refitted, however many tests there are
     shifted = outcomes.log_im + code * 1e3
@@ -144,7 +147,8 @@ def goodness_of_fit(
     )
 
 
-def _deviance(observed: Floats, expected: Floats, trials: Floats) -> Floats:
+def binned_deviance(observed: Floats, expected: Floats, trials: Floats) -> Floats:
+    """Binomial deviance of numbers of overturned tests in bins against expected ones, over the last axis [-]."""
     survived = trials - observed
     # a bin that the curve calls impossible may not lie there by rounding alone
     expected = np.clip(expected, 1e-12 * trials, (1 - 1e-12) * trials)
@@ -180,7 +184,7 @@ def _refitted_deviance(pooled: _Pooled, fit: FragilityFit, drawn: Floats) -> Flo
     probability = special.ndtr(eta) if fit.link == "probit" else special.expit(eta)
     member = (pooled.bin[:, None] == np.arange(pooled.bin.max() + 1)).astype(np.float64)
     expected = (pooled.trials * probability) @ member
-    return _deviance(drawn[usable] @ member, expected, pooled.trials @ member)
+    return binned_deviance(drawn[usable] @ member, expected, pooled.trials @ member)
 
 
 def _words(deviance: float, p_value: float, bins: int, dependence: str) -> str:

@@ -20,6 +20,7 @@ from rockfrag.fragility.batch_glm import Link, fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE
 from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.fragility.pooling import cells, counts
+from rockfrag.short_repr import short_repr
 
 FEWEST_GROUPS = 4
 """Fewest groups for which the jackknife's coverage was validated."""
@@ -75,6 +76,8 @@ class Interval:
     replicates: Floats
     link: Link = "probit"
     warnings: tuple[str, ...] = ()
+
+    __repr__ = short_repr
 
     def band(self, im: ArrayLike) -> tuple[Floats, Floats]:
         """Pointwise limits of P(overturn | IM) at each ``im`` > 0, two arrays of shape (n,)."""

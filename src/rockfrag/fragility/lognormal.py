@@ -18,6 +18,8 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, separated
 from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.fragility.pooling import cells
+from rockfrag.keywords import named_keywords
+from rockfrag.short_repr import short_repr
 
 LEAST_SLOPE = 1e-3
 """A curve with a smaller slope in ln IM (β above 1000) is flat: the measure foretells nothing."""
@@ -77,6 +79,8 @@ class FragilityFit:
     link: Link = "probit"
     warnings: tuple[str, ...] = ()
 
+    __repr__ = short_repr
+
     @property
     def se(self) -> tuple[float, float]:
         """Standard errors of ln θ and of β."""
@@ -122,6 +126,7 @@ def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
     return float(np.exp(-c0 / c1)), 1.0 / c1, pairs
 
 
+@named_keywords
 def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
     """Fit a curve to verdicts by maximum likelihood (statsmodels GLM, binomial).
 

@@ -16,6 +16,7 @@ from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Outcomes, numbers, outcomes_from_table
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
+from rockfrag.short_repr import short_repr
 
 TOLD_APART_P = 0.05
 """Two measures are told apart below this p value of their held-out scores."""
@@ -54,6 +55,8 @@ class MeasureChoice:
     table: pd.DataFrame
     pair: FragilitySurface | None
     words: str
+
+    __repr__ = short_repr
 
 
 def area_under_curve(outcomes: Outcomes) -> float:

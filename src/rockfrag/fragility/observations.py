@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 """An array of floating-point numbers."""
@@ -69,6 +70,8 @@ class Outcomes:
     event: NDArray[np.object_]
     name: str = "IM"
     unit: str = ""
+
+    __repr__ = short_repr
 
     @property
     def log_im(self) -> Floats:

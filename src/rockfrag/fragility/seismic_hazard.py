@@ -1,5 +1,7 @@
 """Annual rate of overturning: a fragility curve combined with a seismic hazard curve."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -17,6 +17,7 @@ from rockfrag.fragility.observations import (
     positive,
     verdicts,
 )
+from rockfrag.short_repr import short_repr
 
 
 def fit_uplift(
@@ -70,6 +71,8 @@ class ThreeStates:
     n: int
     n_rocked: int
     n_overturned: int
+
+    __repr__ = short_repr
 
     def probabilities(self, im: ArrayLike) -> pd.DataFrame:
         """Return ``im``, ``no_rocking``, ``safe_rocking`` and ``overturned``, which sum to one."""

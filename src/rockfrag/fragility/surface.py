@@ -15,6 +15,7 @@ from statsmodels.tools.sm_exceptions import PerfectSeparationError, PerfectSepar
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.observations import Floats, positive, verdicts
+from rockfrag.short_repr import short_repr
 
 MOST_FOR_THE_PLANE = 20_000
 """Tests up to which separation is found exactly; a linear programme of more takes too long."""
@@ -27,9 +28,9 @@ class FragilitySurface:
     Attributes
     ----------
     coefficients
-        Intercept first, shape (k + 1,).
+        Intercept first; with an interaction of two measures its coefficient of ln IM1 ln IM2 last.
     covariance
-        From the expected information, (k + 1) × (k + 1).
+        From the expected information, as many rows and columns as coefficients.
     measures
         Columns of the measures.
     log_likelihood, aic, n, method
@@ -44,11 +45,16 @@ class FragilitySurface:
     n: int
     method: str
 
+    __repr__ = short_repr
+
     def probability(self, *im: ArrayLike) -> Floats:
         """Probability of overturning at values of the measures, in order; they broadcast."""
+        logs = [np.log(np.asarray(values, dtype=np.float64)) for values in im]
+        if len(self.coefficients) > len(self.measures) + 1:
+            logs.append(logs[0] * logs[1])
         eta = np.asarray(self.coefficients[0], dtype=np.float64)
-        for slope, values in zip(self.coefficients[1:], im, strict=True):
-            eta = eta + slope * np.log(np.asarray(values, dtype=np.float64))
+        for slope, values in zip(self.coefficients[1:], logs, strict=True):
+            eta = eta + slope * values
         return np.asarray(special.ndtr(eta))
 
 
@@ -56,6 +62,7 @@ def fit_surface(
     table: pd.DataFrame,
     measures: Sequence[str],
     *,
+    interaction: bool = False,
     overturned: str = "overturned",
     source: str = "table",
 ) -> FragilitySurface:
@@ -70,10 +77,17 @@ def fit_surface(
         One row a test.
     measures
         Columns of the intensity measures.
+    interaction
+        Add the product of the logarithms of two measures.
     overturned
         Column with the verdicts.
     source
         What messages call the table.
+
+    Returns
+    -------
+    FragilitySurface
+        Coefficients, their covariance, log-likelihood and AIC.
 
     Raises
     ------
@@ -87,7 +101,7 @@ def fit_surface(
             f"{source}, column {overturned!r}: all {verdict.size} tests have the verdict "
             f"{verdict[0]:g}; a surface needs both."
         )
-    design = np.column_stack([np.ones(verdict.size), *logs])
+    design = design_of(logs, interaction)
     if np.linalg.matrix_rank(design) < design.shape[1]:
         raise InputError(
             f"{source}: the measures {', '.join(measures)} are proportional to each other (or "
@@ -120,6 +134,12 @@ def fit_surface(
         int(verdict.size),
         method,
     )
+
+
+def design_of(logs: Sequence[Floats], interaction: bool) -> Floats:
+    """Return the predictors: ones, the logarithms of the measures and, if asked for, the product of two."""
+    product = [logs[0] * logs[1]] if interaction else []
+    return np.column_stack([np.ones(logs[0].size), *logs, *product])
 
 
 def linearly_separable(design: Floats, verdict: Floats) -> bool:

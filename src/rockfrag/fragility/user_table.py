@@ -15,6 +15,7 @@ from rockfrag.fragility.observations import Outcomes, outcomes_from_table
 from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.fragility.sweeps import fragility_row, table_hash
 from rockfrag.fragility.tests_file import Measures, read_tests
+from rockfrag.short_repr import short_repr
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ class UserFragility:
     surface: FragilitySurface | None
     table: pd.DataFrame
     bins: pd.DataFrame
+
+    __repr__ = short_repr
 
 
 def fit_user_table(

@@ -8,6 +8,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.observations import Floats, labels, numbers, positive
+from rockfrag.short_repr import short_repr
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,8 @@ class VarianceSplit:
     motions: int
     samples: int
     warnings: tuple[str, ...]
+
+    __repr__ = short_repr
 
 
 def split_variance(

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.keywords import named_keywords
 from rockfrag.motions import intensity
 from rockfrag.motions.checks import positive
 from rockfrag.motions.pulse_extraction import strongest_pulse
@@ -21,6 +22,7 @@ SPECTRAL_PERIODS = (0.3, 1.0)
 """Periods at which a table gives the 5 % damped spectrum unless others are asked for [s]."""
 
 
+@named_keywords
 def measure_motion(
     motion: Motion, periods: Sequence[float] = SPECTRAL_PERIODS, damping: float = 0.05
 ) -> dict[str, Any]:

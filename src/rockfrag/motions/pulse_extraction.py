@@ -12,6 +12,7 @@ from rockfrag.motions.pulses import mavroeidis_papageorgiou
 from rockfrag.motions.sliding_pulse import best_place, best_pulse
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 
@@ -57,6 +58,8 @@ class StrongestPulse:
     phase_deg: float
     time: float
     explained: float
+
+    __repr__ = short_repr
 
 
 NO_PULSE = StrongestPulse(*[math.nan] * 6)

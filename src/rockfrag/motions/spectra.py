@@ -1,5 +1,7 @@
 """Response and Fourier spectra of a motion."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,8 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.keywords import named_keywords
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 
@@ -44,6 +48,8 @@ class ResponseSpectrum:
     displacement: Floats
     velocity: Floats
     acceleration: Floats
+
+    __repr__ = short_repr
 
     @property
     def pseudo_velocity(self) -> Floats:
@@ -197,6 +203,7 @@ def oscillator_response(
     return u, v, -(2 * damping * omega * v + omega**2 * u)
 
 
+@named_keywords
 def response_spectrum(
     motion: Motion, periods: ArrayLike | Sequence[float], damping: float = 0.05
 ) -> ResponseSpectrum:
@@ -211,10 +218,23 @@ def response_spectrum(
     damping
         Fraction of critical damping [-], zero or more.
 
+    Returns
+    -------
+    The :class:`ResponseSpectrum`, whose arrays have the shape (k,), as the periods.
+
     Raises
     ------
     InputError
         If there is no period, a period is not positive, or the damping is negative.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockfrag import Motion, response_spectrum
+    >>> time = np.arange(0, 10, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time), dt=0.01)
+    >>> response_spectrum(motion, [0.5, 1.0, 2.0]).acceleration.argmax()
+    np.int64(1)
     """
     checked = _checked_periods(periods)
     damping = checked_damping(damping)

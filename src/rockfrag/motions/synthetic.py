@@ -4,6 +4,8 @@ The same seed and parameters give the same motion.  The metadata say that a moti
 which model and with which seed.
 """
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

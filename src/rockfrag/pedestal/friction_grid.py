@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
 from rockfrag.rocking.contact.friction import interface_frictions
 from rockfrag.rocking.inputs import STEP
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]

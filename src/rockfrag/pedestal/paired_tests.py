@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.short_repr import short_repr
 
 MOST_NAMED = 100
 """Pairs and tests that notes call by their names; of more the number."""
@@ -43,6 +44,8 @@ class Pairs:
     table: pd.DataFrame
     censored: pd.DataFrame
     unpaired: pd.DataFrame
+
+    __repr__ = short_repr
 
     @property
     def balanced(self) -> bool:

@@ -18,8 +18,8 @@ from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.mass_bias import ratio_bias
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.measured_restitution import LAWS, Law, MeasuredRestitution, Restitution
+from rockfrag.system.blocks import Block, Body, Stack
 
 Floats = NDArray[np.float64]
 

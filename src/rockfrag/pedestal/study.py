@@ -36,6 +36,7 @@ from rockfrag.pedestal.permutation import (
     wilcoxon_exact,
 )
 from rockfrag.pedestal.power import detectable_ratio
+from rockfrag.short_repr import short_repr
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
     "whole": (),
@@ -87,6 +88,8 @@ class PedestalStudy:
     ranks: pd.DataFrame
     mixed: pd.DataFrame
     notes: tuple[str, ...]
+
+    __repr__ = short_repr
 
 
 def population(table: pd.DataFrame) -> str:

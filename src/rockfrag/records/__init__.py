@@ -1,1 +1,5 @@
 """Strong-motion records: one module per file format, catalogues and where records come from."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -73,6 +73,15 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     that are missing count as empty, ``source`` as ``folder``. Text columns are empty strings where
     nothing is known, numbers NaN.
 
+    Parameters
+    ----------
+    path
+        The catalogue (CSV).
+
+    Returns
+    -------
+    The table, a row per motion.
+
     Raises
     ------
     InputError
@@ -177,6 +186,17 @@ def load_motions(
 
     Files of the source ``folder`` are named from the folder of the catalogue; others lie below
     ``records``, where they are put if absent. The facts of the catalogue go over those of the file.
+
+    Parameters
+    ----------
+    path
+        The catalogue (CSV).
+    records
+        Folder of fetched records.
+
+    Returns
+    -------
+    The motions [m/s²], one per row, in the order of the rows.
 
     Raises
     ------

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
+from rockfrag.short_repr import short_repr
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,7 +24,7 @@ MOTIONS_AT_ONCE = 64
 
 @dataclass(frozen=True)
 class Motion:
-    """One horizontal acceleration history, linear between samples.
+    """One component of acceleration, linear between samples.
 
     Attributes
     ----------
@@ -49,6 +50,8 @@ class Motion:
     name: str = ""
     metadata: Mapping[str, Any] = field(default_factory=dict)
     provenance: tuple[Mapping[str, Any], ...] = ()
+
+    __repr__ = short_repr
 
     def __post_init__(self) -> None:
         acceleration = _own(self.acceleration)
@@ -113,6 +116,13 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
 
     Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and
     ``provenance`` (JSON).
+
+    Parameters
+    ----------
+    motions
+        What is written.
+    path
+        The file.
     """
     table = pd.DataFrame(
         {

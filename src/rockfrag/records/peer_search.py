@@ -67,6 +67,15 @@ class PeerRecord:
 def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
     """Read the records that a ``_SearchResults.csv`` lists.
 
+    Parameters
+    ----------
+    path
+        The file that PEER's ground-motion database puts beside the records that it delivers.
+
+    Returns
+    -------
+    The records, in the order of the rows.
+
     Raises
     ------
     InputError

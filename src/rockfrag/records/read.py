@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.keywords import named_keywords
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.identify import identify
@@ -19,6 +20,7 @@ from rockfrag.records.parsing.quantities import ASKED_UNITS, TO_SI, asked_unit
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.records.sources.folder import is_no_record
+from rockfrag.short_repr import short_repr
 from rockfrag.units import GRAVITY
 
 _GRAVITY_SHARE = 0.05
@@ -51,6 +53,8 @@ class Record:
     sha256: str
     channels: tuple[Channel, ...]
     left_out: tuple[tuple[str, InputError], ...] = ()
+
+    __repr__ = short_repr
 
 
 def read_record(
@@ -149,6 +153,7 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
     )
 
 
+@named_keywords
 def read_motion(
     path: str | os.PathLike[str],
     unit: str | None = None,

@@ -12,6 +12,7 @@ from obspy.core.inventory.response import InstrumentSensitivity
 
 from rockfrag.errors import InputError
 from rockfrag.files import file_name, whole_file
+from rockfrag.keywords import named_keywords
 from rockfrag.records.formats import at2, opensees, plain, seismosoft
 from rockfrag.records.motion import Motion, read_motion_set
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
@@ -31,6 +32,7 @@ _USUAL_UNITS = {"AT2": "g", "SEISMOSOFT": "g"}
 _ENDINGS = {ending.lower(): name for name, (ending, _) in WRITERS.items()} | {".mseed": "MSEED"}
 
 
+@named_keywords
 def write_motion(
     motion: Motion,
     path: str | os.PathLike[str],
@@ -80,6 +82,19 @@ def write_motions(
     unit: str | None = None,
 ) -> list[Path]:
     """Write each motion into a folder, named as the motion, and return the paths.
+
+    Parameters
+    ----------
+    motions
+        What is written, one file each.
+    folder
+        Where to; it is made if absent.
+    format, unit
+        As of :func:`write_motion`.
+
+    Returns
+    -------
+    The paths of the files, in the order of the motions.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding
 from rockfrag.report.wording import counted, number
 from rockfrag.rocking import simulate
-from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 _STEP = 100 * (AMPLITUDES_G[1] / AMPLITUDES_G[0] - 1)

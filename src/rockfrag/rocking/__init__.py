@@ -1,70 +1,22 @@
 """Rigid blocks rocking: bodies, contact states, impacts, histories and ensembles."""
 
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import Any
 
-from rockfrag._lazy import loader
+import lazy_loader
 
-if TYPE_CHECKING:
-    from rockfrag.rocking.bodies import Block, Body, Stack
-    from rockfrag.rocking.ensemble import EnsembleResult, overturns
-    from rockfrag.rocking.measured_restitution import MeasuredRestitution
-    from rockfrag.rocking.parquet import stream_histories, stream_overturns
-    from rockfrag.rocking.response import Response
-    from rockfrag.rocking.restitution import (
-        RestitutionFit,
-        restitution_from_history,
-        restitution_from_impacts,
-        restitution_from_peaks,
-    )
-    from rockfrag.rocking.simulation import simulate
-    from rockfrag.rocking.spectra import RockingSpectrum, rocking_spectrum
-    from rockfrag.rocking.step_sensitivity import FragileVerdicts, fragile_verdicts
-    from rockfrag.rocking.sureness import verdict_sureness
-    from rockfrag.rocking.thresholds import Thresholds, find_thresholds
+_find, _, _own = lazy_loader.attach_stub(__name__, __file__)
+_SYSTEM = ("Block", "Body", "Column", "Shape", "Stack", "read_shape")
+"""What is shaken, which those who shake it need too."""
 
-__all__ = [
-    "Block",
-    "Body",
-    "EnsembleResult",
-    "FragileVerdicts",
-    "MeasuredRestitution",
-    "Response",
-    "RestitutionFit",
-    "RockingSpectrum",
-    "Stack",
-    "Thresholds",
-    "find_thresholds",
-    "fragile_verdicts",
-    "overturns",
-    "restitution_from_history",
-    "restitution_from_impacts",
-    "restitution_from_peaks",
-    "rocking_spectrum",
-    "simulate",
-    "stream_histories",
-    "stream_overturns",
-    "verdict_sureness",
-]
+__all__ = [*_own, *_SYSTEM]
 
-_HOMES = {
-    "bodies": ("Block", "Body", "Stack"),
-    "ensemble": ("EnsembleResult", "overturns"),
-    "measured_restitution": ("MeasuredRestitution",),
-    "parquet": ("stream_histories", "stream_overturns"),
-    "response": ("Response",),
-    "restitution": (
-        "RestitutionFit",
-        "restitution_from_history",
-        "restitution_from_impacts",
-        "restitution_from_peaks",
-    ),
-    "simulation": ("simulate",),
-    "spectra": ("RockingSpectrum", "rocking_spectrum"),
-    "step_sensitivity": ("FragileVerdicts", "fragile_verdicts"),
-    "sureness": ("verdict_sureness",),
-    "thresholds": ("Thresholds", "find_thresholds"),
-}
 
-__getattr__ = loader(
-    __name__, {name: f"{__name__}.{home}" for home, names in _HOMES.items() for name in names}
-)
+def __dir__() -> list[str]:
+    """Names that `help` and completion show, though they are loaded only when used."""
+    return sorted(__all__)
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first used."""
+    return getattr(import_module("rockfrag.system"), name) if name in _SYSTEM else _find(name)

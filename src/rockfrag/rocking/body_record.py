@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from rockfrag.engines.kernels.equations import BODY
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.checks import positive_number, shown
-from rockfrag.rocking.kernels import geometry
-from rockfrag.rocking.kernels.equations import BODY
+from rockfrag.input_checks import positive_number, shown
 from rockfrag.rocking.measured_restitution import BY_MOMENTUM, Restitution, stack_restitution
+from rockfrag.system import geometry
+from rockfrag.system.blocks import Block, Body, Stack
 
 
 def body_record(

@@ -1,15 +1,16 @@
 """Verdicts of cases that do not fill a grid of bodies × motions × scales."""
 
+import warnings
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP, checked_threads
+from rockfrag.rocking.inputs import STEP, UnitDoubt, checked_threads
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -68,6 +69,8 @@ def overturns_of_cases(
         )
         verdicts[mine] = result.overturned[0, row, column]
 
-    with ThreadPoolExecutor(checked_threads(threads)) as pool:
+    with warnings.catch_warnings(), ThreadPoolExecutor(checked_threads(threads)) as pool:
+        # what single cases look like says nothing about the unit of the whole
+        warnings.simplefilter("ignore", UnitDoubt)
         list(pool.map(run, np.unique(body).tolist()))
     return verdicts

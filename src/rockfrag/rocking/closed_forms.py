@@ -15,7 +15,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
 

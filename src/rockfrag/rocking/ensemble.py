@@ -1,5 +1,7 @@
 """Many bodies × motions × amplitudes at once."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -11,8 +13,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.kernels.equations import BODY
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.lanes import block, stack_case
+from rockfrag.engines.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
+from rockfrag.engines.kernels.lanes.scheduler import march_stacks
+from rockfrag.engines.kernels.record import EVENT, SAMPLE, SUMMARY
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Stack
+from rockfrag.keywords import named_keywords
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
 from rockfrag.rocking.contact.friction import (
@@ -32,18 +40,15 @@ from rockfrag.rocking.inputs import (
     checked_threads,
     free_samples,
     listed,
+    listed_motions,
     listed_vertical,
     step_count,
-    warn_of_peak,
+    warn_of_unit,
 )
-from rockfrag.rocking.kernels.equations import BODY
-from rockfrag.rocking.kernels.jit import compiling_alone
-from rockfrag.rocking.kernels.lanes import block, stack_case
-from rockfrag.rocking.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
-from rockfrag.rocking.kernels.lanes.scheduler import march_stacks
-from rockfrag.rocking.kernels.record import EVENT, SAMPLE, SUMMARY
 from rockfrag.rocking.measured_restitution import Restitution, lone_restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -118,6 +123,8 @@ class EnsembleResult:
     least_normal_force: Array
     scales: Array
 
+    __repr__ = short_repr
+
     def table(self) -> pd.DataFrame:
         """Return the results as a table, a row per case, the scale running fastest.
 
@@ -174,6 +181,7 @@ Start = float | Sequence[float] | None
 """Rotation or angular velocity of one body at the start, as in :func:`simulate`."""
 
 
+@named_keywords
 def overturns(
     bodies: Body | Sequence[Body],
     motions: MotionLike | Sequence[MotionLike],
@@ -225,6 +233,11 @@ def overturns(
     threads
         Threads to use; all cores if None.  Results do not depend on it.
 
+    Returns
+    -------
+    The :class:`EnsembleResult`, whose arrays have the shape (bodies, motions, scales); its ``table()`` has a row
+    per case.
+
     Raises
     ------
     InputError
@@ -232,6 +245,8 @@ def overturns(
 
     Warns
     -----
+    UnitDoubt
+        If the strongest motion looks as if it were in g or cm/s².
     LightBodies
         If the ground takes more than half of its weight from a body, with neither ``friction`` nor ``forces``.
 
@@ -240,13 +255,25 @@ def overturns(
     Cases with a start of their own, with linearised equations or with ``forces`` are marched one by one as
     :func:`simulate` does, which follows every impact and takes some ten times as long; a fall is then certain
     when a block lies down.  With friction a block has also fallen when it has left the edge of its pedestal.
+
+    Examples
+    --------
+    A statue alone and on a pedestal, under a sine of one second at three amplitudes [m/s²]:
+
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, Stack, overturns
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> statue = Block(width=0.3, height=1.2, mass=180.0)
+    >>> stack = Stack(Block(width=0.6, height=0.4, mass=300.0), statue)
+    >>> overturns([statue, stack], motion, scales=[2.0, 3.0, 5.0]).overturned.shape
+    (2, 1, 3)
     """
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)
     largest = np.abs(factors).max(axis=1, initial=0.0)
-    warn_of_peak(
-        max((np.abs(one).max() * s for one, s in zip(values, largest, strict=True)), default=0.0)
-    )
+    peaks = np.array([np.abs(one).max() * s for one, s in zip(values, largest, strict=True)])
+    warn_of_unit(body_list, listed_motions(motions), peaks, g)
     up = listed_vertical(vertical, values, dts)
     if up:
         checked_scales(factors, up)
@@ -308,7 +335,7 @@ def _warn_of_weight(lightest: Array) -> None:
             f"half of its weight, in {none} of them none at all; pure rocking holds it on the ground there. "
             "Give friction= to let it fly, or forces=True to see when contact is lost.",
             LightBodies,
-            stacklevel=3,
+            stacklevel=4,
         )
 
 

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Block, Body, Vector
-from rockfrag.rocking.kernels.elementary import hypot
-from rockfrag.rocking.kernels.jit import compiling_alone
-from rockfrag.rocking.kernels.record import fill_sines
+from rockfrag.elementary import hypot
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.record import fill_sines
+from rockfrag.system.blocks import Block, Body, Vector
 
 Array = NDArray[np.float64]
 

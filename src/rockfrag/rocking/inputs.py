@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.input_checks import positive_number, real_array, shown, whole_number
 from rockfrag.plausibility import peak_warning
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.checks import positive_number, real_array, shown, whole_number
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Block, Body, Stack
 
 STEP = 0.1
 """Largest p h of a step: frequency parameter of the faster block times step."""
@@ -50,6 +50,7 @@ def checked_motion(
         If there are fewer than two samples, one is not a finite number or beyond any earthquake, or if the
         interval is missing, given twice or not positive.
     """
+    _refuse_file_name(name, motion)
     if isinstance(motion, Motion):
         if dt is not None:
             raise InputError(
@@ -160,7 +161,7 @@ def listed(
         If a body is none, a motion cannot be used, or the lengths of the lists do not fit together.
     """
     body_list = listed_bodies(bodies)
-    each = _listed_motions(motions)
+    each = listed_motions(motions)
     intervals: list[float | None]
     if dt is None or isinstance(dt, (numbers.Real, str, complex)):
         intervals = [dt] * len(each)  # type: ignore[list-item]
@@ -176,9 +177,25 @@ def listed(
     return body_list, [values for values, _ in checked], np.array([h for _, h in checked])
 
 
-def _listed_motions(
+def _refuse_file_name(name: str, motion: object) -> None:
+    if isinstance(motion, (str, os.PathLike)):
+        raise InputError(
+            f"{name}: expected numbers [m/s²], got {shown(os.fspath(motion))}; of a file give what "
+            "rockfrag.read_motion(file, unit=…) returns."
+        )
+
+
+def listed_motions(
     motions: MotionLike | Sequence[MotionLike], name: str = "motions"
 ) -> list[MotionLike]:
+    """Return motions as a list of them.
+
+    Raises
+    ------
+    InputError
+        If there are none.
+    """
+    _refuse_file_name(name, motions)
     if isinstance(motions, Motion):
         return [motions]
     if isinstance(motions, np.ndarray) and motions.ndim == 1 and motions.dtype != object:
@@ -208,7 +225,7 @@ def listed_vertical(
     """
     if vertical is None:
         return []
-    each = _listed_motions(vertical, "vertical")
+    each = listed_motions(vertical, "vertical")
     if len(each) != len(horizontal):
         raise InputError(
             f"vertical: expected {len(horizontal)} entries, one per motion, got {len(each)}."
@@ -314,10 +331,45 @@ def check_case_count(count: int) -> None:
         )
 
 
-def warn_of_peak(peak: float) -> None:
-    """Warn if a motion looks as if it were given in another unit than m/s²."""
-    if doubt := peak_warning(peak):
-        warnings.warn(doubt, UserWarning, stacklevel=3)
+class UnitDoubt(UserWarning):
+    """A motion looks as if it were given in another unit than m/s²."""
+
+
+def warn_of_unit(
+    bodies: Sequence[Body],
+    given: Sequence[MotionLike],
+    peaks: NDArray[np.float64],
+    g: float,
+    stacklevel: int = 4,
+) -> None:
+    """Warn if the strongest motion looks as if it were given in another unit than m/s².
+
+    Parameters
+    ----------
+    bodies
+        What is shaken.
+    given
+        Motions as the user gave them. Only of an array, which has no unit of its own, is it a reason for doubt
+        that it lifts nothing and would lift something if it were in g.
+    peaks
+        Peak acceleration of each motion at its largest scale [m/s²], shape (motions,).
+    g
+        Acceleration of gravity [m/s²].
+    stacklevel
+        Callers between this function and the user's line.
+    """
+    plain = any(not isinstance(motion, Motion) for motion in given)
+    gravity = positive_number("g", g, "m/s²")
+    least = min((least_uplift(body, gravity) for body in bodies), default=None) if plain else None
+    if doubt := peak_warning(float(peaks.max(initial=0.0)), least):
+        warnings.warn(doubt, UnitDoubt, stacklevel=stacklevel)
+
+
+def least_uplift(body: Body, g: float) -> float:
+    """Return the least horizontal acceleration that opens a contact of a body at rest, g b/h [m/s²]."""
+    arms = (body.arm,) if isinstance(body, Block) else (body.common_arm, body.statue_arm)
+    each = [arm(pole) for arm in arms for pole in (+1, -1)]
+    return min(abs(arm.x) / arm.y for arm in each) * g
 
 
 def fastest_frequency(body: Body, g: float) -> float:

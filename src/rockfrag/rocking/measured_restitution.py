@@ -7,10 +7,10 @@ from typing import Literal, get_args
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body
-from rockfrag.rocking.checks import real_number, shown
-from rockfrag.rocking.kernels import geometry
-from rockfrag.rocking.kernels.geometry import COUPLE, RATIO
+from rockfrag.input_checks import real_number, shown
+from rockfrag.system import geometry
+from rockfrag.system.blocks import Block, Body
+from rockfrag.system.geometry import COUPLE, RATIO
 
 Law = Literal["position", "couple", "ratio"]
 """How the restitution of a lone block is carried over to a stack."""

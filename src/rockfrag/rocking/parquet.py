@@ -1,8 +1,11 @@
 """Ensembles larger than memory: verdicts, peaks or whole histories straight into a Parquet file."""
 
+from __future__ import annotations
+
 import itertools
 import math
 import os
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -14,22 +17,26 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.kernels.record import EVENT, SAMPLE
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
-from rockfrag.rocking.bodies import Body
+from rockfrag.keywords import named_keywords
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.ensemble import EnsembleResult, overturns
 from rockfrag.rocking.inputs import (
     STEP,
     MotionLike,
+    UnitDoubt,
     checked_scales,
     checked_threads,
     listed,
+    listed_motions,
     step_count,
+    warn_of_unit,
 )
-from rockfrag.rocking.kernels.record import EVENT, SAMPLE
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -50,6 +57,7 @@ PEAKS = {
 }
 
 
+@named_keywords
 def stream_overturns(
     bodies: Body | Sequence[Body],
     motions: MotionLike | Sequence[MotionLike],
@@ -97,10 +105,14 @@ def stream_overturns(
         raise InputError(f'columns: expected "verdict" or "peaks", got {columns!r}.')
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)
+    peaks = np.array([np.abs(one).max() for one in values]) * np.abs(factors).max(axis=1, initial=0)
+    warn_of_unit(body_list, listed_motions(motions), peaks, g)
     total = len(body_list) * factors.size
     schema = pa.schema(CASE | VERDICT | (PEAKS if columns == "peaks" else {}))
     done = 0
-    with new_table(path, schema) as writer:
+    with new_table(path, schema) as writer, warnings.catch_warnings():
+        # the strongest case has been looked at; a group may hold weak ones alone
+        warnings.simplefilter("ignore", UnitDoubt)
         for some, rows, cols in _groups(len(body_list), *factors.shape):
             result = overturns(
                 body_list[some],
@@ -196,6 +208,7 @@ SCHEMA = pa.schema(
 )
 
 
+@named_keywords
 def stream_histories(
     bodies: Body | Sequence[Body],
     motions: MotionLike | Sequence[MotionLike],

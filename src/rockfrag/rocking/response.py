@@ -1,5 +1,7 @@
 """What a simulation returns."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -7,7 +9,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Body
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Body
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -148,7 +151,9 @@ class Response:
     given_way: int
     closest_approach: float
 
-    def plot(self, title: str = "") -> "Figure":
+    __repr__ = short_repr
+
+    def plot(self, title: str = "") -> Figure:
         """Draw the ground's acceleration [g], rotations over the critical angle, any slip, and patterns."""
         # matplotlib is loaded only by those who draw
         from rockfrag.rocking.response_figure import response_figure

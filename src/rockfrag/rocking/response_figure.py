@@ -14,8 +14,8 @@ from rockfrag.figure_style import (
     figure_style,
     new_figure,
 )
-from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.response import Response
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
 _PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")

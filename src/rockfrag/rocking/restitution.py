@@ -6,6 +6,8 @@ the time between them.  So peaks, impact times and whole histories all speak abo
 linearised equation (2.9) the peaks obey φ' = 1 - √(1 - e² (1 - (1 - φ)²)) with φ = θ/θc (Housner 1963).
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,9 +18,9 @@ from scipy.optimize import OptimizeResult, brentq, least_squares
 from scipy.stats import t as student
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.checks import real_array
+from rockfrag.input_checks import real_array
 from rockfrag.rocking.simulation import simulate
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from rockfrag.motions.intensity import pgv
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.closed_forms import housner_velocity
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 25)

@@ -1,5 +1,7 @@
 """One body, one motion, everything about the response."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -7,8 +9,21 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.engines.kernels.equations import STATE
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.record import (
+    CHATTER,
+    CLOSING,
+    EVENT,
+    LIFTING,
+    OPENING,
+    SAMPLE,
+    SUMMARY,
+    fill_energies,
+)
+from rockfrag.engines.kernels.single import Shaking, march, scratch
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body
+from rockfrag.keywords import named_keywords
 from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.contact.friction import (
     FrictionInput,
@@ -27,23 +42,11 @@ from rockfrag.rocking.inputs import (
     checked_vertical,
     free_samples,
     step_count,
-    warn_of_peak,
+    warn_of_unit,
 )
-from rockfrag.rocking.kernels.equations import STATE
-from rockfrag.rocking.kernels.jit import compiling_alone
-from rockfrag.rocking.kernels.record import (
-    CHATTER,
-    CLOSING,
-    EVENT,
-    LIFTING,
-    OPENING,
-    SAMPLE,
-    SUMMARY,
-    fill_energies,
-)
-from rockfrag.rocking.kernels.single import Shaking, march, scratch
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.response import PATTERNS, Response, mode_name
+from rockfrag.system.blocks import Block, Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -71,6 +74,7 @@ def initial_state(
     return initial
 
 
+@named_keywords
 def simulate(
     body: Body,
     motion: MotionLike,
@@ -115,14 +119,38 @@ def simulate(
     g
         Acceleration of gravity [m/s²].
 
+    Returns
+    -------
+    The :class:`Response`: arrays of shape (n, blocks) over the n samples of the motion and of the free rocking
+    after it, with the table of its events and the ledger of its energy.
+
     Raises
     ------
     InputError
         If an argument cannot be used; the message says which and why.
+
+    Warns
+    -----
+    UnitDoubt
+        If the motion looks as if it were in g or cm/s².
+
+    Examples
+    --------
+    A statue under one second of a sine of 4 m/s²:
+
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, simulate
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(4.0 * np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> response = simulate(Block(width=0.3, height=1.2, mass=180.0), motion)
+    >>> response.overturned, response.overturned_body
+    (True, 'block')
+    >>> response.theta.shape == (response.time.size, 1)
+    True
     """
     values, interval = checked_motion(motion, dt)
-    warn_of_peak(float(np.abs(values).max()))
     record = body_record(body, restitution, checked_switch("linear", linear), g)
+    warn_of_unit([body], [motion], np.abs(values).max(keepdims=True), g)
     up = checked_vertical(vertical, values, interval)
     if friction is not None:
         check_impacts_follow(restitution, linear)

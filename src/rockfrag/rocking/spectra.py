@@ -4,6 +4,8 @@ As a response spectrum shows oscillators of one damping over their period, a roc
 of one slenderness over 2π/p (Makris and Konstantinidis 2003, Earthquake Eng. Struct. Dyn. 32, 265-289).
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,15 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.elementary import sin_cos
 from rockfrag.errors import InputError
+from rockfrag.input_checks import real_array
+from rockfrag.keywords import named_keywords
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.checks import real_array
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import fastest_frequency
-from rockfrag.rocking.kernels.elementary import sin_cos
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 
 Floats = NDArray[np.float64]
@@ -46,6 +50,8 @@ class RockingSpectrum:
     rotation: Floats
     velocity: Floats
 
+    __repr__ = short_repr
+
     @property
     def overturned(self) -> NDArray[np.bool_]:
         """Whether the block overturns, shape (j, k)."""
@@ -57,6 +63,19 @@ def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
 
     Its size follows from p = √(3g/4R) (thesis eq. 2.17); its density is 1000 kg/m³ for a depth of
     1 m, which matters to nothing.
+
+    Parameters
+    ----------
+    alpha
+        Critical angle [rad].
+    period
+        2π/p [s].
+    g
+        Acceleration of gravity [m/s²].
+
+    Returns
+    -------
+    The block.
 
     Raises
     ------
@@ -73,6 +92,7 @@ def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
     return Block(width, height, 1000 * width * height)
 
 
+@named_keywords
 def rocking_spectrum(
     motion: Motion,
     periods: ArrayLike,
@@ -99,10 +119,25 @@ def rocking_spectrum(
     threads
         Threads to use; all cores if None.  The spectrum does not depend on it.
 
+    Returns
+    -------
+    The :class:`RockingSpectrum`, whose arrays have the shape (j, k): angles × periods.
+
     Raises
     ------
     InputError
         If a period or an angle cannot be used.
+
+    Examples
+    --------
+    Of blocks of one slenderness the larger ones stand longer:
+
+    >>> import numpy as np
+    >>> from rockfrag import Motion, rocking_spectrum
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(4.0 * np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> rocking_spectrum(motion, periods=[2.0, 4.0, 6.0], alpha=0.25).overturned
+    array([[ True, False, False]])
     """
     period = np.atleast_1d(real_array("periods", periods, "s"))
     angle = np.atleast_1d(real_array("alpha", alpha, "rad"))

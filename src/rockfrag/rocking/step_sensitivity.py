@@ -1,5 +1,7 @@
 """How many verdicts hang on the step of the integration."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -7,11 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Body
+from rockfrag.input_checks import whole_number
+from rockfrag.keywords import named_keywords
 from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.checks import whole_number
 from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 
@@ -33,12 +37,15 @@ class FragileVerdicts:
     changed: int
     cases: NDArray[np.int64]
 
+    __repr__ = short_repr
+
     @property
     def share(self) -> float:
         """Share of the sampled verdicts that changed [-]."""
         return self.changed / self.sampled
 
 
+@named_keywords
 def fragile_verdicts(
     bodies: Body | Sequence[Body],
     motions: MotionLike | Sequence[MotionLike],
@@ -67,10 +74,24 @@ def fragile_verdicts(
     restitution, g, step, threads
         As in :func:`overturns`.
 
+    Returns
+    -------
+    The :class:`FragileVerdicts`: how many cases were looked at, and which of them changed.
+
     Raises
     ------
     InputError
         If an argument cannot be used; the message says which and why.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, fragile_verdicts
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> found = fragile_verdicts(Block(0.3, 1.2, 180.0), motion, None, np.arange(2.5, 8.0, 0.1))
+    >>> found.sampled, found.changed
+    (55, 0)
     """
     body_list, values, dts = listed(bodies, motions, dt, restitution)
     factors = checked_scales(scales, values)

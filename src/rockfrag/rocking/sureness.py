@@ -4,6 +4,8 @@ Whether a rocking body falls depends on its motion and its dimensions without en
 history foretells how a neighbouring one ends.  So neighbours are simulated.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -11,17 +13,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Stack
-from rockfrag.rocking.checks import real_number, whole_number
+from rockfrag.input_checks import real_number, whole_number
+from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 LARGEST_PERTURBATION = 0.1
 """Beyond this a copy is another experiment."""
 
 
+@named_keywords
 def verdict_sureness(
     bodies: Body | Sequence[Body],
     motions: MotionLike | Sequence[MotionLike],
@@ -63,6 +67,15 @@ def verdict_sureness(
     ------
     InputError
         If an argument cannot be used; the message says which and why.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, verdict_sureness
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> verdict_sureness(Block(0.3, 1.2, 180.0), motion, None, [2.6, 5.0], perturbation=0.01)
+    array([[[1., 1.]]])
     """
     size = real_number("perturbation", perturbation)
     if not 0 < size <= LARGEST_PERTURBATION:

@@ -5,6 +5,8 @@ in which the body survives again (``docs/derivation.md``).  A coarse grid finds 
 least as wide as its spacing, and bisection puts both ends of what it finds to a tolerance.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,12 +16,14 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Body
+from rockfrag.input_checks import positive_number
+from rockfrag.keywords import named_keywords
 from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.checks import positive_number
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import STEP, MotionLike, listed
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -55,7 +59,10 @@ class Thresholds:
     smallest_window: float
     tolerance: float
 
+    __repr__ = short_repr
 
+
+@named_keywords
 def find_thresholds(
     bodies: Body | Sequence[Body],
     motions: MotionLike | Sequence[MotionLike],
@@ -85,10 +92,27 @@ def find_thresholds(
     restitution, g, step, threads
         As in :func:`overturns`.
 
+    Returns
+    -------
+    The :class:`Thresholds`: a table with a row per body and motion, and one of the windows of survival.
+
     Raises
     ------
     InputError
         If an argument cannot be used; the message says which and why.
+
+    Examples
+    --------
+    A motion with a peak of 1 m/s² makes scales accelerations:
+
+    >>> import numpy as np
+    >>> from rockfrag import Block, Motion, find_thresholds
+    >>> time = np.arange(0, 2, 0.01)
+    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> statue = Block(width=0.3, height=1.2, mass=180.0)
+    >>> found = find_thresholds(statue, motion, None, highest=8.0, tolerance=0.01, smallest_window=0.1)
+    >>> found.table["first_overturning"].round(2).tolist()
+    [2.96]
     """
     positive_number("highest", highest)
     positive_number("tolerance", tolerance)

@@ -7,12 +7,14 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.keywords import named_keywords
 from rockfrag.motions.rotation import rotate
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.thresholds import find_thresholds
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 DIRECTIONS_DEG = tuple(range(0, 360, 10))
@@ -39,7 +41,10 @@ class WorstDirection:
     motion: Motion
     table: pd.DataFrame
 
+    __repr__ = short_repr
 
+
+@named_keywords
 def worst_direction(
     body: Body,
     first: Motion,
@@ -68,6 +73,10 @@ def worst_direction(
         Angles from the first component towards the second [degrees].
     tolerance, smallest_window, restitution
         As of :func:`rockfrag.rocking.thresholds.find_thresholds`.
+
+    Returns
+    -------
+    The :class:`WorstDirection`, with a table of a row per direction.
 
     Raises
     ------

@@ -11,9 +11,9 @@ from rockfrag.motions.filtering import highpass
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.bodies import Body
 from rockfrag.shaketable.readings import always_overturning, first_overturning
 from rockfrag.shaketable.shaker import FILTER_ORDER
+from rockfrag.system.blocks import Body
 
 
 def filter_effect(

@@ -19,11 +19,11 @@ from rockfrag.errors import InputError
 from rockfrag.motions.scaling import factors_to_pga, scale
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.contact.friction import FrictionInput
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
+from rockfrag.system.blocks import Body
 
 Floats = NDArray[np.float64]
 

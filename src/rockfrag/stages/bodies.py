@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from rockfrag.rocking.bodies import Block, Body
 from rockfrag.study.configurations import Configuration
+from rockfrag.system.blocks import Block, Body
 from rockfrag.units import GRAVITY
 
 

@@ -24,11 +24,11 @@ from rockfrag.motions.intensity import pga, pgv
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.url import fetch_url
-from rockfrag.rocking.bodies import Block
-from rockfrag.rocking.shapes import Shape, read_shape
 from rockfrag.stages.campaign import OURS
 from rockfrag.stages.stage import Job, Results
 from rockfrag.study.campaign import CampaignStudy
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
 
 VARIED_SHARE = 4

@@ -114,15 +114,15 @@ def _imports(name: str) -> tuple[str, ...]:
     return tuple(found)
 
 
+@cache
 def _home(module: str, name: str) -> str:
     """Module in which ``from module import name`` finds the name: a package may pass it on."""
     inner = f"{module}.{name}"
     if _file(inner).is_file():
         return inner
-    if _file(module).name == "__init__.py":
-        for node in _import_statements(module):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                for one in node.names:
-                    if (one.asname or one.name) == name:
-                        return _home(node.module, one.name)
+    stub = _file(module).with_suffix(".pyi")
+    if stub.is_file():
+        for node in ast.parse(stub.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ImportFrom) and name in {one.name for one in node.names}:
+                return _home(f"{module}.{node.module}", name)
     return module

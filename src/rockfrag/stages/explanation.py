@@ -8,10 +8,10 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Stack
 from rockfrag.stages.protocol import protocol_of
 from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
+from rockfrag.system.blocks import Stack
 
 SIMULATED_PAIRS = 3
 """Closest pairs of departures that are simulated together, since adding them up is an approximation."""

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.rocking.bodies import Block, Body
+from rockfrag.system.blocks import Block, Body
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy

@@ -101,8 +101,7 @@ def _forces(
 
     found = overturns(
         [one.body],
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
+        motions,
         restitution=[one.restitution],
         vertical=vertical,
         forces=True,
@@ -127,8 +126,7 @@ def _forces_with_friction(
     for place, motion in enumerate(motions):
         response = simulate(
             one.body,
-            motion.acceleration,
-            motion.dt,
+            motion,
             restitution=one.restitution,
             friction=one.friction,
             vertical=None if vertical is None else vertical[place],

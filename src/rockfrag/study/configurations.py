@@ -8,7 +8,6 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.plausibility import check_density
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.measured_restitution import (
     Law,
@@ -17,6 +16,7 @@ from rockfrag.rocking.measured_restitution import (
     Restitution,
     stack_restitution,
 )
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.tabular import Row, read_rows
 
 
@@ -92,7 +92,7 @@ def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
 
 
 def _block(row: Row) -> Block:
-    values = {
+    values: dict[str, Any] = {
         "width": row.positive_quantity("width_m"),
         "height": row.positive_quantity("height_m"),
         "mass": row.positive_quantity("mass_kg"),

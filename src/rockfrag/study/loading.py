@@ -15,7 +15,6 @@ from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.records.catalogue import read_catalogue
-from rockfrag.rocking.bodies import Block
 from rockfrag.rocking.contact.friction import check_impacts_follow
 from rockfrag.rocking.measured_restitution import LAWS
 from rockfrag.schema import checked
@@ -38,6 +37,7 @@ from rockfrag.study.paths import check_file, existing_file
 from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
+from rockfrag.system.blocks import Block
 from rockfrag.yaml_file import read_yaml
 
 OF_ONE_COMPONENT = (

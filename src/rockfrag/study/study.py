@@ -12,10 +12,10 @@ from rockfrag.building.model import ShearBuilding
 from rockfrag.files import is_file
 from rockfrag.plausibility import size_warning
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
-from rockfrag.rocking.bodies import Block, Stack
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.supplementary import Supplementary
+from rockfrag.system.blocks import Block, Stack
 
 GROUND = "ground"
 """Label of the only floor of a study without a building."""

@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import TooFewUnitsError
-from rockfrag.rocking.bodies import Block
+from rockfrag.system.blocks import Block
 from rockfrag.thesis.statements import STATEMENTS as ALL_STATEMENTS
 from rockfrag.thesis.statements import Evidence, Undecidable
 from rockfrag.thesis.statements.floors import floor_steps

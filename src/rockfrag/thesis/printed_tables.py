@@ -9,9 +9,9 @@ import pandas as pd
 
 from rockfrag.motions.intensity import pga, pgd, pgv
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Block
 from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.study.configurations import Configuration
+from rockfrag.system.blocks import Block
 from rockfrag.tabular import read_rows
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from rockfrag.rocking.bodies import Block
+from rockfrag.system.blocks import Block
 
 THESIS_BODIES: Mapping[str, Block] = {
     "T1": Block(0.124, 0.372, 2.172),

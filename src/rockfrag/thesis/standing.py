@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.bodies import Body
 from rockfrag.rocking.case_list import overturns_of_cases
 from rockfrag.rocking.sureness import perturbed
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import always_overturning, first_overturning, step_protocol
 from rockfrag.study.configurations import Configuration
+from rockfrag.system.blocks import Body
 
 SIZES = (1e-9, 1e-6, 1e-4)
 """Relative differences of the motion and of every width and height, at most."""

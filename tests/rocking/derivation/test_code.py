@@ -5,11 +5,11 @@ import itertools
 import numpy as np
 import pytest
 
+from rockfrag.engines.kernels.equations import STATE, equations
+from rockfrag.engines.kernels.impact import impact
+from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.rocking import Block, MeasuredRestitution, Stack
 from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.kernels.equations import STATE, equations
-from rockfrag.rocking.kernels.impact import impact
-from rockfrag.rocking.kernels.jit import entry_kernel
 from rockfrag.rocking.measured_restitution import LAWS, Law
 from rockfrag.rocking.reference.model import LinearModel, Model
 

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.assess.hazard.measure import Measure
 from rockfrag.errors import InputError
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 
@@ -51,6 +52,8 @@ class HazardCurve:
     rates: Floats
     source: str
     quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
+
+    __repr__ = short_repr
 
     def rate(self, level: ArrayLike) -> Floats:
         """Annual rate with which levels are exceeded [1/year]; the ends are continued as they slope.

@@ -8,7 +8,7 @@ import csv
 import io
 import re
 
-from rockfrag.assess.hazard.curve import make_curve, rates_of
+from rockfrag.assess.hazard.curve import HazardCurve, make_curve, rates_of
 from rockfrag.assess.hazard.found import Found, read_statistic
 from rockfrag.assess.hazard.measure import read_measure
 from rockfrag.errors import InputError
@@ -23,7 +23,17 @@ def recognise(text: str) -> bool:
 
 
 def read(text: str, path: str) -> list[Found]:
-    """Return the one curve of a file with one site."""
+    """Return the one curve of a file with one site, and which statistic it is."""
+    curve, kind = _read(text, path)
+    return [Found(curve, read_statistic(kind, path))]
+
+
+def read_curve(text: str, path: str) -> HazardCurve:
+    """Return the one curve of a file with one site, whichever realization or statistic it is of."""
+    return _read(text, path)[0]
+
+
+def _read(text: str, path: str) -> tuple[HazardCurve, str]:
     try:
         rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
     except csv.Error as error:
@@ -52,5 +62,4 @@ def read(text: str, path: str) -> list[Found]:
         raise InputError(f"{path}: a level, probability or time is no number ({error}).") from None
     measure = read_measure(facts["imt"], path)
     rates = rates_of(poes, years, path)
-    kind = read_statistic(facts.get("kind", ""), path)
-    return [Found(make_curve(measure, levels, list(rates), path), kind)]
+    return make_curve(measure, levels, list(rates), path), facts.get("kind", "")

@@ -34,7 +34,7 @@ def read(text: str, path: str) -> list[Found]:
         raise InputError(f"{path}: expected a header and two rows or more, with {_EXPECTED}.")
     (_, header), body = lines[0], lines[1:]
     titles = [title.strip().lower() for title in header]
-    places = [i for i, title in enumerate(titles) if _LEVEL.fullmatch(title)]
+    places = [i for i, title in enumerate(titles) if level_column(title)]
     others = [i for i, title in enumerate(titles) if i not in places]
     if len(places) != 1 or len(others) != 1:
         raise InputError(f"{path}: expected {_EXPECTED}; found {', '.join(titles)[:120]}.")
@@ -46,14 +46,19 @@ def read(text: str, path: str) -> list[Found]:
             rows.append((float(cells[places[0]]), float(cells[others[0]])))
         except ValueError as error:
             raise InputError(f"{path}, line {line}: {error}.") from None
-    measure, factor = _measure(titles[places[0]], path)
+    measure, factor = measure_of(titles[places[0]], path)
     rows.sort()
     levels = [level * factor for level, _ in rows]
-    rates = _rates(titles[others[0]], [value for _, value in rows], path)
+    rates = annual_rates(titles[others[0]], [value for _, value in rows], path)
     return [Found(make_curve(measure, levels, rates, path), "mean")]
 
 
-def _measure(title: str, path: str) -> tuple[Measure, float]:
+def level_column(title: str) -> bool:
+    """Tell whether a title is of levels of a measure, such as ``pga_g``."""
+    return _LEVEL.fullmatch(title) is not None
+
+
+def measure_of(title: str, path: str) -> tuple[Measure, float]:
     """Return measure and factor to its unit of a title such as ``pga_cm_s2``."""
     found = _LEVEL.fullmatch(title)
     assert found is not None
@@ -69,7 +74,8 @@ def _measure(title: str, path: str) -> tuple[Measure, float]:
     return read_measure(f"SA({found[2].replace('_', '.')})", path), factor
 
 
-def _rates(title: str, values: list[float], path: str) -> list[float]:
+def annual_rates(title: str, values: list[float], path: str) -> list[float]:
+    """Annual rates of a column whose title says how often levels are exceeded [1/year]."""
     if title == "annual_rate":
         return values
     if title == "return_period_years":

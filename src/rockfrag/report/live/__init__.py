@@ -18,8 +18,8 @@ from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.live.frames import frames_svg
 from rockfrag.rocking import overturns
-from rockfrag.rocking.bodies import Block, Body, Stack
 from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
 MOST_SAMPLES = 70_000
@@ -184,7 +184,7 @@ def _block(block: Block) -> dict[str, float]:
     """Dimensions in SI as the driver takes them; what is not given follows from them there too."""
     given: dict[str, float] = {"width": block.width, "height": block.height, "mass": block.mass}
     if block.inertia is not None:
-        given["inertia"] = block.inertia
+        given["inertia"] = block.centroidal_inertia
     if block.cg_height is not None:
         given["cgHeight"] = block.cg_height
     return {**given, "cgOffset": block.cg_offset, "lean": block.lean}

@@ -10,8 +10,8 @@ from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
-from rockfrag.rocking.bodies import Block, Body, Vector
 from rockfrag.rocking.response import Response
+from rockfrag.system.blocks import Block, Body, Vector
 
 _WIDTH, _HEIGHT, _GROUND = 200, 190, 150
 

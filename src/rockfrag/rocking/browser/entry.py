@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 
-from rockfrag.rocking.kernels import geometry
-from rockfrag.rocking.kernels.chatter import RESTORING
-from rockfrag.rocking.kernels.equations import BODY, STATE
-from rockfrag.rocking.kernels.jit import kernel
-from rockfrag.rocking.kernels.record import BALANCE, SUMMARY
-from rockfrag.rocking.kernels.single import Scratch, Shaking, march
-from rockfrag.rocking.kernels.taylor import SERIES
+from rockfrag.engines.kernels.chatter import RESTORING
+from rockfrag.engines.kernels.equations import BODY, STATE
+from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.kernels.record import BALANCE, SUMMARY
+from rockfrag.engines.kernels.single import Scratch, Shaking, march
+from rockfrag.engines.kernels.taylor import SERIES
+from rockfrag.system import geometry
 
 _F, _I = np.float64, np.int64
 

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Block, Body
+from rockfrag.elementary import atan2, sin_cos
 from rockfrag.rocking.contact.friction import Friction
-from rockfrag.rocking.kernels.elementary import atan2, sin_cos
+from rockfrag.system.blocks import Block, Body
 
 F, INT = np.float64, np.int64
 

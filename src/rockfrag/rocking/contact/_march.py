@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.engines.kernels.jit import entry_kernel, kernel
 from rockfrag.rocking.contact._modes import (
     approach,
     kinetic_energy,
@@ -29,7 +30,6 @@ from rockfrag.rocking.contact._step import (
     start_step,
     take_step,
 )
-from rockfrag.rocking.kernels.jit import entry_kernel, kernel
 
 MOST_EVENTS = 300
 """Events within a sample after which accumulating ones are ended ten times as coarsely, and again."""

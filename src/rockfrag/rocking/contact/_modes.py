@@ -6,6 +6,7 @@ taken, or the one that violates its inequalities least (``docs/contact.md``, 5 t
 
 import math
 
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.rocking.contact._solve import (
     bias,
     eliminate,
@@ -15,7 +16,6 @@ from rockfrag.rocking.contact._solve import (
     rate,
     solve,
 )
-from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
 
 CONSISTENT = 2e-13
 """Violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the

@@ -2,8 +2,8 @@
 
 import math
 
-from rockfrag.rocking.kernels.elementary import sin_cos
-from rockfrag.rocking.kernels.jit import inlined_kernel, kernel
+from rockfrag.elementary import sin_cos
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 AT_EDGE = 1e-9
 """A corner counts as over the face until it is this share of the half width beyond the edge: bases as wide as

@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.rocking.contact._solve import AT_EDGE, end_of, look_at, rate, solve
-from rockfrag.rocking.kernels.jit import kernel
 
 SLACK, TOUCH = 1e-12, 1e-13
 """Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.rocking.bodies import Body
+from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.rocking.contact._body import BODY, OUTCOME, contact_body, posed, working_memory
 from rockfrag.rocking.contact._march import EVENT, HISTORY, Book, Cases, march_cases
 from rockfrag.rocking.contact.friction import Friction
 from rockfrag.rocking.inputs import free_samples, step_count
-from rockfrag.rocking.kernels.jit import compiling_alone
+from rockfrag.system.blocks import Body
 
 Array = NDArray[np.float64]
 

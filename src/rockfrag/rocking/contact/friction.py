@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body
-from rockfrag.rocking.checks import shown
+from rockfrag.input_checks import shown
+from rockfrag.system.blocks import Block, Body
 
 
 class Friction(NamedTuple):

@@ -15,7 +15,6 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.contact.reference_model import (
     AT_EDGE,
@@ -28,6 +27,7 @@ from rockfrag.rocking.contact.reference_model import (
     Model,
     Solution,
 )
+from rockfrag.system.blocks import Block, Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

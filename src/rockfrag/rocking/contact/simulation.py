@@ -8,8 +8,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.rocking.bodies import Block, Body
-from rockfrag.rocking.checks import positive_number
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.single import GRAZING_SPEED
+from rockfrag.input_checks import positive_number
 from rockfrag.rocking.contact._body import contact_body, posed, working_memory
 from rockfrag.rocking.contact._march import (
     CHANGE,
@@ -33,9 +34,8 @@ from rockfrag.rocking.inputs import (
     free_samples,
     step_count,
 )
-from rockfrag.rocking.kernels.jit import compiling_alone
-from rockfrag.rocking.kernels.single import GRAZING_SPEED
 from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
+from rockfrag.system.blocks import Block, Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]

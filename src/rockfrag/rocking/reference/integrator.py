@@ -15,7 +15,6 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.reference.model import (
     NEGLIGIBLE_SPEED,
@@ -25,6 +24,7 @@ from rockfrag.rocking.reference.model import (
     State,
 )
 from rockfrag.rocking.reference.response import ReferenceEvent, ReferenceResponse
+from rockfrag.system.blocks import Block, Body
 from rockfrag.units import GRAVITY
 
 RTOL, ATOL = 1e-10, 1e-14

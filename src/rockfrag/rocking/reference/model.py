@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.bodies import Block, Body, Vector
 from rockfrag.rocking.measured_restitution import MeasuredRestitution
+from rockfrag.system.blocks import Block, Body, Vector
 
 State = tuple[int, int]
 Pair = tuple[float, float]

@@ -11,7 +11,7 @@ from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import Estimate, contrast, mean_effect
 from rockfrag.pedestal.mixed import long_rows
 from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests, pedestals_apart
-from rockfrag.rocking.bodies import Block
+from rockfrag.system.blocks import Block
 from rockfrag.thesis.specimens import THESIS_BODIES
 from rockfrag.thesis.statements.statement import Undecidable
 

@@ -9,7 +9,7 @@ import pandas as pd
 from rockfrag.pedestal.cluster_means import TooFewUnitsError
 from rockfrag.pedestal.multiplicity import holm
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.bodies import Body
+from rockfrag.system.blocks import Body
 from rockfrag.thesis.statements import (  # noqa: F401  (each enters its statements when it is loaded)
     blocks,
     earthquakes,

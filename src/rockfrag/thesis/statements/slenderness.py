@@ -8,7 +8,7 @@ import pandas as pd
 
 from rockfrag.pedestal.cluster_means import Estimate, contrast, slope_effect, t_estimate
 from rockfrag.pedestal.power import power_note
-from rockfrag.rocking.bodies import Stack
+from rockfrag.system.blocks import Stack
 from rockfrag.thesis.statements.evidence import PEDESTAL, Evidence
 from rockfrag.thesis.statements.orders import (
     AMPLITUDES,

@@ -1,0 +1,47 @@
+from . import (
+    assess as assess,
+    building as building,
+    campaign as campaign,
+    fragility as fragility,
+    motions as motions,
+    outcomes as outcomes,
+    pedestal as pedestal,
+    records as records,
+    rocking as rocking,
+    shaketable as shaketable,
+    system as system,
+)
+from .assess.request import read_request as read_request
+from .errors import InputError as InputError
+from .fragility.estimators import (
+    fit_cloud as fit_cloud,
+    fit_incremental as fit_incremental,
+    fit_stripes as fit_stripes,
+)
+from .fragility.lognormal import fit_lognormal as fit_lognormal
+from .motions.measures import measure_motion as measure_motion
+from .motions.spectra import response_spectrum as response_spectrum
+from .records.ground_motion import GroundMotion as GroundMotion
+from .records.motion import Motion as Motion
+from .records.read import read_motion as read_motion
+from .records.write import write_motion as write_motion
+from .rocking.ensemble import EnsembleResult as EnsembleResult, overturns as overturns
+from .rocking.measured_restitution import MeasuredRestitution as MeasuredRestitution
+from .rocking.parquet import (
+    stream_histories as stream_histories,
+    stream_overturns as stream_overturns,
+)
+from .rocking.response import Response as Response
+from .rocking.simulation import simulate as simulate
+from .rocking.spectra import (
+    RockingSpectrum as RockingSpectrum,
+    rocking_spectrum as rocking_spectrum,
+)
+from .rocking.step_sensitivity import fragile_verdicts as fragile_verdicts
+from .rocking.sureness import verdict_sureness as verdict_sureness
+from .rocking.thresholds import Thresholds as Thresholds, find_thresholds as find_thresholds
+from .rocking.worst_direction import worst_direction as worst_direction
+from .system.blocks import Block as Block, Column as Column, Stack as Stack
+from .system.system import System as System
+
+__version__: str

@@ -1,0 +1,290 @@
+"""The contract of engines: what one is asked, what it answers, and what it may refuse.
+
+1. **Units and signs.**  SI throughout.  x is horizontal, z upwards; a rotation of a planar body is clockwise
+   positive, of a body in space a vector; a ground acceleration moves the ground, not the body.  Motions are linear
+   between samples and zero one sample after the last.
+2. **What an engine says of itself.**  ``meets`` is the set of wishes (:class:`Wish`) that it can meet, in any
+   combination.  ``supports`` answers for one system, one motion and one request; an engine that cannot meet a wish
+   says so there, and never answers as if the wish had not been made.
+3. **Who answers.**  The first engine in the registry that supports a system, its motion and the request.  Its name
+   stands in ``Outcomes.engine``.  If none does, :func:`refusal` says in one sentence which wish cannot be met
+   together with which.
+4. **The instant of a fall** (``fall_time``): the first sample at which a body lies on its side, turned by a
+   quarter turn or more from the vertical or from the body that it stood on, or has left the edge of what it
+   stood on.  An engine that stops before that leaves NaN there and writes ``certain_time``, the instant from which
+   the fall was certain whatever followed.  The two are never mixed in one column.
+5. **Peaks** are taken over the continuous response, between samples too, until the outcome is known.  The peak
+   rotation of a body that fell is infinite.  Rotations count over the critical angle of their side.
+6. **Free rocking** after the motion is followed until the bodies rest, one has fallen, or what is left of the
+   energy cannot overturn them.
+7. **Equal to the bit.**  Outcomes do not depend on the number of threads, on the order of systems, motions or
+   scales, on what else is in the grid, or on the machine.
+8. **Refusals** are made before the first case is integrated, as :class:`rockfrag.errors.InputError` with one
+   sentence.  A case that cannot be finished (no consistent mode of contact) is finished nevertheless by a stated
+   rule and counted (``paradoxes``); an engine does not raise in the middle of a grid.
+9. **What is not told** is NaN, never zero.  What cannot happen (a slip where nothing slides) is zero.
+"""
+
+import math
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property
+from itertools import combinations
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.system.system import System
+from rockfrag.units import GRAVITY
+
+Floats = NDArray[np.float64]
+
+
+class Wish(Enum):
+    """What may be wished of an engine; the value is what a message calls it."""
+
+    TWO_BODIES = "two bodies"
+    MANY_BODIES = "three and more bodies"
+    SPACE = "a second horizontal component"
+    VERTICAL = "a vertical component"
+    FRICTION = "friction"
+    RESTITUTION = "a measured restitution"
+    START = "a start of its own"
+    LINEAR = "the linearised equations"
+    FORCES = "forces"
+    HISTORY = "the history"
+    TILT = "an uneven base in space"
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of every case beside its outcome.
+
+    Attributes
+    ----------
+    history
+        The whole history.
+    forces
+        Friction demand, least normal force and the loss of contact.
+    linear
+        The linearised equations of motion.
+    g
+        Acceleration of gravity [m/s²].
+    step
+        Largest product of frequency parameter and step [-]; NaN for the engine's own.
+    """
+
+    history: bool = False
+    forces: bool = False
+    linear: bool = False
+    g: float = GRAVITY
+    step: float = math.nan
+
+
+@dataclass(frozen=True)
+class Case:
+    """One system, one motion, one scale."""
+
+    system: System
+    motion: GroundMotion
+    scale: float = 1.0
+    request: Request = field(default_factory=Request)
+
+
+@dataclass(frozen=True)
+class Cases:
+    """Systems × motions × scales, and what is asked of each.
+
+    Attributes
+    ----------
+    systems, motions
+        What is shaken, and by what.
+    scales
+        Factors on the motions, shape (motions, scales).
+    request
+        What is asked.
+    threads
+        Threads to use; outcomes do not depend on it.
+    """
+
+    systems: tuple[System, ...]
+    motions: tuple[GroundMotion, ...]
+    scales: Floats
+    request: Request = field(default_factory=Request)
+    threads: int = 1
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of systems, motions and scales."""
+        return len(self.systems), self.scales.shape[0], self.scales.shape[1]
+
+    @cached_property
+    def names(self) -> list[tuple[str, ...]]:
+        """Names of the bodies of each system."""
+        return [system.names for system in self.systems]
+
+
+@dataclass(frozen=True)
+class Support:
+    """Whether an engine supports what is wanted; if not, why.
+
+    Attributes
+    ----------
+    missing
+        Wishes that the engine cannot meet.
+    reason
+        Why, in words, where it is none of the wishes.
+    """
+
+    missing: frozenset[Wish] = frozenset()
+    reason: str = ""
+
+    def __bool__(self) -> bool:
+        """Whether it does."""
+        return not self.missing and not self.reason
+
+
+@runtime_checkable
+class Engine(Protocol):
+    """Whoever computes outcomes; the rules stand at the top of this module.
+
+    Attributes
+    ----------
+    name
+        Name that stands in outcomes.
+    meets
+        Wishes that it can meet, in any combination.
+    """
+
+    name: str
+    meets: frozenset[Wish]
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+
+    def run(self, cases: Cases) -> Outcomes:
+        """Return the outcomes of cases whose systems and motions it supports."""
+
+    def history(self, case: Case) -> Any:
+        """Return the :class:`rockfrag.engines.response.Response` of a case that it supports."""
+
+
+def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[Wish]:
+    """Return what is wished for with a system, a motion and a request."""
+    start = system.start
+    made = {
+        Wish.TWO_BODIES: system.count == 2,
+        Wish.MANY_BODIES: system.count > 2,
+        Wish.SPACE: motion.y is not None,
+        Wish.VERTICAL: motion.z is not None,
+        Wish.FRICTION: system.loose,
+        Wish.RESTITUTION: any(contact.law.name != "momentum" for contact in system.contacts),
+        Wish.START: start is not None and np.any([*start.rotation, *start.velocity]),
+        Wish.LINEAR: request.linear,
+        Wish.FORCES: request.forces,
+        Wish.HISTORY: request.history,
+        Wish.TILT: motion.y is not None and any(contact.tilt for contact in system.contacts),
+    }
+    return frozenset(wish for wish, there in made.items() if there)
+
+
+def by_wishes(engine: Engine, system: System, motion: GroundMotion, request: Request) -> Support:
+    """Return what ``meets`` alone says of an engine: the usual body of ``supports``."""
+    return Support(wishes(system, motion, request) - engine.meets)
+
+
+_ENGINES: list[Engine] = []
+
+
+def register_engine(engine: Engine, before: str | None = None) -> Engine:
+    """Add an engine to the registry, behind all others or before the one of a name.
+
+    Raises
+    ------
+    InputError
+        If the name is taken, or there is no engine to put it before.
+    """
+    names = [other.name for other in _ENGINES]
+    if engine.name in names:
+        raise InputError(f"engine {engine.name!r} is registered already; give it another name.")
+    if before is not None and before not in names:
+        raise InputError(f"engine {before!r} is not known; choose one of {', '.join(names)}.")
+    _ENGINES.insert(len(names) if before is None else names.index(before), engine)
+    return engine
+
+
+def forget_engine(name: str) -> None:
+    """Take an engine out of the registry, as a plugin that is unloaded does."""
+    _ENGINES[:] = [engine for engine in _ENGINES if engine.name != name]
+
+
+def engines() -> tuple[Engine, ...]:
+    """Return the engines in the order in which they are asked."""
+    return tuple(_ENGINES)
+
+
+def engine_for(system: System, motion: GroundMotion, request: Request) -> Engine:
+    """Return the first engine that supports what is wanted.
+
+    Raises
+    ------
+    InputError
+        If none does: which wish cannot be met together with which.
+    """
+    for engine in _ENGINES:
+        if engine.supports(system, motion, request):
+            return engine
+    raise InputError(refusal(system, motion, request))
+
+
+def refusal(system: System, motion: GroundMotion, request: Request) -> str:
+    """Say in one sentence which wishes cannot be met together."""
+    wanted = wishes(system, motion, request)
+    for many in range(1, len(wanted) + 1):
+        for some in combinations(sorted(wanted, key=lambda wish: wish.name), many):
+            if not any(set(some) <= engine.meets for engine in _ENGINES):
+                first, *others = (wish.value for wish in some)
+                if not others:
+                    return f"{first} is beyond every engine; leave it out."
+                return f"{first} cannot be had together with {' and '.join(others)}; leave one of them out."
+    reasons = [str(engine.supports(system, motion, request).reason) for engine in _ENGINES]
+    said = next((reason for reason in reasons if reason), "there is no engine for it")
+    return f"this system cannot be computed: {said}."
+
+
+def run_cases(cases: Cases) -> Outcomes:
+    """Let the engines answer, each for the systems and motions that it is the first to support.
+
+    Raises
+    ------
+    InputError
+        If there is a system that no engine supports.
+    """
+    if not cases.motions or not cases.systems:
+        return empty_outcomes(cases.names, cases.scales)
+    chosen = [_engine_of(cases, system) for system in cases.systems]
+    used = list(dict.fromkeys(engine.name for engine in chosen))
+    result = empty_outcomes(cases.names, cases.scales, used)
+    if not cases.scales.size:
+        return result
+    for name in used:
+        rows = [i for i, engine in enumerate(chosen) if engine.name == name]
+        some = Cases(
+            tuple(cases.systems[i] for i in rows),
+            cases.motions,
+            cases.scales,
+            cases.request,
+            cases.threads,
+        )
+        merge_outcomes(result, rows, chosen[rows[0]].run(some))
+    return result
+
+
+def _engine_of(cases: Cases, system: System) -> Engine:
+    """Engine of one system under all motions: the richest of them decides."""
+    richest = max(cases.motions, key=lambda motion: len(motion.components))
+    return engine_for(system, richest, cases.request)

@@ -1,0 +1,349 @@
+"""Numba's private parts: a compiler that optimises an entry kernel and all that it calls in one go.
+
+Read by :mod:`rockfrag.engines.kernels.jit` alone, with versions of numba that it knows.
+"""
+
+import importlib
+import operator
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from typing import Any, ClassVar
+
+import llvmlite.binding as llvm
+from numba import _dynfunc  # type: ignore[attr-defined]
+from numba.core import base, ir, typed_passes, typeinfer, untyped_passes
+from numba.core import lowering as lowering_stage
+from numba.core.base import BaseContext
+from numba.core.cgutils import normalize_ir_text
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase
+from numba.core.ir_utils import build_definitions
+from numba.core.rewrites.static_getitem import RewriteConstGetitems, RewriteConstSetitems
+from numba.core.ssa import reconstruct_ssa
+from numba.core.targetconfig import ConfigStack
+from numba.core.transforms import canonicalize_cfg
+from numba.core.types.functions import BaseFunction, Dispatcher
+from numba.core.types.misc import unliteral
+from numba.core.typing.context import BaseContext as TypingContext
+from numba.core.typing.templates import signature
+from numba.cpython.builtins import do_minmax
+from numba.extending import intrinsic
+
+
+class Part(JITCodeLibrary):
+    """The code of one kernel, not optimised and not made machine code of, with references to those it calls."""
+
+    def add_ir_module(self, module: Any) -> None:
+        """Take the kernel's code, which is all that there is."""
+        self._final_module = llvm.parse_assembly(normalize_ir_text(str(module)))
+        self._final_module.name = module.name
+
+    def add_linking_library(self, library: Any) -> None:
+        """Remember a kernel that is called; whoever links this one links it too."""
+        self._linking_libraries.append(library)
+
+    def finalize(self) -> None:
+        """Leave the code as it is, for others to link."""
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.external:
+                # may be there many times, and vanish where it is inlined
+                function.linkage = "linkonce_odr"
+        self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        self._ensure_finalized()
+        return self._final_module
+
+
+class Whole(JITCodeLibrary):
+    """The code of an entry kernel and of all parts that it needs, each linked once."""
+
+    def _optimize_functions(self, module: Any) -> None:
+        """Leave optimising to the passes over the whole."""
+
+    def _optimize_final_module(self) -> None:
+        """Optimise once: what numba does before that looks for reference counts, of which there are none."""
+        passes, builder = self._codegen._module_pass_manager()
+        passes.run(self._final_module, builder)
+
+    def finalize(self) -> None:
+        """Link callers before those they call: code that nothing linked so far calls would be dropped."""
+        self._linking_libraries = _callers_first(self._linking_libraries)
+        super().finalize()
+
+    def _verify_declare_only_symbols(self) -> None:
+        """Refuse code that calls a function which is not there; numba asks this of its own functions alone."""
+        for function in self._final_module.functions:
+            if function.is_declaration and function.name.startswith("_ZN"):
+                raise AssertionError(f"{function.name} is called but not linked")
+
+
+def _callers_first(libraries: list[Any]) -> list[Any]:
+    """Order libraries and all that their parts call, directly or not, so that each comes after its callers."""
+    order: list[Any] = []
+    seen = set()
+
+    def visit(library: Any) -> None:
+        if library in seen:
+            return
+        seen.add(library)
+        library._ensure_finalized()
+        if isinstance(library, Part):
+            for called in library._linking_libraries:
+                visit(called)
+        order.append(library)
+
+    for one in libraries:
+        visit(one)
+    return order[::-1]
+
+
+@intrinsic
+def _smaller(typing_context, a, b):  # type: ignore[no-untyped-def]
+    return _one_of(typing_context, (a, b), operator.lt)
+
+
+@intrinsic
+def _larger(typing_context, a, b):  # type: ignore[no-untyped-def]
+    return _one_of(typing_context, (a, b), operator.gt)
+
+
+def _one_of(typing_context: Any, pair: Any, comparison: Any) -> Any:
+    """Type and code of ``min`` or ``max`` of two numbers, as numba makes it; nothing of what is no number."""
+    common = typing_context.unify_types(*pair)
+    if common is None:
+        return None
+
+    def generate(context: Any, builder: Any, types: Any, arguments: Any) -> Any:
+        return do_minmax(context, builder, types.args, arguments, comparison)
+
+    return signature(common, *pair), generate
+
+
+_OF_TWO = {min: _smaller, max: _larger}
+"""What numba would compile a function of a tuple for."""
+
+
+class _Prepare:
+    """Prepares a kernel, as it is translated, for its types to be found."""
+
+    def run_pass(self, state: Any) -> None:
+        """Do so."""
+        code = state.func_ir
+        code.blocks = canonicalize_cfg(code.blocks)
+        # tuple[0] is then a part of the tuple, not a function of tuple and index to be compiled
+        for one in (RewriteConstGetitems, RewriteConstSetitems):
+            rewrite = one(state)
+            for key, block in code.blocks.items():
+                if rewrite.match(code, block, None, None):
+                    code.blocks[key] = rewrite.apply()
+        for block in code.blocks.values():
+            for call in block.find_exprs("call"):
+                called = code._definitions[call.func.name][0]
+                if (
+                    isinstance(called, ir.Global)
+                    and called.value in _OF_TWO
+                    and len(call.args) == 2
+                ):
+                    called.value = _OF_TWO[called.value]
+        reconstruct_ssa(code)
+        code._definitions = build_definitions(code.blocks)
+
+
+class _StripPhis(typed_passes.PreLowerStripPhis):
+    """Takes choices by the way that was come out again, before lowering."""
+
+    def run_pass(self, state: Any) -> None:
+        """Do so."""
+        state.func_ir = self._strip_phi_nodes(state.func_ir)
+        state.func_ir._definitions = build_definitions(state.func_ir.blocks)
+
+
+class LowerPart(typed_passes.NativeLowering):
+    """Make a kernel known to those that call it, without machine code."""
+
+    _name = "lower_part"
+
+    def run_pass(self, state: Any) -> bool:
+        """Lower the kernel."""
+        state.flags.no_compile = True
+        super().run_pass(state)
+        made = state["cr"]
+        names = made.fndesc.lookup_module(), made.fndesc.qualname
+        function = _dynfunc.make_function(*names, "kernel", 0, made.env, (state.library,))
+        state["cr"] = made._replace(cfunc=function)
+        state.targetctx.insert_user_function(function, made.fndesc, [state.library])
+        return True
+
+
+class _While:
+    """What numba says of an error that comes up here, put together only if one does."""
+
+    says = staticmethod(typeinfer.new_error_context)  # type: ignore[attr-defined]
+
+    def __init__(self, message: str, *args: Any, **named: Any) -> None:
+        self._said = message, args, named
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _: Any, error: BaseException | None, __: Any) -> None:
+        if error is not None:
+            message, args, named = self._said
+            with self.says(message, *args, **named):
+                raise error
+
+
+def _refresh(context: BaseContext) -> None:
+    """Learn of intrinsic functions, which make themselves known when they are used first."""
+    for registry in context._registries:
+        context.install_registry(registry)
+
+
+def _remembering_call_types(find: Any) -> Any:
+    """Find only once what a function makes of arguments of some types, among dozens of implementations."""
+    known: dict[Any, Any] = {}
+
+    def get_call_type(function: Any, context: Any, args: Any, named: Any) -> Any:
+        key = function, tuple(args), tuple(named.items())
+        if key not in known:
+            found = find(function, context, args, named)
+            if not all(one.is_precise() for one in args):
+                return found
+            known[key] = found
+        return known[key]
+
+    return get_call_type
+
+
+def _of_plain_types(find: Any) -> Any:
+    """Find a kernel for numbers as such, not one more for each number that is written out where it is called.
+
+    What follows from the number, the compiler finds where it inlines the kernel.
+    """
+
+    def get_call_type(kernel: Any, context: Any, args: Any, named: Any) -> Any:
+        plain = {name: unliteral(one) for name, one in named.items()}
+        return find(kernel, context, tuple(map(unliteral, args)), plain)
+
+    return get_call_type
+
+
+def _remembering_sizes(measure: Any) -> Any:
+    """Measure only once how large a type is, of which LLVM makes a module for each variable."""
+    sizes: dict[Any, int] = {}
+
+    def get_abi_sizeof(context: Any, kind: Any) -> int:
+        if kind not in sizes:
+            sizes[kind] = measure(context, kind)
+        return sizes[kind]
+
+    return get_abi_sizeof
+
+
+@cache
+def _import_without_scipy() -> None:
+    """Import what numba is about to, but leave scipy's linear algebra until something multiplies matrices.
+
+    It is imported only to see that it is there, and takes longer than all that numba imports.
+    """
+    linalg = importlib.import_module("numba.np.linalg")
+    look = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None  # type: ignore[attr-defined]
+    try:
+        importlib.import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = look  # type: ignore[attr-defined]
+
+
+@contextmanager
+def _shortcuts() -> Iterator[None]:
+    """Spare numba what it would work out anew for each operation of each kernel.
+
+    The compiler's lock is held meanwhile.
+    """
+    if BaseContext.refresh is _refresh:
+        yield
+        return
+    places: tuple[tuple[Any, str, Any], ...] = (
+        (BaseFunction, "get_call_type", _remembering_call_types(BaseFunction.get_call_type)),
+        (Dispatcher, "get_call_type", _of_plain_types(Dispatcher.get_call_type)),
+        (BaseContext, "get_abi_sizeof", _remembering_sizes(BaseContext.get_abi_sizeof)),
+        (BaseContext, "refresh", _refresh),
+        (TypingContext, "refresh", lambda _: None),
+        (base, "_has_loc", cache(base._has_loc)),
+        (lowering_stage, "new_error_context", _While),
+        (typeinfer, "new_error_context", _While),
+    )
+    before = [(where, name, getattr(where, name)) for where, name, _ in places]
+    try:
+        for where, name, value in places:
+            setattr(where, name, value)
+        yield
+    finally:
+        for where, name, value in before:
+            setattr(where, name, value)
+
+
+class _KernelCompiler(CompilerBase):
+    """The passes that kernels need."""
+
+    library: ClassVar[type]
+    lowering: ClassVar[type]
+
+    def __init__(self, *given: Any) -> None:
+        _import_without_scipy()
+        super().__init__(*given)
+
+    def _compile_core(self) -> Any:
+        """Take the kernel through its passes, without what numba works out between them for others."""
+        state = self.state
+        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        state.type_annotation = None
+        with _shortcuts(), ConfigStack().enter(state.flags.copy()):
+            for one in (
+                untyped_passes.TranslateByteCode,
+                untyped_passes.FixupArgs,
+                _Prepare,
+                typed_passes.NopythonTypeInference,
+                _StripPhis,
+                self.lowering,
+                typed_passes.NoPythonBackend,
+            ):
+                one().run_pass(state)
+        return state.cr
+
+
+class PartCompiler(_KernelCompiler):
+    """Compiles kernels that only kernels call."""
+
+    library = Part
+    lowering = LowerPart
+
+
+class WholeCompiler(_KernelCompiler):
+    """Compiles kernels that Python calls."""
+
+    library = Whole
+    lowering = typed_passes.NativeLowering
+
+
+def whole_ir(kernel: Any, types: tuple[Any, ...]) -> tuple[str, str]:
+    """Return the code of a kernel that only kernels call, with all that it needs, not optimised; its name there.
+
+    Parameters
+    ----------
+    types : numba's, of its arguments
+    """
+    kernel.compile(types)
+    (compiled,) = kernel.overloads.values()
+    entry = compiled.fndesc.llvm_func_name
+    parts = _callers_first([compiled.library])
+    whole = llvm.parse_assembly("")
+    # else nothing calls it, and linking would drop it
+    compiled.library._final_module.get_function(entry).linkage = "external"
+    for part in parts:
+        whole.link_in(part._final_module, preserve=True)
+    return str(whole), entry

@@ -1,0 +1,344 @@
+"""Series of impacts that accumulate, ended at once, and why that is allowed.
+
+A contact that comes down can bounce from pole to pole infinitely often in finite time (Zeno).  Let D and D' be
+the least accelerations that bring it back on its two poles while the series lasts, and e, e' the shares of the
+speed that are left by an impact that ends rocking on the one and on the other.  A flight that begins at speed
+w ends before 2 w / D, its impact leaves e w, the next flight ends before 2 e w / D', and so on: a geometric
+series with the sum
+
+    T = 2 w (1/D + e/D') / (1 - e e').
+
+**At rest** (``block_dies_out``, ``dies_out``).  If the ground's acceleration stays inside the thresholds of
+rocking for T, every flight comes back and the body is at rest afterwards, exactly, whatever the flights were
+like: nothing needs to be integrated and no speed has to be chosen below which a body "is at rest".  D is that
+at zero angle, of which a flight of height w²/2D ≤ D/50 p² keeps 2 %; for stacks, whose thrown pedestals
+lengthen the flights of the statue, T is taken half as long again.
+
+**On a body that rocks on** (``may_close``).  While one contact chatters and the other rocks, all impacts of
+the first conserve one momentum, that of what rocks on.  So when the hops are over, the velocity is that of a
+contact that stayed closed from the first impact, but for what the hops change meanwhile: the opening returns
+to zero after each of them, and what remains is of second order, w² T.  Where that is below ``CHATTER_ERROR``,
+and nothing else can happen in twice T (itself taken half as long again), the contact is closed at once.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.elementary import hypot
+from rockfrag.engines.kernels.contact_states import at_rest
+from rockfrag.engines.kernels.equations import accelerations, statue_balance
+from rockfrag.engines.kernels.impact import mass_matrix
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+
+
+class Thoroughness(NamedTuple):
+    """How long chatter is followed before it is closed.
+
+    Attributes
+    ----------
+    closing_speed : a contact that comes off slower than this stays closed [rad/s]
+    drop : flights higher than this are followed even if they are sure to end at rest [rad]
+    """
+
+    closing_speed: float
+    drop: float
+
+
+HISTORY = Thoroughness(closing_speed=1e-6, drop=1e-9)
+"""Where the history is kept."""
+VERDICT = Thoroughness(closing_speed=1e-4, drop=1e-2)
+"""Where only the verdict matters."""
+
+CHATTER_ERROR = 1e-7
+"""Largest w² T [rad²/s] of a chatter that is closed at once on a body that rocks on."""
+FASTEST_CHATTER = 0.1
+"""Speed [rad/s] above which it is not."""
+CHATTER_TIME = 0.08
+"""Time [s] over which the ground is looked at, at most, before it is."""
+LONGEST_SHARE = 0.999
+"""Share of the speed left by impacts above which no end is foreseen."""
+MOST_AHEAD = 32
+"""Samples of the ground that are looked at, at most."""
+
+
+class Ahead(NamedTuple):
+    """The ground from an instant, ``tau`` after sample ``k``: factor × samples [m/s²], zero after ``last``.
+
+    ``vertical`` are samples of its upward acceleration over gravity, for the same factor, or none.
+    """
+
+    samples: NDArray[np.float64]
+    vertical: NDArray[np.float64]
+    factor: float
+    last: int
+    k: int
+    tau: float
+    dt: float
+
+
+# --------------------------------------------------------------------------- at rest: stacks, and single histories
+
+RESTORING = np.dtype(
+    [
+        # angular accelerations that bring the body back to rest on the four ways in which it can leave it: with a
+        # still ground, and per unit of the ground's acceleration
+        ("still", np.float64, 4),
+        ("per_ground", np.float64, 4),
+        ("frequency2", np.float64),  # p² of the statue
+        (
+            "fastest",
+            np.float64,
+        ),  # 0.2 D/p with the D of a still ground: above it no chatter is closed
+    ]
+)
+"""With what chatter of a body at θ1 = θ2 = 0 is closed."""
+
+
+@kernel
+def fill_restoring(body, restoring, scratch):
+    """Fill the restoring accelerations of a body; ``scratch`` is a STATE."""
+    for i, (c1, c2) in enumerate(((0, 1), (0, -1), (1, 0), (-1, 0))):
+        if c1 != 0 and body.fixed:
+            restoring.still[i], restoring.per_ground[i] = math.inf, 0.0
+        else:
+            still = _restoring(body, c1, c2, 0.0, scratch)
+            restoring.still[i] = still
+            restoring.per_ground[i] = _restoring(body, c1, c2, 1.0, scratch) - still
+    _, vx, vy, inertia = statue_balance(body, 1)
+    # p² of a ground that does not move vertically
+    frequency2 = body.gravity * hypot(vx, vy) / inertia
+    restoring.frequency2 = frequency2
+    restoring.fastest = 0.2 * _least(restoring, 0.0, 1.0) / math.sqrt(frequency2)
+
+
+@kernel
+def _restoring(body, c1, c2, ground, scratch):
+    """Angular acceleration that brings pattern 3 or 4 back, at rest on its way out."""
+    at_rest(scratch, ground, body.gravity)
+    alpha1, alpha2 = accelerations(body, c1, c2, scratch)
+    return -c2 * alpha2 if c1 == 0 else -c1 * alpha1
+
+
+@kernel
+def _least(restoring, a, weight):
+    """Least restoring acceleration [rad/s²] over the ways in which the body can leave rest.
+
+    ``weight``: gravity over that of a ground that does not move vertically.
+    """
+    still, per = restoring.still, restoring.per_ground
+    return min(
+        min(weight * still[0] + per[0] * a, weight * still[1] + per[1] * a),
+        min(weight * still[2] + per[2] * a, weight * still[3] + per[3] * a),
+    )
+
+
+@inlined_kernel
+def weight_at(ahead, k):
+    """Gravity at a sample over that of a ground that does not move vertically."""
+    if k < ahead.vertical.size and k <= ahead.last:
+        return 1.0 + ahead.factor * ahead.vertical[k]
+    return 1.0
+
+
+@kernel
+def dies_out(speed, share, safety, restoring, drop, ahead):
+    """Whether the impacts that follow one at θ1 = θ2 = 0 end at rest before anything else can happen.
+
+    Parameters
+    ----------
+    speed : of the body after the impact [rad/s]
+    share : of the speed that an impact leaves, √ of that of the kinetic energy
+    safety : what T is taken longer by
+    drop : flights of more than this are followed [rad]
+    """
+    if share > LONGEST_SHARE:
+        return False
+    least = math.inf
+    for n in range(MOST_AHEAD + 1):
+        i = ahead.k + n
+        a = ahead.samples[i] * ahead.factor if i <= ahead.last else 0.0
+        least = min(least, _least(restoring, a, weight_at(ahead, i)))
+        if least <= 0.0 or speed * speed * restoring.frequency2 > 0.04 * least * least:
+            return False
+        if speed * speed > 2.0 * drop * least:
+            return False
+        time = safety * 2.0 * speed / (least * (1.0 - share))
+        if n > 0 and time <= (n - ahead.tau) * ahead.dt:
+            return True
+        if time > MOST_AHEAD * ahead.dt:
+            return False
+    return False
+
+
+# --------------------------------------------------------------------------- at rest: lone blocks
+
+
+@inlined_kernel
+def block_dies_out(w, side, here, there, ahead):
+    """Whether the impacts after a launch of a lone block at speed ``w`` per sample end at rest.
+
+    Parameters
+    ----------
+    side : pole on which it is launched
+    here, there : constants of that pole and of the other (``block.POLE``)
+    ahead : the ground over g
+    """
+    # gravity only ever grows D; the least of it is enough
+    weight = weight_at(ahead, ahead.k)
+    weight = min(weight, weight + ahead.tau * (weight_at(ahead, ahead.k + 1) - weight))
+    factor, samples = ahead.factor, ahead.samples
+    kappa = here.swing
+    a = factor * samples[ahead.k]
+    a += ahead.tau * (factor * samples[ahead.k + 1] - a)
+    s, c = here.sine, side * here.cosine
+    s_there, c_there = there.sine, side * there.cosine
+    d = weight * s + a * c
+    d_there = weight * s_there - a * c_there
+    loss = 1.0 - here.restitution * there.restitution
+    if loss <= 0.0:
+        return False
+    flight = 2.06 * w / (kappa * loss)
+    back = here.restitution * kappa / there.swing
+    most = a
+    least = a
+    for n in range(1, MOST_AHEAD + 1):
+        # flight × (1/D + e κ/κ' 1/D') with the least D and D' so far
+        d = weight * s + (least if c > 0.0 else most) * c
+        d_there = weight * s_there - (most if c > 0.0 else least) * c_there
+        if d <= 0.0 or d_there <= 0.0 or w * w > 0.04 * kappa * d * d:
+            return False
+        time = flight * (d_there + back * d)
+        if n > 1 and time <= (n - 1 - ahead.tau) * d * d_there:
+            return True
+        if time > (MOST_AHEAD - ahead.tau) * d * d_there:
+            return False
+        a = factor * samples[ahead.k + n] if ahead.k + n <= ahead.last else 0.0
+        weight = min(weight, weight_at(ahead, ahead.k + n))
+        most = max(most, a)
+        least = min(least, a)
+    return False
+
+
+# --------------------------------------------------------------------------- on a body that rocks on
+
+
+class Hop(NamedTuple):
+    """A contact that has come down and off again while the other is open, with rates per sample.
+
+    Attributes
+    ----------
+    ground : whether it is the ground's contact, not the interface's
+    side : sign of its opening now
+    old : its relative velocity before the impact
+    cosine, sine : of the statue's rotation
+    omega1, omega2 : velocities after the impact
+    """
+
+    ground: bool
+    side: int
+    old: float
+    cosine: float
+    sine: float
+    omega1: float
+    omega2: float
+
+
+@inlined_kernel
+def _turn_of(hop):
+    """Cosine and sine of θ1, and of θ2 - θ1: either θ1 is zero, or both are the same."""
+    if hop.ground:
+        return 1.0, 0.0, hop.cosine, hop.sine
+    return hop.cosine, hop.sine, 1.0, 0.0
+
+
+@kernel
+def _opening(two, hop, side, g):
+    """Acceleration that opens a contact on a still ground; per unit of its acceleration; of weight; inertia.
+
+    The inertia is that of the opening alone, the momentum that its impacts conserve being given.
+    """
+    k1, s1, cosine, sine = _turn_of(hop)
+    k2, s2 = hop.cosine, hop.sine
+    m11, m12, m22, d = mass_matrix(two, cosine, sine)
+    g1, g2 = -g * (two.v1x * k1 + two.v1y * s1), -g * (two.v2x * k2 + two.v2y * s2)
+    f1 = d * hop.omega2 * hop.omega2 + g1
+    f2 = -d * hop.omega1 * hop.omega1 + g2
+    a1 = two.v1y * k1 - two.v1x * s1
+    a2 = two.v2y * k2 - two.v2x * s2
+    determinant = m11 * m22 - m12 * m12
+    if hop.ground:
+        by1, by2, inertia = -m22, m12, determinant / m22
+    else:
+        by1, by2 = m12 + m22, -(m11 + m12)
+        inertia = determinant / (m11 + 2.0 * m12 + m22)
+    scale = side / determinant
+    still, per_ground = scale * (by1 * f1 + by2 * f2), scale * (by1 * a1 + by2 * a2)
+    return still, per_ground, scale * (by1 * g1 + by2 * g2), inertia
+
+
+@inlined_kernel
+def may_close(hop, before, after, longest, g, ahead):
+    """Whether a contact that hops may stay closed at once, while the other is open.
+
+    Parameters
+    ----------
+    before, after : constants of the contact states before and after the impact (``stack_constants.TWO``)
+    longest : time that its hops may take at most [samples]
+    """
+    h, k, tau, last, factor = ahead.dt, ahead.k, ahead.tau, ahead.last, ahead.factor
+    samples = ahead.samples
+    speed = abs(hop.omega1) if hop.ground else abs(hop.omega2 - hop.omega1)
+    if speed > FASTEST_CHATTER * h:
+        return False
+    here, per_here, weight_here, inertia = _opening(after, hop, hop.side, g)
+    there, per_there, weight_there, of_old = _opening(before, hop, -hop.side, g)
+    e = speed / abs(hop.old)
+    left = e * e * inertia / of_old
+    if left > 0.98:
+        return False
+    longest = min(longest, CHATTER_ERROR * h / (speed * speed))
+    hops = 3.0 * speed / (1.0 - left)
+    back = left / e
+    # the ground's acceleration over twice the time that its present value gives, sample by sample
+    a_left = factor * samples[k] if k <= last else 0.0
+    a_right = factor * samples[k + 1] if k < last else 0.0
+    a = a_left + tau * (a_right - a_left)
+    up_left, up_right = weight_at(ahead, k) - 1.0, weight_at(ahead, k + 1) - 1.0
+    up = up_left + tau * (up_right - up_left)
+    least = -(here + per_here * a + weight_here * up)
+    other = -(there + per_there * a + weight_there * up)
+    if least <= 0.0 or other <= 0.0:
+        return False
+    span = 2.0 * hops * (1.0 / least + back / other)
+    if span > 2.0 * longest or span > CHATTER_TIME / h:
+        return False
+    n = 1
+    while True:
+        x = min(n - tau, span)
+        a = a_right + (x - (n - tau)) * (a_right - a_left)
+        up = up_right + (x - (n - tau)) * (up_right - up_left)
+        least = min(least, -(here + per_here * a + weight_here * up))
+        other = min(other, -(there + per_there * a + weight_there * up))
+        if least <= 0.0 or other <= 0.0:
+            return False
+        if x == span:
+            break
+        n += 1
+        a_left = a_right
+        a_right = factor * samples[k + n] if k + n <= last else 0.0
+        up_left, up_right = up_right, weight_at(ahead, k + n) - 1.0
+    return hops * (1.0 / least + back / other) <= min(longest, span)
+
+
+@inlined_kernel
+def closed(hop, two):
+    """Velocities once the contact stays closed, with the momentum of its velocities in this contact state."""
+    _, _, cosine, sine = _turn_of(hop)
+    m11, m12, m22, _ = mass_matrix(two, cosine, sine)
+    if hop.ground:
+        return 0.0, hop.omega2 + m12 * hop.omega1 / m22
+    both = ((m11 + m12) * hop.omega1 + (m12 + m22) * hop.omega2) / (m11 + 2.0 * m12 + m22)
+    return both, both

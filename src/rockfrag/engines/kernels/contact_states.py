@@ -1,0 +1,169 @@
+"""The contact states of a body, and what leads from one to the next.
+
+| contacts (c1, c2) | pattern | what rotates |
+|---|---|---|
+| (0, 0) | rest | nothing |
+| (0, ±1) | 4 | the statue, or the lone block |
+| (±1, 0) | 3 | pedestal and statue as one |
+| (s, s), (s, -s) | 1, 2 | both |
+
+| what happens | when | what follows |
+|---|---|---|
+| uplift, release | a closed contact would have to be pulled at a corner (``ground_hold``, ``interface_hold``)
+| ``settle`` |
+| impact | an open contact's angle falls to zero | ``impact.impact``, then ``settle`` |
+| rest | an impact closes all contacts, or impacts that are sure to end do (``chatter``) | uplift |
+| fall | a block has turned by a right angle, or cannot come back | the end |
+
+A full contact pushes and never pulls.  States are tried from all contacts closed to all open, and the first
+consistent one is taken, so that every transition that the mechanics allows occurs.
+"""
+
+import math
+
+from rockfrag.engines.kernels.equations import (
+    accelerations,
+    equations,
+    ground_hold,
+    interface_hold,
+    pole,
+)
+from rockfrag.engines.kernels.jit import kernel
+
+HALF_TURN = 0.5 * math.pi
+"""A block that has turned so far lies down [rad]."""
+
+GROUND, INTERFACE = 1, 2
+"""The two contacts."""
+
+
+@kernel
+def side_of(value):
+    """Return +1, -1 or 0: the pole on which a contact with this opening rocks."""
+    return (1 if value > 0.0 else 0) - (1 if value < 0.0 else 0)
+
+
+@kernel
+def first_contacts(state):
+    """Contacts at the start: those with an angle, or opening, are open."""
+    c1 = side_of(state.theta1)
+    if c1 == 0:
+        c1 = side_of(state.omega1)
+    c2 = side_of(state.theta2 - state.theta1)
+    if c2 == 0:
+        c2 = side_of(state.omega2 - state.omega1)
+    return c1, c2
+
+
+@kernel
+def at_rest(state, ground, gravity):
+    """Put a state at rest under an acceleration of the ground and a gravity."""
+    state.c1, state.c2, state.ground, state.gravity = 0, 0, ground, gravity
+    state.theta1, state.omega1, state.theta2, state.omega2 = 0.0, 0.0, 0.0, 0.0
+
+
+@kernel
+def rest_interval(body, scratch):
+    """Ground accelerations [m/s²] between which the body at rest stays at rest; ``scratch`` is a STATE.
+
+    Every criterion of rest is linear in the acceleration (thesis eq. 2.21-2.25), and homogeneous in it and
+    gravity: where the ground moves vertically too, both limits grow as gravity does.
+    """
+    low = -math.inf
+    high = math.inf
+    for contact in (GROUND, INTERFACE):
+        if contact == GROUND and body.fixed:
+            continue
+        for c in (1, -1):
+            still = _rest_moment(body, contact, c, 0.0, scratch)
+            pushed = _rest_moment(body, contact, c, 1.0, scratch)
+            limit = still / (still - pushed)
+            if still > pushed:
+                high = min(high, limit)
+            else:
+                low = max(low, limit)
+    return low, high
+
+
+@kernel
+def _rest_moment(body, contact, c, ground, scratch):
+    """Contact moment s τ(s) of a contact at rest at its corner ``c``."""
+    at_rest(scratch, ground, body.gravity)
+    c1, c2 = (c, 1) if contact == GROUND else (1, c)
+    _, _, _, f1, f2 = equations(body, pole(c1), pole(c2), scratch)
+    return c * (f1 + f2) if contact == GROUND else c * f2
+
+
+@kernel
+def settle(body, state):
+    """Contact state into which forces take the closed contacts of a state.
+
+    An opening contact accelerates away from its corner, a closed one pushes at both corners.
+    """
+    c1, c2 = state.c1, state.c2
+    if c1 != 0 and c2 != 0:
+        return c1, c2
+    fallback1 = c1
+    fallback2 = c2
+    for opened in range(3):
+        for n1 in (0, 1, -1):
+            if n1 != 0 and (c1 != 0 or body.fixed):
+                continue
+            for n2 in (0, 1, -1):
+                if (n2 != 0 and c2 != 0) or abs(n1) + abs(n2) != opened:
+                    continue
+                t1 = c1 if c1 != 0 else n1
+                t2 = c2 if c2 != 0 else n2
+                alpha1, alpha2 = accelerations(body, t1, t2, state)
+                good = True
+                if c1 == 0:
+                    if n1 != 0:
+                        good = n1 * alpha1 > 0.0
+                    else:
+                        hold, corner = ground_hold(body, t2, state, alpha2)
+                        good = hold >= 0.0
+                        if opened == 0 and not good:
+                            fallback1 = corner
+                if c2 == 0:
+                    if n2 != 0:
+                        good = good and n2 * (alpha2 - alpha1) > 0.0
+                    else:
+                        hold, corner = interface_hold(body, t1, state, alpha1)
+                        good = good and hold >= 0.0
+                        if opened == 0 and hold < 0.0:
+                            fallback2 = corner
+                if good:
+                    return t1, t2
+    # within rounding of a threshold: open what its own criterion opens
+    return 0 if body.fixed else fallback1, fallback2
+
+
+@kernel
+def release(body, state, fails, stuck):
+    """Contact state after a closed contact, GROUND or INTERFACE, can no longer hold.
+
+    ``stuck``: no time has passed since the last event, so a state that stays as it is would never end.
+    """
+    c1, c2 = settle(body, state)
+    if stuck and c1 == state.c1 and c2 == state.c2:
+        # rounding at a threshold: open the contact that fails
+        alpha1, alpha2 = accelerations(body, c1, c2, state)
+        if fails == GROUND:
+            _, c1 = ground_hold(body, c2, state, alpha2)
+        else:
+            _, c2 = interface_hold(body, c1, state, alpha1)
+    return c1, c2
+
+
+@kernel
+def uplift(body, state):
+    """Contact state that a body at rest takes at or beyond the ground acceleration that lifts it."""
+    c1, c2 = settle(body, state)
+    if c1 == 0 and c2 == 0:
+        # rounding at the threshold: open the contact with the least hold
+        hold1, corner1 = ground_hold(body, 0, state, 0.0)
+        hold2, corner2 = interface_hold(body, 0, state, 0.0)
+        if hold1 <= hold2:
+            return corner1, 0
+        return 0, corner2
+    return c1, c2

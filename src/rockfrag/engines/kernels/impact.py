@@ -1,0 +1,342 @@
+"""Impacts: what the velocities are after contacts have closed.
+
+Momentum decides first: point impact, no bounce, no impulse at a pole that leaves.  The momentum before is
+projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; thesis eq. 2.12,
+2.76-2.86).
+
+A measured restitution then says at which *rate* the closing contact comes off: ω1⁺ of the ground, ω2⁺ - ω1⁺ of the
+interface.  There are three laws for that rate (``docs/restitution.md``), each a function of its own here; the rest
+is common to all: the momentum that no couple in the closing contact can change is conserved, the other
+contact opens or stays as that asks for, and a rate with which energy would grow gives way to the largest that
+does not.
+
+Every outcome of every impact is worked out here, so a contact law has its place here:
+
+- ``impact``: any contacts of any body.  One history follows it, and the tables of landings are made with it.
+- ``ground_impact``, ``interface_impact``: one contact of two closes while the other stays open, which makes
+  nearly all impacts of a stack in an ensemble, by the products of velocity fields that the stack's table holds.
+- ``block_impact``: the lone block of an ensemble.
+"""
+
+from rockfrag.engines.kernels.equations import (
+    kinetic_energy,
+    metric,
+    pole,
+    turn_between,
+)
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+from rockfrag.system.geometry import COUPLE, POSITION, RATIO
+
+GAIN = 1e-9
+"""Relative growth of the kinetic energy in an impact that counts as rounding."""
+
+
+@kernel
+def impact(body, state, closes1, closes2):
+    """State and velocities after contacts of a state close.
+
+    Returns
+    -------
+    c1, c2, ω1⁺, ω2⁺, and 1 if a measured restitution had to give way, otherwise 0.
+    """
+    n1, n2, w1, w2, _ = _admissible(body, state, closes1, closes2, False)
+    if not body.measured:
+        return n1, n2, w1, w2, 0
+    return _measured(body, state, (closes1, closes2), (n1, n2, w1, w2))
+
+
+@kernel
+def stuck(body, state, n1, n2):
+    """Velocities after an impact that is made to end with the contacts (n1, n2)."""
+    return _projected(body, state, n1, n2, (pole(n1), pole(n2)))
+
+
+@kernel
+def _projected(body, state, n1, n2, test):
+    """Velocities after an impact that ends with the contacts (n1, n2), 0 being stuck.
+
+    ``test`` are the points where the impulses act: the poles, unless the law of position moves them.
+    """
+    if n1 == 0 and n2 == 0:
+        return 0.0, 0.0
+    turn = turn_between(body, state)
+    k11, k12, k21, k22 = metric(body, test, (pole(n1), pole(n2)), turn)
+    b11, b12, b21, b22 = metric(body, test, (pole(state.c1), pole(state.c2)), turn)
+    l1 = b11 * state.omega1 + b12 * state.omega2
+    l2 = b21 * state.omega1 + b22 * state.omega2
+    if n1 == 0:
+        return 0.0, l2 / k22
+    if n2 == 0:
+        both = (l1 + l2) / (k11 + k12 + k21 + k22)
+        return both, both
+    determinant = k11 * k22 - k12 * k21
+    return (k22 * l1 - k12 * l2) / determinant, (k11 * l2 - k21 * l1) / determinant
+
+
+# --------------------------------------------------------------------------- impulses that push
+
+
+@kernel
+def _impulse_moments(body, state, new, after, test):
+    """Impulse moments on the fields that turn block 1 and block 2 about the points ``test``."""
+    turn = turn_between(body, state)
+    k11, k12, k21, k22 = metric(body, test, new, turn)
+    b11, b12, b21, b22 = metric(body, test, (pole(state.c1), pole(state.c2)), turn)
+    w1, w2 = after
+    one = k11 * w1 + k12 * w2 - b11 * state.omega1 - b12 * state.omega2
+    two = k21 * w1 + k22 * w2 - b21 * state.omega1 - b22 * state.omega2
+    return one, two
+
+
+@kernel
+def _pushed(body, state, contacts, after, test):
+    """Whether the contacts that an impact leaves closed get impulses that push, at both their corners."""
+    n1, n2 = contacts
+    new = pole(n1), pole(n2)
+    speed = abs(state.omega1) + abs(state.omega2)
+    if n1 == 0 and not body.fixed:
+        for corner in (1.0, -1.0):
+            one, two = _impulse_moments(body, state, new, after, (corner, test[1]))
+            moment = one + two if n2 == 0 else one
+            if corner * moment < -1e-12 * body.i1 * speed:
+                return False
+    if n2 == 0:
+        for corner in (1.0, -1.0):
+            _, moment = _impulse_moments(body, state, new, after, (test[0], corner))
+            if corner * moment < -1e-12 * body.i2 * speed:
+                return False
+    return True
+
+
+@kernel
+def _choice(number, c, closes):
+    """The ``number``-th state that a contact may have after an impact, open before stuck; 2 if there is none.
+
+    One that closes does not rebound on its old pole; one that is open and does not close stays as it is.
+    """
+    if number == 0:
+        return -c if closes else (1 if c == 0 else c)
+    if number == 1:
+        return 2 if closes or c != 0 else -1
+    return 0 if closes or c == 0 else 2
+
+
+@kernel
+def _admissible(body, state, closes1, closes2, moved):
+    """Try the states an impact may lead to, open before stuck; the first admissible one, and whether there is one.
+
+    Open contacts separate, and closed ones are pushed together at both corners.  Impulses act at the poles, or, if
+    ``moved``, where the law of position has them.
+    """
+    at1, at2 = 1.0, 1.0
+    if moved:
+        law1, value1, has1 = _law(body, state, 1, closes1)
+        law2, value2, has2 = _law(body, state, 2, closes2)
+        at1 = value1 if has1 and law1 == POSITION else 1.0
+        at2 = value2 if has2 and law2 == POSITION else 1.0
+    c1, c2 = state.c1, state.c2
+    # velocities that rounding alone leaves count as none
+    tiny = 1e-13 * (abs(state.omega1) + abs(state.omega2))
+    free1 = closes1 or c1 == 0
+    free2 = closes2 or c2 == 0
+    for number1 in range(3):
+        n1 = _choice(number1, c1, closes1)
+        if n1 == 2 or (body.fixed and n1 != 0):
+            continue
+        for number2 in range(3):
+            n2 = _choice(number2, c2, closes2)
+            if n2 == 2:
+                continue
+            test = pole(n1) * (at1 if n1 != 0 else 1.0), pole(n2) * (at2 if n2 != 0 else 1.0)
+            w1, w2 = _projected(body, state, n1, n2, test)
+            if free1 and n1 != 0 and n1 * w1 <= tiny:
+                continue
+            if free2 and n2 != 0 and n2 * (w2 - w1) <= tiny:
+                continue
+            if _pushed(body, state, (n1, n2), (w1, w2), test):
+                return n1, n2, w1, w2, True
+    # no admissible solution: what met stays together (thesis, after eq. 2.78)
+    n1 = 0 if free1 else c1
+    n2 = 0 if free2 else c2
+    w1, w2 = stuck(body, state, n1, n2)
+    return n1, n2, w1, w2, False
+
+
+# --------------------------------------------------------------------------- what a measured restitution says
+
+
+@kernel
+def _law(body, state, contact, closes):
+    """Law by which contact 1 or 2 comes off its impact, as an AFTER, and whether there is one."""
+    if contact == 1:
+        after = body.after1l if state.c1 > 0 else body.after1r
+    else:
+        after = body.after2l if state.c2 > 0 else body.after2r
+    return after.law, after.value, closes and after.law != 0
+
+
+@inlined_kernel
+def _rate(law, value, by_momentum, before, moved):
+    """Rate at which a law lets a contact come off."""
+    if law == COUPLE:
+        return value * by_momentum
+    if law == RATIO:
+        return value * before
+    return moved
+
+
+@kernel
+def _measured(body, state, closes, momentum):
+    """State and velocities after an impact by the laws of its closing contacts; 1 if one gave way."""
+    n1, n2, w1, w2 = momentum
+    law1, value1, has1 = _law(body, state, 1, closes[0])
+    law2, value2, has2 = _law(body, state, 2, closes[1])
+    if not (has1 or has2):
+        return n1, n2, w1, w2, 0
+    # rates by momentum, before the impact, and with impulses that have moved
+    rate1, rate2 = w1, w2 - w1
+    before1, before2 = state.omega1, state.omega2 - state.omega1
+    moved1, moved2, exists = rate1, rate2, True
+    if (has1 and law1 == POSITION) or (has2 and law2 == POSITION):
+        _, _, v1, v2, exists = _admissible(body, state, closes[0], closes[1], True)
+        if exists:
+            moved1, moved2 = v1, v2 - v1
+    want1 = _rate(law1, value1, rate1, before1, moved1)
+    want2 = _rate(law2, value2, rate2, before2, moved2)
+    open1 = -state.c1 if has1 else n1
+    open2 = -state.c2 if has2 else n2
+    # a contact that closes does not rebound on its old pole
+    want1 = open1 * max(0.0, open1 * want1) if has1 else want1
+    want2 = open2 * max(0.0, open2 * want2) if has2 else want2
+    others = n1, n2
+    n1, n2, w1, w2 = _with_rates(body, state, closes, others, (has1, want1), (has2, want2))
+    limit = kinetic_energy(body, state) * (1.0 + GAIN)
+    if _energy_with(body, state, n1, n2, w1, w2) <= limit:
+        return n1, n2, w1, w2, 0 if exists else 1
+    # as far from what momentum says as energy allows
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        share = 0.5 * (low + high)
+        one = has1, rate1 + share * (want1 - rate1)
+        two = has2, rate2 + share * (want2 - rate2)
+        n1, n2, w1, w2 = _with_rates(body, state, closes, others, one, two)
+        if _energy_with(body, state, n1, n2, w1, w2) <= limit:
+            low = share
+        else:
+            high = share
+    one = has1, rate1 + low * (want1 - rate1)
+    two = has2, rate2 + low * (want2 - rate2)
+    n1, n2, w1, w2 = _with_rates(body, state, closes, others, one, two)
+    return n1, n2, w1, w2, 1
+
+
+@kernel
+def _energy_with(body, state, n1, n2, w1, w2):
+    """Kinetic energy in a state, with other contacts and velocities [J]."""
+    poles = pole(n1), pole(n2)
+    k11, k12, _, k22 = metric(body, poles, poles, turn_between(body, state))
+    return 0.5 * (k11 * w1 * w1 + 2.0 * k12 * w1 * w2 + k22 * w2 * w2)
+
+
+@kernel
+def _with_rates(body, state, closes, others, ground, interface):
+    """State and velocities after an impact in which closing contacts come off at given rates.
+
+    A couple in the closing contact does it, which leaves one momentum as it is: that of the whole about the pole
+    of the ground if the interface closes, that of the statue about its pole if the ground does.  The other
+    contact separates if that momentum asks for it, and is pressed otherwise.
+
+    Parameters
+    ----------
+    others : contacts after the impact by momentum, which the contact without a given rate tries first
+    ground, interface : whether the rate of the contact is given, and the rate [rad/s]
+    """
+    given1, rate1 = ground
+    given2, rate2 = interface
+    m1 = _side(rate1) if given1 else 0
+    m2 = _side(rate2) if given2 else 0
+    if given1 and given2:
+        return m1, m2, rate1, rate1 + rate2
+    turn = turn_between(body, state)
+    old = pole(state.c1), pole(state.c2)
+    tiny = 1e-13 * (abs(state.omega1) + abs(state.omega2))
+    c, shuts, n = (state.c2, closes[1], others[1]) if given1 else (state.c1, closes[0], others[0])
+    stays = c != 0 and not shuts
+    if n == 0:
+        n = -c if shuts else 1
+    for attempt in range(2):
+        if body.fixed and given2:
+            break
+        if attempt == 1:
+            # only what was full may open to either side
+            if c != 0:
+                break
+            n = -n
+        poles = (pole(m1), pole(n)) if given1 else (pole(n), pole(m2))
+        k11, k12, k21, k22 = metric(body, poles, poles, turn)
+        b11, b12, b21, b22 = metric(body, poles, old, turn)
+        l1 = b11 * state.omega1 + b12 * state.omega2
+        l2 = b21 * state.omega1 + b22 * state.omega2
+        if given1:
+            w2 = (l2 - k21 * rate1) / k22
+            if stays or n * (w2 - rate1) > tiny:
+                return m1, n, rate1, w2
+        else:
+            w1 = (l1 + l2 - (k12 + k22) * rate2) / (k11 + k12 + k21 + k22)
+            if stays or n * w1 > tiny:
+                return n, m2, w1, w1 + rate2
+    if given1:
+        return m1, 0, rate1, rate1
+    return 0, m2, 0.0, rate2
+
+
+@kernel
+def _side(rate):
+    """Pole on which a contact rocks that comes off at a rate; 0 if it does not."""
+    return (1 if rate > 0.0 else 0) - (1 if rate < 0.0 else 0)
+
+
+# --------------------------------------------------------------------------- by the table of a stack
+
+
+@inlined_kernel
+def mass_matrix(two, cosine, sine):
+    """M11, M12, M22 and D of a contact state in which both blocks rotate, at cos Δ, sin Δ."""
+    return two.m11, two.e * cosine + two.f * sine, two.m22, two.f * cosine - two.e * sine
+
+
+@inlined_kernel
+def ground_impact(before, after, product, turn, omega1, omega2):
+    """Velocities after the ground closes (thesis eq. 2.68-2.71): both momenta about the new poles.
+
+    Parameters
+    ----------
+    before, after : constants of the contact states (``stack_constants.TWO``)
+    product : ``ground`` of ``stack_constants.IMPACT``
+    turn : cosine and sine of θ2 - θ1
+    """
+    _, old12, m22, _ = mass_matrix(before, turn[0], turn[1])
+    m11, m12, _, _ = mass_matrix(after, turn[0], turn[1])
+    l1 = product * omega1 + m12 * omega2
+    l2 = old12 * omega1 + m22 * omega2
+    share = 1.0 / (m11 * m22 - m12 * m12)
+    return (m22 * l1 - m12 * l2) * share, (m11 * l2 - m12 * l1) * share
+
+
+@inlined_kernel
+def interface_impact(after, products, omega1, omega2):
+    """Velocities after the interface closes, Δ = 0: momentum of the whole and of the statue."""
+    m11, m12, m22 = after.m11, after.e, after.m22
+    l1 = products.both11 * omega1 + products.both12 * omega2
+    l2 = products.both21 * omega1 + products.both22 * omega2
+    share = 1.0 / (m11 * m22 - m12 * m12)
+    return (m22 * l1 - m12 * l2) * share, (m11 * l2 - m12 * l1) * share
+
+
+# --------------------------------------------------------------------------- the lone block
+
+
+@inlined_kernel
+def block_impact(from_pole, rate):
+    """ψ' on the new pole after an impact at rate ψ' > 0 that ends rocking on a pole (``block.POLE``)."""
+    return -rate * from_pole.restitution

@@ -1,0 +1,176 @@
+"""How kernels are compiled, and the one place that uses the private parts of numba's compiler.
+
+``kernel`` marks a function that other kernels call, ``entry_kernel`` one that Python calls.  Machine code is
+made for entry kernels alone, once per machine, and cached where the installation (or the user's cache) can be
+written.
+
+Numba would otherwise optimise every kernel by itself, once more inside each kernel that calls it, and make
+machine code for all of them, of which only that of the entry kernels is ever run; and it would take every
+kernel through two dozen passes for what these do not use (closures, reference counts, array expressions,
+parallel loops); and for each operation it would look anew among dozens of implementations for what a product
+of two numbers is.  All this costs more time than all that is needed.  So a kernel stays a piece of unoptimised
+code until an entry kernel that needs it is optimised as a whole, and what was found once is remembered until
+then.  This uses classes that numba does not document;
+with a version other than ``TESTED_NUMBA`` kernels are compiled the ordinary way, which takes longer and gives
+the same bits.
+
+Arithmetic is strictly IEEE: nothing is contracted or reordered, because the compiler would do so differently
+in each place that a kernel is inlined in, and sine and its like come from ``elementary``, not from a library.
+So bits are the same on every processor; one without multiply-adds computes those that are asked for by name
+(``fma``) by a function, exactly and slowly.  Kernels may not allocate arrays: what they are given is borrowed
+from the caller, and nothing counts references (atomic operations that took a twentieth of the time of an
+ensemble).
+"""
+
+import gc
+import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import numba
+from filelock import FileLock
+from numba import types
+from numba.extending import intrinsic, register_jitable
+
+from rockfrag import elementary
+from rockfrag.machine_code import cached_njit
+from rockfrag.system import geometry
+
+TESTED_NUMBA = ("0.68.",)
+"""Versions of numba whose private parts are known to be as this module takes them to be."""
+
+KNOWN = numba.__version__.startswith(TESTED_NUMBA)
+
+if KNOWN:
+    from rockfrag.engines.kernels._numba import PartCompiler, WholeCompiler
+
+
+def entry_kernel(function: Callable[..., Any]) -> Any:
+    """Compile ``function``, which Python calls, without the interpreter's lock, and cache the machine code."""
+    own = {"pipeline_class": WholeCompiler} if KNOWN else {}
+    return cached_njit(_digest, **_EVERY, **own)(function)
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """Mark ``function``, which only kernels call; it may be inlined or not."""
+    return _part(function)
+
+
+def inlined_kernel(function: Callable[..., Any]) -> Any:
+    """Mark ``function``, which only kernels call, as one that is always inlined.
+
+    For what is called at every event, since an array is handed on as seven numbers, and for straight-line
+    arithmetic that the compiler is to do for several cases at once.
+    """
+    return _part(function, forceinline=True)
+
+
+def _part(function: Callable[..., Any], **more: Any) -> Any:
+    return _compiled(function, **_PART, **more)
+
+
+def _compiled(function: Callable[..., Any], **options: Any) -> Any:
+    njit: Any = numba.njit
+    return njit(**_EVERY, **options)(function)
+
+
+_EVERY: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+if KNOWN:
+    _PART["pipeline_class"] = PartCompiler
+
+for _module in (elementary, geometry):
+    for _function in list(vars(_module).values()):
+        if isinstance(_function, FunctionType) and _function.__module__ == _module.__name__:
+            # plain Python, which kernels may call as if it were one of them
+            register_jitable(**_EVERY, **_PART)(_function)
+
+
+@cache
+def _digest() -> str:
+    """Digest of all kernels' sources: those of every engine, of the arithmetic and of bodies as they stand."""
+    digest = hashlib.sha256()
+    package = Path(__file__).parents[2]
+    folders = ("engines", "rocking/contact")
+    sources = [path for folder in folders for path in sorted((package / folder).rglob("*.py"))]
+    for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+@contextmanager
+def compiling_alone(entry: Any) -> Iterator[None]:
+    """Hold other processes off while this one calls an entry kernel for the first time.
+
+    The first of several processes that start together compiles; the others wait and read its cache.
+    """
+    folder = getattr(getattr(entry, "_cache", None), "cache_path", None)
+    if entry.signatures:
+        yield
+        return
+    with _locked(folder, entry.__name__):
+        # looking for garbage in what a compiler builds takes a tenth of its time
+        collects = gc.isenabled()
+        gc.disable()
+        try:
+            yield
+        finally:
+            if collects:
+                # what there is counts as old, so it is looked through with the old, not before the first verdict
+                gc.freeze()
+                gc.unfreeze()
+                gc.enable()
+
+
+@contextmanager
+def _locked(folder: str | None, name: str) -> Iterator[None]:
+    """Hold the lock ``name`` of a folder; of one that cannot be written to, no lock is needed."""
+    lock = None
+    if folder is not None:
+        try:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            lock = FileLock(Path(folder) / f"{name}.lock")
+            lock.acquire()
+        except (OSError, NotImplementedError):
+            lock = None
+    try:
+        yield
+    finally:
+        if lock is not None:
+            lock.release()
+
+
+@intrinsic
+def fma(typing_context, a, b, c):  # type: ignore[no-untyped-def]
+    """Return a b + c, rounded once: everywhere the same, unlike multiply-adds that a compiler chooses."""
+
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        return builder.fma(*arguments)
+
+    return types.float64(types.float64, types.float64, types.float64), generate
+
+
+@intrinsic
+def take_next(typing_context, counter):  # type: ignore[no-untyped-def]
+    """Return the first entry of an integer array and add 1 to it, in one step that no thread can interrupt."""
+
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        array = context.make_array(signature.args[0])(context, builder, arguments[0])
+        one = context.get_constant(types.int64, 1)
+        return builder.atomic_rmw("add", array.data, one, "monotonic")
+
+    return types.int64(counter), generate
+
+
+@intrinsic
+def lowest_bit(typing_context, bits):  # type: ignore[no-untyped-def]
+    """Return the place of the lowest bit that is set in an integer that is not zero."""
+
+    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        return builder.cttz(arguments[0], context.get_constant(types.boolean, True))
+
+    return types.int64(types.int64), generate

@@ -1,0 +1,129 @@
+"""Ensembles of stacks, many cases side by side.
+
+There are lanes for the cases of which one part rotates and lanes for those of which both blocks do, because
+the arithmetic of the second costs twice that of the first.  One pass advances all lanes of a kind; what is
+rare (events, rest, verdicts, the next case) is handled case by case between passes.  A case whose event
+changes its kind waits for a lane of the other: there are as many cases in flight as lanes, so that one kind or
+the other can always fill its lanes.
+
+A case's numbers depend on that case alone, so neither the number of lanes nor their neighbours nor the threads
+change a bit of them.
+"""
+
+from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, lowest_bit
+from rockfrag.engines.kernels.lanes import stack_one, stack_two
+from rockfrag.engines.kernels.lanes.case import LANES, QUIET, WITHIN, next_samples
+from rockfrag.engines.kernels.lanes.stack_case import (
+    BOTH_ROTATE,
+    NO_CASE,
+    ONE_ROTATES,
+    SLOTS,
+    after_event,
+    event_of_one,
+    event_of_two,
+    find_events_of_two,
+    general_impact,
+    lane_of,
+    next_case,
+    place_one,
+    place_two,
+    rocks_on,
+    store_one,
+    store_two,
+)
+
+
+@entry_kernel
+def march_stacks(ensemble, motions, worker, outcomes):
+    """March the cases of an ensemble of stacks until none is left.
+
+    Parameters
+    ----------
+    ensemble : Ensemble
+    motions : Motions
+    worker : Worker, one for each thread
+    outcomes : (cases,) of OUTCOME
+
+    Returns
+    -------
+    Numbers of steps that lanes of one rotation and of two were advanced by.
+    """
+    g = ensemble.bodies[0].gravity
+    upward = motions.vertical.size > 0
+    for slot in range(SLOTS):
+        case = worker.cases[slot]
+        next_case(case, ensemble, motions, worker, outcomes)
+        _wait(case, worker)
+    steps1, steps2 = 0, 0
+    waits, busy = worker.waits, worker.busy
+    while busy[0] + waits[0] + busy[1] + waits[1] > 0:
+        ones = busy[0] + waits[0] >= min(LANES, busy[1] + waits[1])
+        kind = ONE_ROTATES if ones else BOTH_ROTATE
+        if ones:
+            steps1 += LANES
+            stack_one.advance(worker.one, g, upward)
+            stops = next_samples(worker.one, worker.one.factor, LANES, motions)
+        else:
+            steps2 += LANES
+            stack_two.advance(worker.two, g, upward)
+            stops = next_samples(worker.two, worker.two.factor, LANES, motions)
+            find_events_of_two(stops, worker)
+        while stops != 0:
+            i = lowest_bit(stops)
+            stops &= stops - 1
+            slot = worker.one.slot[i] if ones else worker.two.slot[i]
+            flag = worker.one.flag[i] if ones else worker.two.flag[i]
+            if slot >= 0:
+                if flag == WITHIN:
+                    continue
+                case = worker.cases[slot]
+                case.k = worker.one.k[i] if ones else worker.two.k[i]
+                if flag == QUIET:
+                    if ones:
+                        store_one(i, case, worker.one)
+                    else:
+                        store_two(i, case, worker.two)
+                else:
+                    if ones:
+                        closes = event_of_one(i, case, worker, ensemble, motions, g)
+                    else:
+                        closes = event_of_two(i, case, worker, ensemble, motions, g)
+                    if closes[0] or closes[1]:
+                        general_impact(case, worker, ensemble.bodies[case.body], closes, motions)
+                    after_event(case)
+                if not rocks_on(case):
+                    next_case(case, ensemble, motions, worker, outcomes)
+                if lane_of(case) != kind:
+                    _wait(case, worker)
+                    slot = -1
+                    busy[kind] -= 1
+            if slot < 0 and waits[kind] > 0:
+                waits[kind] -= 1
+                busy[kind] += 1
+                slot = worker.waiting[kind, waits[kind]]
+            if ones:
+                if _hold(worker.one, i, slot, worker.cases):
+                    place_one(i, worker.cases[slot], worker, motions)
+            elif _hold(worker.two, i, slot, worker.cases):
+                place_two(i, worker.cases[slot], worker, motions)
+    return steps1, steps2
+
+
+@inlined_kernel
+def _wait(case, worker):
+    """Let a case wait for a lane of the kind that it needs."""
+    kind = lane_of(case)
+    if kind != NO_CASE:
+        worker.waiting[kind, worker.waits[kind]] = case.slot
+        worker.waits[kind] += 1
+
+
+@inlined_kernel
+def _hold(lane, i, slot, cases):
+    """Let lane i hold the case of a slot; whether there is one."""
+    if slot < 0:
+        # what the lane computes from here on, nobody looks at; at its last sample, it stops each time
+        lane.slot[i], lane.k[i], lane.last[i] = -1, 0, 0
+        return False
+    lane.slot[i], lane.k[i], lane.last[i] = slot, cases[slot].k, cases[slot].last
+    return True

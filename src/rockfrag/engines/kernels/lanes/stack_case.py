@@ -1,0 +1,580 @@
+"""The life of a stack's case: taken, at rest, in a lane, through its events, and put down.
+
+A case in flight is a CASE record; its slot holds the constants of its body.  Lanes of one rotation
+(``stack_one``) and of two (``stack_two``) hold copies of what they march; ``place_one``, ``store_one`` and
+their like carry these over.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rockfrag.engines.kernels.by_reference import by_reference
+from rockfrag.engines.kernels.chatter import (
+    RESTORING,
+    VERDICT,
+    Ahead,
+    Hop,
+    closed,
+    dies_out,
+    fill_restoring,
+    may_close,
+)
+from rockfrag.engines.kernels.contact_states import (
+    GROUND,
+    HALF_TURN,
+    INTERFACE,
+    release,
+    rest_interval,
+    settle,
+    uplift,
+)
+from rockfrag.engines.kernels.equations import (
+    STATE,
+    balance,
+    barrier,
+    kinetic_energy,
+    potential_energy,
+    statue_balance,
+)
+from rockfrag.engines.kernels.impact import ground_impact, interface_impact
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel, lowest_bit, take_next
+from rockfrag.engines.kernels.lanes import stack_one, stack_two
+from rockfrag.engines.kernels.lanes.case import (
+    LANES,
+    QUIET,
+    RELEASE,
+    next_uplift,
+    place_of,
+    weight_of,
+)
+from rockfrag.engines.kernels.lanes.stack_constants import (
+    HOLD,
+    IMPACT,
+    ONE,
+    TWO,
+    fill_constants,
+    number_of,
+)
+from rockfrag.engines.kernels.roots import slope, value
+from rockfrag.engines.kernels.single import MAX_EVENTS_PER_STEP, land
+from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
+
+SLOTS = 2 * LANES
+"""Cases in flight, so that lanes of one kind or the other can always be filled."""
+
+CASE = np.dtype(
+    [
+        ("number", np.int64),  # of the case, -1 for none
+        ("slot", np.int64), ("body", np.int64),
+        # sampling interval [s], the largest part of it that a step of two rotations may take, and the scale
+        ("interval", np.float64), ("part", np.float64), ("factor", np.float64),
+        # ground accelerations between which the body rests, and the least energy that overturns it
+        ("low", np.float64), ("high", np.float64), ("barrier", np.float64),
+        # samples: of its motion the first and the last, and the last of free rocking
+        ("first", np.int64), ("last", np.int64), ("free_last", np.int64),
+        # the sample it has reached, and the time since then
+        ("k", np.int64), ("tau", np.float64),
+        # the state, with rates per sample
+        ("c1", np.int64), ("c2", np.int64),
+        ("theta1", np.float64), ("omega1", np.float64), ("theta2", np.float64), ("omega2", np.float64),
+        # gravity of a ground that does not move vertically
+        ("gravity", np.float64),
+        # of its last event the ground acceleration, gravity over the above, the sample, and how many that has had
+        ("ground", np.float64), ("weight", np.float64), ("crowded", np.int64), ("crowd", np.int64),
+        # extremes so far, as in the lanes; impacts; what fell, 1 the pedestal, 2 the statue
+        ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("near", np.float64),
+        ("impacts", np.int64), ("given_way", np.int64), ("fallen", np.int64),
+    ],
+    align=True,
+)  # fmt: skip
+"""A case in flight; time is counted in samples."""
+
+
+@by_reference
+class Worker(NamedTuple):
+    """Memory that a thread works in: ``worker()``.
+
+    Attributes
+    ----------
+    one, two : lanes of either kind
+    cases : (SLOTS,) of CASE
+    waiting : (2, SLOTS) slots that wait for a lane of either kind
+    waits, busy : (2,) how many wait, and how many lanes are taken
+    ones, twos, impacts : (SLOTS, 9) constants of the slots' bodies in every contact state
+    restoring : (SLOTS,)
+    series : (LANES,) of the steps that events are looked for in
+    state : of a case, with rates per second, for what the constants do not cover
+    """
+
+    one: Any
+    two: Any
+    cases: Any
+    waiting: Any
+    waits: Any
+    busy: Any
+    ones: Any
+    twos: Any
+    impacts: Any
+    restoring: Any
+    series: Any
+    state: Any
+
+
+def worker() -> Worker:
+    """Memory for one thread."""
+    one, two = np.zeros(1, stack_one.LANE)[0], np.zeros(1, stack_two.LANE)[0]
+    one["slot"] = two["slot"] = -1
+    # these are written only where the ground moves vertically
+    one["was_weight"] = one["before_weight"] = two["was_weight"] = 1.0
+    cases = np.zeros(SLOTS, CASE)
+    cases["number"] = cases["body"] = -1
+    cases["slot"] = np.arange(SLOTS)
+    return Worker(
+        one=one,
+        two=two,
+        cases=cases,
+        waiting=np.zeros((2, SLOTS), np.int64),
+        waits=np.zeros(2, np.int64),
+        busy=np.zeros(2, np.int64),
+        ones=np.zeros((SLOTS, 9), ONE),
+        twos=np.zeros((SLOTS, 9), TWO),
+        impacts=np.zeros((SLOTS, 9), IMPACT),
+        restoring=np.zeros(SLOTS, RESTORING),
+        series=np.zeros(LANES, SERIES),
+        state=np.zeros(1, STATE)[0],
+    )
+
+
+# --------------------------------------------------------------------------- phases of a case
+
+NO_CASE, ONE_ROTATES, BOTH_ROTATE = -1, 0, 1
+"""What lane a case needs."""
+
+
+@inlined_kernel
+def lane_of(case):
+    """Which lanes a case needs."""
+    if case.number < 0:
+        return NO_CASE
+    return BOTH_ROTATE if case.c1 != 0 and case.c2 != 0 else ONE_ROTATES
+
+
+@inlined_kernel
+def rocks_on(case):
+    """Whether a case goes on in a lane: it has not fallen, does not rest, and its motion is not over."""
+    return case.fallen == 0 and case.k < case.last and (case.c1 != 0 or case.c2 != 0)
+
+
+@kernel
+def next_case(case, ensemble, motions, worker, outcomes):
+    """Take a slot through rest and the ends of motions, and through as many cases as end there."""
+    while True:
+        if case.number >= 0:
+            if case.fallen == 0 and _goes_on(case, ensemble, motions, worker.state):
+                return
+            _put_down(case, outcomes[case.number])
+        number = take_next(ensemble.counter)
+        if number >= ensemble.count:
+            case.number = -1
+            return
+        _take_up(case, number, ensemble, motions, worker)
+
+
+@kernel
+def _goes_on(case, ensemble, motions, state):
+    """Whether a case that has not fallen rocks on: it rises from its rest, or has not come to its end."""
+    body = ensemble.bodies[case.body]
+    if case.c1 == 0 and case.c2 == 0:
+        if case.k >= case.last or case.factor == 0.0:
+            return False
+        k, tau, ground, weight = next_uplift(
+            motions, case.k, case.tau, case.last, case.factor, (case.low, case.high)
+        )
+        if k < 0:
+            return False
+        case.k, case.tau, case.ground, case.weight = k, tau, ground, weight
+        case.theta1, case.omega1, case.theta2, case.omega2 = 0.0, 0.0, 0.0, 0.0
+        to_state(case, state)
+        case.c1, case.c2 = uplift(body, state)
+        return True
+    if case.k < case.last:
+        return True
+    to_state(case, state)
+    return case.k < case.free_last and not _is_safe(body, state, case.barrier)
+
+
+@kernel
+def _is_safe(body, state, least):
+    """Whether nothing can fall once the ground is still: energy cannot grow, and is less than ``least``."""
+    if kinetic_energy(body, state) + potential_energy(body, state) >= least:
+        return False
+    # low energy on this side of balance, not beyond it
+    c1, c2 = state.c1, state.c2
+    if c2 != 0:
+        critical, _, _, _ = statue_balance(body, c2)
+        if c2 * state.theta2 >= critical:
+            return False
+    if c1 != 0:
+        critical, _, _, _ = balance(body, c1, c2)
+        if c1 * state.theta1 >= critical:
+            return False
+    return True
+
+
+@inlined_kernel
+def _put_down(case, outcome):
+    """Write down what remains of a case."""
+    outcome.fallen = case.fallen
+    outcome.certain = case.k - case.first
+    outcome.peak1, outcome.peak2 = case.peak1, case.peak2
+    outcome.fast, outcome.closest = case.fast, math.sqrt(case.near)
+    outcome.impacts, outcome.given_way = case.impacts, case.given_way
+
+
+@kernel
+def _take_up(case, number, ensemble, motions, worker):
+    """Begin a case in a slot, at rest."""
+    body, motion, scale = place_of(number, ensemble)
+    h = ensemble.intervals[body, motion]
+    slot = case.slot
+    if case.body != body or case.interval != h:
+        record, scratch = ensemble.bodies[body], worker.state
+        fill_constants(
+            record, h, worker.ones[slot], worker.twos[slot], worker.impacts[slot], scratch
+        )
+        fill_restoring(record, worker.restoring[slot], scratch)
+        case.low, case.high = rest_interval(record, scratch)
+        case.barrier = barrier(record)
+    case.number, case.body, case.interval = number, body, h
+    case.gravity, case.weight = ensemble.bodies[body].gravity, 1.0
+    case.part = ensemble.parts[body, motion]
+    case.factor = ensemble.factors[motion, scale]
+    sampled = ensemble.rows[body, motion]
+    case.first, case.last = motions.offsets[sampled], motions.lasts[sampled]
+    case.free_last = case.last + ensemble.free[body, motion]
+    case.k, case.tau = case.first, 0.0
+    case.c1, case.c2, case.fallen, case.crowded, case.impacts, case.given_way = 0, 0, 0, -1, 0, 0
+    case.peak1, case.peak2, case.fast, case.near = 0.0, 0.0, 0.0, math.inf
+
+
+@kernel
+def to_state(case, state):
+    """Write a case's state with rates per second."""
+    h = case.interval
+    state.c1, state.c2, state.ground = case.c1, case.c2, case.ground
+    state.gravity = case.weight * case.gravity
+    state.theta1, state.omega1 = case.theta1, case.omega1 / h
+    state.theta2, state.omega2 = case.theta2, case.omega2 / h
+
+
+@inlined_kernel
+def _ahead(case, motions):
+    """The ground from the case's instant on."""
+    factor, interval = case.factor, case.interval
+    return Ahead(motions.samples, motions.vertical, factor, case.last, case.k, case.tau, interval)
+
+
+# --------------------------------------------------------------------------- events
+
+
+@kernel
+def event_of_one(i, case, worker, ensemble, motions, g):
+    """Take a case in lane i of those of one rotation to its event or to the step's end, and through the event.
+
+    Returns
+    -------
+    Whether ground and interface close and ``general_impact`` has to say what comes of it.
+    """
+    lane, series = worker.one, worker.series[i]
+    if lane.flag[i] == RELEASE and lane.has_before[i] == 1.0:
+        # it let go in the sample before
+        stack_one.go_back(lane, i, g, motions.vertical.size > 0)
+        case.k -= 1
+    stack_one.take_series(lane, i, series)
+    c1, c2 = case.c1, case.c2
+    left = lane.was_left[i]
+    constants = worker.ones[case.slot, number_of(c1, c2)]
+    when, fails = stack_one.next_event(constants, lane, i, series, g)
+    at = min(1.0, when)
+    theta, omega = value(series.one.angle, at), slope(series.one.angle, at) / left
+    peak, case.fast, case.near = stack_one.nearest(lane, i, theta, omega)
+    if c2 == 0:
+        case.peak1 = peak
+        case.theta1, case.omega1 = theta, omega
+    else:
+        case.peak2 = peak
+        case.theta1, case.omega1 = 0.0, 0.0
+    case.theta2, case.omega2 = theta, omega
+    case.tau = 1.0
+    if when > 1.0:
+        return False, False
+    case.tau -= left * (1.0 - at)
+    case.ground, case.weight = stack_one.pull_at(lane, i, at)
+    body = ensemble.bodies[case.body]
+    _count_event(case)
+    if fails:
+        to_state(case, worker.state)
+        contact = GROUND if c1 == 0 else INTERFACE
+        case.c1, case.c2 = release(body, worker.state, contact, at == 0.0)
+        return False, False
+    case.impacts += 1
+    case.theta1, case.theta2 = 0.0, 0.0
+    if _forced(case) or not _land_alone(case, worker, body, g, motions):
+        return c1 != 0, c2 != 0
+    return False, False
+
+
+@kernel
+def find_events_of_two(stops, worker):
+    """Find the events of lanes of two rotations, before any case goes through one.
+
+    Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
+    Lanes of one rotation have too few events in a pass to gain by it.
+    """
+    lane = worker.two
+    while stops != 0:
+        i = lowest_bit(stops)
+        stops &= stops - 1
+        if lane.slot[i] >= 0 and lane.flag[i] > QUIET:
+            case, series = worker.cases[lane.slot[i]], worker.series[i]
+            stack_two.take_series(lane, i, series)
+            lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_event(
+                case.c1, case.c2, lane.flag[i], series
+            )
+
+
+@kernel
+def event_of_two(i, case, worker, ensemble, motions, g):
+    """Take a case in lane i of those of two rotations through the event that was found, or to the step's end.
+
+    Returns
+    -------
+    Whether ground and interface close and ``general_impact`` has to say what comes of it.
+    """
+    lane, series = worker.two, worker.series[i]
+    left = lane.was_left[i]
+    span = stack_two.span_of(left, lane.part[i])
+    when, closes1, closes2 = lane.when[i], lane.closes1[i] != 0, lane.closes2[i] != 0
+    at = min(1.0, when)
+    t1, w1 = value(series.one.angle, at), slope(series.one.angle, at) / span
+    t2, w2 = value(series.two.angle, at), slope(series.two.angle, at) / span
+    case.peak1, case.peak2, case.fast, case.near = stack_two.nearest(lane, i, (t1, w1, t2, w2))
+    case.tau = 1.0 - left + span * at
+    case.theta1, case.omega1, case.theta2, case.omega2 = t1, w1, t2, w2
+    if when > 1.0:
+        return False, False
+    rise = lane.ground_end[i] - lane.was_ground[i]
+    lift = lane.weight_end[i] - lane.was_weight[i]
+    case.ground = lane.was_ground[i] + rise * (at * span / left)
+    case.weight = lane.was_weight[i] + lift * (at * span / left)
+    _count_event(case)
+    if closes1:
+        case.theta1 = 0.0
+    if closes2:
+        case.theta2 = case.theta1
+    case.impacts += 1
+    if (
+        closes1 == closes2
+        or ensemble.bodies[case.body].measured
+        or _forced(case)
+        or not close_one(case, worker, closes1, g, motions)
+    ):
+        return closes1, closes2
+    return False, False
+
+
+@kernel
+def general_impact(case, worker, body, closes, motions):
+    """Take a case through the closing of contacts as single histories do."""
+    state = worker.state
+    to_state(case, state)
+    ahead = _ahead(case, motions)
+    restoring = worker.restoring[case.slot]
+    _, gave_way = land(body, state, closes, restoring, ahead, VERDICT, _forced(case))
+    case.given_way += gave_way
+    h = case.interval
+    case.c1, case.c2, case.omega1, case.omega2 = (
+        state.c1,
+        state.c2,
+        state.omega1 * h,
+        state.omega2 * h,
+    )
+
+
+@inlined_kernel
+def _land_alone(case, worker, body, g, motions):
+    """Take what rocks alone through its landing by the constants; whether that was possible."""
+    slot = case.slot
+    landing = worker.impacts[slot, number_of(case.c1, case.c2)]
+    n1, n2 = landing.next1, landing.next2
+    omega = abs(case.omega2)
+    v1, v2 = omega * landing.after1, omega * landing.after2
+    h = case.interval
+    # a contact that comes off slower than this stays closed
+    slow = VERDICT.closing_speed * h
+    slow1 = n1 != 0 and abs(v1) < slow
+    slow2 = n2 != 0 and abs(v2 - v1) < slow
+    rests = (n1 == 0 or slow1) and (n2 == 0 or slow2)
+    if (slow1 or slow2) and not rests:
+        return False
+    speed = max(abs(v1), abs(v2)) / h
+    restoring = worker.restoring[slot]
+    if not rests and speed < restoring.fastest:
+        ahead = _ahead(case, motions)
+        rests = dies_out(speed, landing.share, 1.5, restoring, VERDICT.drop, ahead)
+    if rests:
+        n1, n2, v1, v2 = 0, 0, 0.0, 0.0
+    if n1 == 0 and n2 == 0:
+        settled = case.low * case.weight < case.ground < case.high * case.weight
+    elif n1 == 0 or n2 == 0:
+        constants = worker.ones[slot, number_of(n1, n2)]
+        pull = case.ground, case.weight
+        settled = stack_one.least_hold(constants, 0.0, v2, pull, g) > 0.0
+    else:
+        settled = True
+    case.c1, case.c2, case.omega1, case.omega2 = n1, n2, v1, v2
+    case.given_way += landing.gives_way
+    if not settled:
+        to_state(case, worker.state)
+        case.c1, case.c2 = settle(body, worker.state)
+    return True
+
+
+@inlined_kernel
+def close_one(case, worker, ground, g, motions):
+    """Take two rocking blocks through the closing of one contact by the constants; whether that was possible."""
+    c1, c2, omega1, omega2 = case.c1, case.c2, case.omega1, case.omega2
+    constants, number = worker.twos[case.slot], number_of(c1, c2)
+    before, products = constants[number], worker.impacts[case.slot, number]
+    sine, cosine = quick_sine_cosine(case.theta2)
+    if ground:
+        n1, n2 = -c1, c2
+        after = constants[number_of(n1, n2)]
+        v1, v2 = ground_impact(before, after, products.ground, (cosine, sine), omega1, omega2)
+        side, off, old = n1, v1, omega1
+        gap, toward = abs(case.theta2), c2 * (v1 - v2)
+    else:
+        n1, n2 = c1, -c2
+        after = constants[number_of(n1, n2)]
+        v1, v2 = interface_impact(after, products, omega1, omega2)
+        side, off, old = n2, v2 - v1, omega2 - omega1
+        gap, toward = abs(case.theta1), -c1 * v1
+    if side * off <= VERDICT.closing_speed * case.interval:
+        return False
+    # half the time in which the other contact would close
+    longest = 0.5 * gap / toward if toward > 0.0 else math.inf
+    hop = Hop(ground, side, old, cosine, sine, v1, v2)
+    if may_close(hop, before, after, longest, g, _ahead(case, motions)):
+        v1, v2 = closed(hop, after)
+        if ground:
+            n1 = 0
+        else:
+            n2 = 0
+    case.c1, case.c2, case.omega1, case.omega2 = n1, n2, v1, v2
+    return True
+
+
+@inlined_kernel
+def _count_event(case):
+    """Count an event of a case within its sample."""
+    if case.crowded != case.k:
+        case.crowded = case.k
+        case.crowd = 0
+    case.crowd += 1
+
+
+@inlined_kernel
+def _forced(case):
+    """Whether its sample has had so many events that contacts must stay closed."""
+    return case.crowd > MAX_EVENTS_PER_STEP
+
+
+@inlined_kernel
+def after_event(case):
+    """Take a case that has been through its event, or to the end of its step, to the sample that it is in."""
+    crowded = case.crowded == case.k and case.crowd > MAX_EVENTS_PER_STEP + 20
+    if case.tau >= 1.0 - 1e-13 or crowded:
+        case.tau = 0.0
+        case.k += 1
+    if abs(case.theta1) >= HALF_TURN:
+        case.fallen = 1
+    elif max(abs(case.theta2), abs(case.theta2 - case.theta1)) >= HALF_TURN:
+        case.fallen = 2
+
+
+# --------------------------------------------------------------------------- in and out of lanes
+
+
+@inlined_kernel
+def place_one(i, case, worker, motions):
+    """Place a case into lane i of those of one rotation."""
+    lane, one = worker.one, worker.ones[case.slot, number_of(case.c1, case.c2)]
+    lane.gx[i], lane.gy[i] = one.gx, one.gy
+    lane.per_angle[i], lane.per_speed[i] = one.per_angle, one.per_speed
+    for n in range(HOLD):
+        lane.right[n, i], lane.left[n, i] = one.right[n, 0], one.left[n, 0]
+    lane.side[i] = case.c1 + case.c2
+    lane.theta[i], lane.omega[i] = case.theta2, case.omega2
+    lane.factor[i], lane.part_left[i] = case.factor, 1.0 - case.tau
+    lane.ground[i], lane.ground_end[i] = _ground(case, motions.samples)
+    lane.weight[i], lane.weight_end[i] = _weight(case, motions)
+    lane.has_step[i] = 0.0
+    lane.ratio[i] = case.peak1 if case.c2 == 0 else case.peak2
+    lane.fast[i], lane.near[i] = case.fast, case.near
+
+
+@inlined_kernel
+def place_two(i, case, worker, motions):
+    """Place a case into lane i of those of two rotations."""
+    lane, two = worker.two, worker.twos[case.slot, number_of(case.c1, case.c2)]
+    lane.v1x[i], lane.v1y[i], lane.v2x[i], lane.v2y[i] = two.v1x, two.v1y, two.v2x, two.v2y
+    lane.m11[i], lane.m22[i], lane.e[i], lane.f[i] = two.m11, two.m22, two.e, two.f
+    lane.per_angle1[i], lane.per_angle2[i] = two.per_angle1, two.per_angle2
+    lane.per_speed1[i], lane.per_speed2[i] = two.per_speed1, two.per_speed2
+    lane.side1[i], lane.side2[i] = case.c1, case.c2
+    lane.theta1[i], lane.omega1[i] = case.theta1, case.omega1
+    lane.theta2[i], lane.omega2[i] = case.theta2, case.omega2
+    lane.factor[i], lane.part_left[i], lane.part[i] = case.factor, 1.0 - case.tau, case.part
+    lane.ground[i], lane.ground_end[i] = _ground(case, motions.samples)
+    lane.weight[i], lane.weight_end[i] = _weight(case, motions)
+    lane.ratio1[i], lane.ratio2[i] = case.peak1, case.peak2
+    lane.fast[i], lane.near[i] = case.fast, case.near
+
+
+@inlined_kernel
+def _weight(case, motions):
+    """Weight at the time of a case and at the end of its sample."""
+    before = weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
+    after = weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
+    return before + case.tau * (after - before), after
+
+
+@inlined_kernel
+def _ground(case, samples):
+    """Acceleration of the ground at the time of a case and at the end of its sample."""
+    before = case.factor * samples[case.k] if case.k <= case.last else 0.0
+    after = case.factor * samples[case.k + 1] if case.k < case.last else 0.0
+    return before + case.tau * (after - before), after
+
+
+@inlined_kernel
+def store_one(i, case, lane):
+    """Store what lane i of those of one rotation has reached at the end of a sample."""
+    theta, omega = lane.theta[i], lane.omega[i]
+    case.theta2, case.omega2 = theta, omega
+    if case.c2 == 0:
+        case.theta1, case.omega1, case.peak1 = theta, omega, lane.ratio[i]
+    else:
+        case.theta1, case.omega1, case.peak2 = 0.0, 0.0, lane.ratio[i]
+    case.fast, case.near, case.tau = lane.fast[i], lane.near[i], 0.0
+
+
+@inlined_kernel
+def store_two(i, case, lane):
+    """Store what lane i of those of two rotations has reached at the end of a sample."""
+    case.theta1, case.omega1 = lane.theta1[i], lane.omega1[i]
+    case.theta2, case.omega2 = lane.theta2[i], lane.omega2[i]
+    case.peak1, case.peak2 = lane.ratio1[i], lane.ratio2[i]
+    case.fast, case.near, case.tau = lane.fast[i], lane.near[i], 0.0

@@ -1,0 +1,178 @@
+"""The constants of a stack: all that its contact states fix, so that lanes and events need only look it up.
+
+Time is counted in samples, so lengths of time in the constants carry the sampling interval.
+"""
+
+import math
+
+import numpy as np
+
+from rockfrag.elementary import hypot
+from rockfrag.engines.kernels.equations import (
+    arm1,
+    arm2,
+    balance,
+    coupling,
+    first_moment1,
+    first_moment2,
+    inertia1,
+    inertia2,
+    kinetic_energy,
+    pole,
+    reach,
+    statue_balance,
+)
+from rockfrag.engines.kernels.impact import impact
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+
+HOLD = 12
+"""Coefficients of what holds a closed contact at a corner: of (1, sin θ, cos θ) θ'', (1, sin θ, cos θ) θ'²,
+(1, sin θ, cos θ) of the ground, and (1, sin θ, cos θ) of gravity."""
+
+ONE = np.dtype(
+    [
+        # first moments about the pole times g over the moment of inertia, per sample²
+        ("gx", np.float64), ("gy", np.float64),
+        ("per_angle", np.float64),  # 1 over the critical angle, positive on the side of the pole
+        ("per_speed", np.float64),  # (1 over critical angle, frequency and interval)²
+        ("right", np.float64, (HOLD, 1)), ("left", np.float64, (HOLD, 1)),  # corners of the closed contact
+    ]
+)  # fmt: skip
+"""A contact state in which one rotates: the statue (pattern 4), or both blocks as one (pattern 3)."""
+
+TWO = np.dtype(
+    [
+        # first moments per sample²
+        ("v1x", np.float64), ("v1y", np.float64), ("v2x", np.float64), ("v2y", np.float64),
+        ("m11", np.float64), ("m22", np.float64), ("e", np.float64), ("f", np.float64),
+        ("per_angle1", np.float64), ("per_angle2", np.float64),
+        ("per_speed1", np.float64), ("per_speed2", np.float64),
+    ]
+)  # fmt: skip
+"""A contact state in which both rotate (patterns 1 and 2)."""
+
+IMPACT = np.dtype(
+    [
+        # products of the velocity fields before and after one contact of two closes
+        ("ground", np.float64),
+        ("both11", np.float64), ("both12", np.float64), ("both21", np.float64), ("both22", np.float64),
+        # landing of what rocks alone: contacts and velocities after it at unit speed, √ of the energy left, and
+        # whether the law of a measured restitution has to give way in it
+        ("next1", np.int64), ("next2", np.int64),
+        ("after1", np.float64), ("after2", np.float64), ("share", np.float64), ("gives_way", np.int64),
+    ]
+)  # fmt: skip
+"""Impacts out of a contact state."""
+
+
+@inlined_kernel
+def number_of(c1, c2):
+    """Place of a contact state among the nine."""
+    return 3 * c1 + c2 + 4
+
+
+@kernel
+def fill_constants(body, h, one, two, impacts, scratch):
+    """Fill the constants of the nine contact states of a body for a sampling interval h [s]."""
+    hh = h * h
+    for c1 in (-1, 0, 1):
+        for c2 in (-1, 0, 1):
+            at = number_of(c1, c2)
+            if c1 != 0 and c2 != 0:
+                _both_rotate(body, c1, c2, hh, two[at])
+                _closing(body, c1, c2, impacts[at])
+            elif c1 != 0 or c2 != 0:
+                _one_rotates(body, c1, c2, hh, one[at])
+                _landing(body, c1, c2, impacts[at], scratch)
+
+
+@kernel
+def _one_rotates(body, c1, c2, hh, one):
+    if c1 != 0:
+        critical, vx, vy, inertia = balance(body, c1, c2)
+    else:
+        critical, vx, vy, inertia = statue_balance(body, c2)
+    for corner in (1.0, -1.0):
+        hold = one.right if corner > 0.0 else one.left
+        for n in range(HOLD):
+            hold[n, 0] = 0.0
+        if c1 != 0:
+            _interface_hold(body, pole(c1), corner, hh, hold)
+        else:
+            _ground_hold(body, corner, pole(c2), hh, hold)
+    per = hh * body.gravity / inertia
+    one.gx, one.gy = per * vx, per * vy
+    one.per_angle = (c1 + c2) / critical
+    one.per_speed = 1.0 / (per * hypot(vx, vy) * critical * critical)
+
+
+@kernel
+def _both_rotate(body, c1, c2, hh, two):
+    s1, s2 = pole(c1), pole(c2)
+    two.m11, two.m22 = inertia1(body, s1, s2), inertia2(body, s2)
+    two.e, two.f = coupling(body, s1, s2)
+    scale = hh * body.gravity
+    critical, vx, vy, inertia = balance(body, c1, c2)
+    two.v1x, two.v1y = hh * vx, hh * vy
+    two.per_angle1 = c1 / critical
+    two.per_speed1 = inertia / (scale * hypot(vx, vy) * critical * critical)
+    critical, vx, vy, inertia = statue_balance(body, c2)
+    two.v2x, two.v2y = hh * vx, hh * vy
+    two.per_angle2 = c2 / critical
+    two.per_speed2 = inertia / (scale * hypot(vx, vy) * critical * critical)
+
+
+@kernel
+def _ground_hold(body, s1, s2, hh, hold):
+    """Moment of the ground on a standing pedestal in pattern 4 (``equations.ground_hold``)."""
+    e, f = coupling(body, s1, s2)
+    vx, vy = first_moment1(body, s1, s2)
+    # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
+    hold[1, 0], hold[2, 0] = s1 * f, s1 * e
+    hold[4, 0], hold[5, 0] = -s1 * e, s1 * f
+    hold[6, 0] = s1 * hh * vy
+    hold[9, 0] = -s1 * hh * body.gravity * vx
+
+
+@kernel
+def _interface_hold(body, s1, s2, hh, hold):
+    """Moment of the interface on the statue that turns with its pedestal (``equations.interface_hold``)."""
+    e, f = coupling(body, s1, s2)
+    vx, vy = first_moment2(body, s2)
+    # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
+    hold[0, 0] = s2 * (e + inertia2(body, s2))
+    hold[3, 0] = -s2 * f
+    weight = s2 * hh * body.gravity
+    hold[7, 0], hold[8, 0] = -s2 * hh * vx, s2 * hh * vy
+    hold[10, 0], hold[11, 0] = -weight * vy, -weight * vx
+
+
+@kernel
+def _closing(body, c1, c2, products):
+    """Closing of one contact while the other stays open."""
+    s1, s2 = pole(c1), pole(c2)
+    ax, ay = arm1(body, s1)
+    bx, by = arm1(body, -s1)
+    dx, dy = reach(body, s1, s2)
+    ex, ey = reach(body, -s1, s2)
+    products.ground = body.i1 + body.m1 * (ax * bx + ay * by) + body.m2 * (dx * ex + dy * ey)
+    ex, ey = reach(body, s1, -s2)
+    rx, ry = arm2(body, s2)
+    sx, sy = arm2(body, -s2)
+    products.both11 = body.i1 + body.m1 * (ax * ax + ay * ay) + body.m2 * (dx * ex + dy * ey)
+    products.both12 = body.m2 * (ex * rx + ey * ry)
+    products.both21 = body.m2 * (dx * sx + dy * sy)
+    products.both22 = body.i2 + body.m2 * (rx * sx + ry * sy)
+
+
+@kernel
+def _landing(body, c1, c2, products, scratch):
+    """Landing of what rocks alone: the outcome is the same for every speed but for its size."""
+    scratch.c1, scratch.c2, scratch.theta1, scratch.theta2 = c1, c2, 0.0, 0.0
+    scratch.omega1, scratch.omega2 = -1.0 * c1, -1.0 * (c1 + c2)
+    n1, n2, w1, w2, gives_way = impact(body, scratch, c1 != 0, c2 != 0)
+    before = kinetic_energy(body, scratch)
+    scratch.c1, scratch.c2, scratch.omega1, scratch.omega2 = n1, n2, w1, w2
+    after = kinetic_energy(body, scratch)
+    products.next1, products.next2, products.after1, products.after2 = n1, n2, w1, w2
+    products.share, products.gives_way = math.sqrt(after / before), gives_way

@@ -1,0 +1,275 @@
+"""Stacks side by side of which one part rotates: the statue on its pedestal, or both blocks as one.
+
+One pass advances every lane from where it is within a sample to the end of that sample.  Time is counted in
+samples.
+"""
+
+import numpy as np
+
+from rockfrag.engines.kernels.contact_states import HALF_TURN
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+from rockfrag.engines.kernels.lanes.case import CLOSES, LANES, NEARS, QUIET, RELEASE
+from rockfrag.engines.kernels.lanes.stack_constants import HOLD
+from rockfrag.engines.kernels.roots import (
+    NEVER,
+    closing_time,
+    crossing_time,
+    dips,
+    guess_between,
+    hops,
+    is_narrow,
+    narrowed,
+    slope,
+    value,
+)
+from rockfrag.engines.kernels.taylor import (
+    ORDER,
+    keep_rates,
+    quick_sine_cosine,
+    rate_at,
+    rates_of_one,
+    travel,
+)
+
+_F = np.float64
+
+LANE = np.dtype(
+    [
+        ("slot", np.int64, LANES),  # of the case, -1 for none
+        ("k", np.int64, LANES), ("last", np.int64, LANES),  # sample it has reached, last one of its motion
+        ("following", np.int64, LANES),  # the sample after the one it has reached, if its motion has one
+        # constants of its contact state (stack_constants.ONE), and the side that the rocking contact opens to
+        ("gx", _F, LANES), ("gy", _F, LANES), ("per_angle", _F, LANES), ("per_speed", _F, LANES),
+        ("right", _F, (HOLD, LANES)), ("left", _F, (HOLD, LANES)),
+        ("side", _F, LANES),
+        ("factor", _F, LANES),  # scale of its motion
+        ("ground_end", _F, LANES),  # acceleration of the ground at the end of the sample
+        # gravity over that of a ground that does not move vertically, at the end of the sample
+        ("weight_end", _F, LANES),
+        # the state; the acceleration of the ground, and the weight; the part of the sample that is left
+        ("theta", _F, LANES), ("omega", _F, LANES), ("ground", _F, LANES), ("weight", _F, LANES),
+        ("part_left", _F, LANES),
+        # extremes so far: of θ/θcritical, |θ'|, and distance from balance squared
+        ("ratio", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
+        ("flag", _F, LANES),
+        # these where the step began ...
+        ("was_theta", _F, LANES), ("was_omega", _F, LANES), ("was_ground", _F, LANES), ("was_left", _F, LANES),
+        ("was_weight", _F, LANES),
+        ("was_ratio", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
+        # ... and where the step before that began, if it was of the same lane's case
+        ("before_theta", _F, LANES), ("before_omega", _F, LANES), ("before_ground", _F, LANES),
+        ("before_weight", _F, LANES), ("before_left", _F, LANES),
+        ("has_before", _F, LANES), ("has_step", _F, LANES),
+        ("rates", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6 of θ'
+    ],
+    align=True,
+)  # fmt: skip
+"""The lanes: a row of LANES numbers for each quantity."""
+
+
+@inlined_kernel
+def _moment(hold, i, turn, alpha, square, pull):
+    """Contact moment of a closed contact at one corner.
+
+    ``turn``: sine and cosine of θ; ``pull``: acceleration of the ground, and weight.
+    """
+    ground, weight = pull
+    s, c = turn
+    moment = (hold[0, i] + hold[1, i] * s + hold[2, i] * c) * alpha
+    moment += (hold[3, i] + hold[4, i] * s + hold[5, i] * c) * square
+    moment += (hold[6, i] + hold[7, i] * s + hold[8, i] * c) * ground
+    return moment + weight * (hold[9, i] + hold[10, i] * s + hold[11, i] * c)
+
+
+@inlined_kernel
+def _rates(g_over_inertia, turn, w, left, ground, weight):
+    """Taylor coefficients of θ' over the rest of a sample.
+
+    ``ground``: over -g, at its beginning, and what it grows by; ``weight`` as in ``taylor.pulled``.
+    """
+    (gx, gy), (s, c) = g_over_inertia, turn
+    return rates_of_one((gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight)
+
+
+@kernel
+def advance(lane, g, upward):
+    """Advance every lane to the end of its sample, and flag those with an event in between.
+
+    ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
+    """
+    if upward:
+        _advance(lane, g, True)
+    else:
+        _advance(lane, g, False)
+
+
+@inlined_kernel
+def _advance(lane, g, upward):
+    """Advance every lane; ``upward`` is known where this is compiled into ``advance``.
+
+    Everything is stored in every lane: conditional stores cost many times as much.
+    """
+    down = -1.0 / g
+    for i in range(LANES):
+        left = lane.part_left[i]
+        theta = lane.theta[i]
+        omega = lane.omega[i]
+        a = lane.ground[i]
+        a_end = lane.ground_end[i]
+        per = 1.0 / left
+        w = omega * left
+        turn = quick_sine_cosine(theta)
+        u = lane.weight[i] if upward else 1.0
+        u_end = lane.weight_end[i] if upward else 1.0
+        ground = a * down, (a_end - a) * down
+        weight = u, u_end - u, upward
+        rates = _rates((lane.gx[i], lane.gy[i]), turn, w, left, ground, weight)
+        keep_rates(lane.rates, i, rates)
+        end = theta + travel(rates, 1.0)
+        z = rate_at(rates, 1.0)
+        # the contact closes, nearly closes, or may close and open again
+        side = lane.side[i]
+        gap = side * theta
+        out = side * w
+        out_end = side * z
+        near = dips(gap, out, out_end) | hops(gap, out, out_end, side * rates[1])
+        flag = NEARS if near | (abs(end) >= HALF_TURN) else QUIET
+        flag = CLOSES if side * end < 0.0 else flag
+        # the closed contact would have to be pulled
+        square = omega * omega
+        alpha = rates[1] * per * per
+        right = _moment(lane.right, i, turn, alpha, square, (a, u))
+        other = _moment(lane.left, i, turn, alpha, square, (a, u))
+        lane.flag[i] = RELEASE if (right < 0.0) | (other < 0.0) else flag
+        lane.before_theta[i] = lane.was_theta[i]
+        lane.before_omega[i] = lane.was_omega[i]
+        lane.before_ground[i] = lane.was_ground[i]
+        lane.before_left[i] = lane.was_left[i]
+        lane.has_before[i] = lane.has_step[i]
+        lane.has_step[i] = 1.0
+        lane.was_theta[i] = theta
+        lane.was_omega[i] = omega
+        lane.was_ground[i] = a
+        lane.was_left[i] = left
+        lane.theta[i] = end
+        z = z * per
+        lane.omega[i] = z
+        lane.ground[i] = a_end
+        if upward:
+            lane.before_weight[i] = lane.was_weight[i]
+            lane.was_weight[i] = u
+            lane.weight[i] = u_end
+        lane.part_left[i] = 1.0
+        was_ratio, was_fast, was_near = lane.ratio[i], lane.fast[i], lane.near[i]
+        lane.was_ratio[i], lane.was_fast[i], lane.was_near[i] = was_ratio, was_fast, was_near
+        ratio = lane.per_angle[i] * end
+        away = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * z * z
+        lane.ratio[i] = max(was_ratio, ratio)
+        lane.fast[i] = max(was_fast, abs(z))
+        lane.near[i] = min(was_near, away)
+
+
+@inlined_kernel
+def take_series(lane, i, series):
+    """Copy the series of a lane's step out, and fill that of the gap."""
+    angle, gap, side = series.one.angle, series.gap, lane.side[i]
+    angle[0] = lane.was_theta[i]
+    angle[1] = lane.was_omega[i] * lane.was_left[i]
+    for n in range(ORDER - 1):
+        angle[2 + n] = lane.rates[n, i] * (1.0 / (n + 2))
+    for n in range(ORDER + 1):
+        gap[n] = side * angle[n]
+
+
+@kernel
+def go_back(lane, i, g, upward):
+    """Put a lane back to where its last step began, and work its series out again, to the same bits."""
+    theta, omega, left = lane.before_theta[i], lane.before_omega[i], lane.before_left[i]
+    end, a = lane.was_ground[i], lane.before_ground[i]
+    lane.was_theta[i], lane.was_omega[i], lane.was_left[i] = theta, omega, left
+    lane.ground_end[i], lane.was_ground[i] = end, a
+    heavy, u = lane.was_weight[i], lane.before_weight[i]
+    lane.weight_end[i], lane.was_weight[i] = heavy, u
+    down = -1.0 / g
+    ground = a * down, (end - a) * down
+    turn = quick_sine_cosine(theta)
+    rates = _rates(
+        (lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u, upward)
+    )
+    keep_rates(lane.rates, i, rates)
+
+
+@inlined_kernel
+def next_event(one, lane, i, series, g):
+    """Time in the lane's step of its next event, NEVER if there is none; whether the closed contact lets go."""
+    if lane.flag[i] == CLOSES:
+        when = crossing_time(series.gap)
+        omega = slope(series.one.angle, when) / lane.was_left[i]
+        if least_hold(one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
+            return when, False
+    else:
+        when = closing_time(series.gap, 1.0)
+    time = _release_time(one, lane, i, series, min(1.0, when), g)
+    if time < when:
+        return time, True
+    return when, False
+
+
+@inlined_kernel
+def pull_at(lane, i, tau):
+    """Acceleration of the ground, and weight, in the lane's step."""
+    ground, weight = lane.was_ground[i], lane.was_weight[i]
+    return (
+        ground + (lane.ground_end[i] - ground) * tau,
+        weight + (lane.weight_end[i] - weight) * tau,
+    )
+
+
+@kernel
+def least_hold(one, theta, omega, pull, g):
+    """Least contact moment of the closed contact; negative if it would have to pull.
+
+    ``pull``: acceleration of the ground, and weight.
+    """
+    ground, weight = pull
+    turn = quick_sine_cosine(theta)
+    s, c = turn
+    alpha = weight * (one.gx * c + one.gy * s) - ground / g * (one.gy * c - one.gx * s)
+    return min(
+        _moment(one.right, 0, turn, alpha, omega * omega, pull),
+        _moment(one.left, 0, turn, alpha, omega * omega, pull),
+    )
+
+
+@kernel
+def _release_time(one, lane, i, series, end, g):
+    """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
+    angle, left = series.one.angle, lane.was_left[i]
+    at_low = least_hold(one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g)
+    if at_low < 0.0:
+        return 0.0
+    omega = slope(angle, end) / left
+    at_high = least_hold(one, value(angle, end), omega, pull_at(lane, i, end), g)
+    if at_high >= 0.0:
+        return NEVER
+    bracket = (0.0, at_low, end, at_high, -1)
+    for _ in range(200):
+        if is_narrow(bracket):
+            break
+        tau = guess_between(bracket)
+        omega = slope(angle, tau) / left
+        hold = least_hold(one, value(angle, tau), omega, pull_at(lane, i, tau), g)
+        bracket = narrowed(bracket, tau, hold)
+    return bracket[2]
+
+
+@inlined_kernel
+def nearest(lane, i, theta, omega):
+    """Largest θ/θcritical, |θ'| and least distance from balance squared, up to an event at θ, θ'."""
+    ratio = lane.per_angle[i] * theta
+    near = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * omega * omega
+    return (
+        max(lane.was_ratio[i], ratio),
+        max(lane.was_fast[i], abs(omega)),
+        min(lane.was_near[i], near),
+    )

@@ -1,0 +1,213 @@
+"""Stacks side by side of which both blocks rotate, the ground and the interface being open.
+
+One pass advances every lane by one step, which ends with its sample or takes the largest part of it that is
+allowed. Time is counted in samples.
+"""
+
+import numpy as np
+
+from rockfrag.engines.kernels.contact_states import GROUND, HALF_TURN, INTERFACE
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+from rockfrag.engines.kernels.lanes.case import CLOSES, LANES, NEARS, QUIET, WITHIN
+from rockfrag.engines.kernels.roots import NEVER, crossing_time, dips, hops
+from rockfrag.engines.kernels.single import fill_gap, first_closing
+from rockfrag.engines.kernels.taylor import (
+    ORDER,
+    keep_rates,
+    quick_sine_cosine,
+    rate_at,
+    rates_of_two,
+    travel,
+)
+
+_F = np.float64
+
+LANE = np.dtype(
+    [
+        ("slot", np.int64, LANES),  # of the case, -1 for none
+        ("k", np.int64, LANES), ("last", np.int64, LANES),  # sample it has reached, last one of its motion
+        ("following", np.int64, LANES),  # the sample after the one it has reached, if its motion has one
+        # constants of its contact state (stack_constants.TWO), and the sides that its contacts open to
+        ("v1x", _F, LANES), ("v1y", _F, LANES), ("v2x", _F, LANES), ("v2y", _F, LANES),
+        ("m11", _F, LANES), ("m22", _F, LANES), ("e", _F, LANES), ("f", _F, LANES),
+        ("per_angle1", _F, LANES), ("per_angle2", _F, LANES),
+        ("per_speed1", _F, LANES), ("per_speed2", _F, LANES),
+        ("side1", _F, LANES), ("side2", _F, LANES),
+        ("factor", _F, LANES),  # scale of its motion
+        ("part", _F, LANES),  # the largest part of a sample that a step may take
+        # at the end of the sample: acceleration of the ground, and gravity over that of a ground that does not
+        # move vertically
+        ("ground_end", _F, LANES), ("weight_end", _F, LANES),
+        # the state; the acceleration of the ground, and the weight; the part of the sample that is left
+        ("theta1", _F, LANES), ("omega1", _F, LANES), ("theta2", _F, LANES), ("omega2", _F, LANES),
+        ("ground", _F, LANES), ("weight", _F, LANES), ("part_left", _F, LANES),
+        # extremes so far: of θ/θcritical, |θ2'|, and distance from balance squared
+        ("ratio1", _F, LANES), ("ratio2", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
+        ("flag", _F, LANES),
+        # time of its event in the step, whether ground and interface close then (numba has no rows of booleans)
+        ("when", _F, LANES), ("closes1", np.int64, LANES), ("closes2", np.int64, LANES),
+        # these where the step began
+        ("was_theta1", _F, LANES), ("was_omega1", _F, LANES),
+        ("was_theta2", _F, LANES), ("was_omega2", _F, LANES),
+        ("was_ground", _F, LANES), ("was_weight", _F, LANES), ("was_left", _F, LANES),
+        ("was_ratio1", _F, LANES), ("was_ratio2", _F, LANES), ("was_fast", _F, LANES), ("was_near", _F, LANES),
+        ("rates1", _F, (ORDER - 1, LANES)), ("rates2", _F, (ORDER - 1, LANES)),  # Taylor coefficients 1 to 6
+    ],
+    align=True,
+)  # fmt: skip
+"""The lanes: a row of LANES numbers for each quantity."""
+
+REMNANT = 1e-12
+"""Part of a sample that is not worth a step of its own."""
+
+
+@inlined_kernel
+def span_of(left, part):
+    """Length of a step with so much of the sample left and so large a part of it allowed."""
+    return left if left <= part + REMNANT else part
+
+
+@kernel
+def advance(lane, g, upward):
+    """Advance every lane by a step, and flag those with an event in it.
+
+    ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
+    """
+    if upward:
+        _advance(lane, g, True)
+    else:
+        _advance(lane, g, False)
+
+
+@inlined_kernel
+def _advance(lane, g, upward):
+    """Advance every lane by a step; ``upward`` is known where this is compiled into ``advance``.
+
+    A lane is QUIET at the end of its sample, and WITHIN it after a step that does not reach that end.
+    Everything is stored in every lane: conditional stores cost many times as much.
+    """
+    for i in range(LANES):
+        left = lane.part_left[i]
+        span = span_of(left, lane.part[i])
+        scale = span * span
+        t1 = lane.theta1[i]
+        t2 = lane.theta2[i]
+        omega1 = lane.omega1[i]
+        omega2 = lane.omega2[i]
+        w1 = omega1 * span
+        w2 = omega2 * span
+        a = lane.ground[i]
+        a_end = lane.ground_end[i]
+        u = lane.weight[i] if upward else 1.0
+        u_end = lane.weight_end[i] if upward else 1.0
+        rise = (a_end - a) * (span / left)
+        lift = (u_end - u) * (span / left)
+        s1, c1 = quick_sine_cosine(t1)
+        s2, c2 = quick_sine_cosine(t2)
+        sd = s2 * c1 - c2 * s1
+        cd = c2 * c1 + s2 * s1
+        e = lane.e[i]
+        f = lane.f[i]
+        v1x = scale * lane.v1x[i]
+        v1y = scale * lane.v1y[i]
+        v2x = scale * lane.v2x[i]
+        v2y = scale * lane.v2y[i]
+        rates1, rates2 = rates_of_two(
+            (lane.m11[i], lane.m22[i], e * cd + f * sd, f * cd - e * sd),
+            (v1y * c1 - v1x * s1, v1x * c1 + v1y * s1),
+            (v2y * c2 - v2x * s2, v2x * c2 + v2y * s2),
+            (w1, w2), (a, rise), (g * u, g * lift, upward),
+        )  # fmt: skip
+        n1 = t1 + travel(rates1, 1.0)
+        n2 = t2 + travel(rates2, 1.0)
+        z1 = rate_at(rates1, 1.0)
+        z2 = rate_at(rates2, 1.0)
+        keep_rates(lane.rates1, i, rates1)
+        keep_rates(lane.rates2, i, rates2)
+        # a contact closes, nearly closes, or may close and open again
+        side1 = lane.side1[i]
+        side2 = lane.side2[i]
+        gap1, out1, end1, bend1 = side1 * t1, side1 * w1, side1 * z1, side1 * rates1[1]
+        gap2, out2, end2 = side2 * (t2 - t1), side2 * (w2 - w1), side2 * (z2 - z1)
+        bend2 = side2 * (rates2[1] - rates1[1])
+        closes = (side1 * n1 < 0.0) | (side2 * (n2 - n1) < 0.0)
+        near = dips(gap1, out1, end1) | hops(gap1, out1, end1, bend1)
+        near |= dips(gap2, out2, end2) | hops(gap2, out2, end2, bend2)
+        lies = (max(abs(n1), abs(n2)) >= HALF_TURN) | (abs(n2 - n1) >= HALF_TURN)
+        flag = WITHIN if span < left else QUIET
+        flag = CLOSES if closes else flag
+        flag = NEARS if near | lies else flag
+        lane.flag[i] = flag
+        lane.was_theta1[i] = t1
+        lane.was_omega1[i] = omega1
+        lane.was_theta2[i] = t2
+        lane.was_omega2[i] = omega2
+        lane.was_ground[i] = a
+        lane.was_left[i] = left
+        per = 1.0 / span
+        z1 = z1 * per
+        z2 = z2 * per
+        lane.theta1[i] = n1
+        lane.omega1[i] = z1
+        lane.theta2[i] = n2
+        lane.omega2[i] = z2
+        lane.ground[i] = a + rise if span < left else a_end
+        if upward:
+            lane.was_weight[i] = u
+            lane.weight[i] = u + lift if span < left else u_end
+        lane.part_left[i] = left - span if span < left else 1.0
+        was_ratio1, was_ratio2 = lane.ratio1[i], lane.ratio2[i]
+        was_fast, was_near = lane.fast[i], lane.near[i]
+        lane.was_ratio1[i], lane.was_ratio2[i] = was_ratio1, was_ratio2
+        lane.was_fast[i], lane.was_near[i] = was_fast, was_near
+        ratio1 = lane.per_angle1[i] * n1
+        ratio2 = lane.per_angle2[i] * n2
+        away1 = (1.0 - ratio1) * (1.0 - ratio1) + lane.per_speed1[i] * z1 * z1
+        away2 = (1.0 - ratio2) * (1.0 - ratio2) + lane.per_speed2[i] * z2 * z2
+        lane.ratio1[i] = max(was_ratio1, ratio1)
+        lane.ratio2[i] = max(was_ratio2, ratio2)
+        lane.fast[i] = max(was_fast, abs(z2))
+        lane.near[i] = min(was_near, min(away1, away2))
+
+
+@inlined_kernel
+def take_series(lane, i, series):
+    """Copy the series of a lane's step out."""
+    one, two = series.one.angle, series.two.angle
+    span = span_of(lane.was_left[i], lane.part[i])
+    one[0], one[1] = lane.was_theta1[i], lane.was_omega1[i] * span
+    two[0], two[1] = lane.was_theta2[i], lane.was_omega2[i] * span
+    for n in range(ORDER - 1):
+        one[2 + n] = lane.rates1[n, i] * (1.0 / (n + 2))
+        two[2 + n] = lane.rates2[n, i] * (1.0 / (n + 2))
+
+
+@inlined_kernel
+def next_event(c1, c2, flag, series):
+    """Time in a step of its first closing, NEVER if there is none; whether ground and interface close."""
+    if flag != CLOSES:
+        return first_closing(c1, c2, series)
+    when1 = NEVER
+    when2 = NEVER
+    if fill_gap(series, GROUND, c1) < 0.0:
+        when1 = crossing_time(series.gap)
+    if fill_gap(series, INTERFACE, c2) < 0.0:
+        when2 = crossing_time(series.gap)
+    when = min(when1, when2)
+    return when, when1 <= when + 1e-13, when2 <= when + 1e-13
+
+
+@inlined_kernel
+def nearest(lane, i, state):
+    """Largest θ/θcritical of both, |θ2'|, least distance from balance squared, up to an event."""
+    theta1, omega1, theta2, omega2 = state
+    ratio1 = lane.per_angle1[i] * theta1
+    ratio2 = lane.per_angle2[i] * theta2
+    away1 = (1.0 - ratio1) * (1.0 - ratio1) + lane.per_speed1[i] * omega1 * omega1
+    away2 = (1.0 - ratio2) * (1.0 - ratio2) + lane.per_speed2[i] * omega2 * omega2
+    return (
+        max(lane.was_ratio1[i], ratio1),
+        max(lane.was_ratio2[i], ratio2),
+        max(lane.was_fast[i], abs(omega2)),
+        min(lane.was_near[i], min(away1, away2)),
+    )

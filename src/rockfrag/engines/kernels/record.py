@@ -1,0 +1,284 @@
+"""What is kept of one history: its summary, its samples and its events."""
+
+import math
+
+import numpy as np
+
+from rockfrag.elementary import hypot, sin_cos
+from rockfrag.engines.kernels.demand import DEMAND, add_demand, ask_forces, no_demand
+from rockfrag.engines.kernels.equations import (
+    STATE,
+    accelerations,
+    balance,
+    first_moment1,
+    first_moment2,
+    kinetic_energy,
+    pole,
+    potential_energy,
+    statue_balance,
+)
+from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel
+from rockfrag.engines.kernels.roots import NEVER, bend, slope, value
+
+SUMMARY = np.dtype(
+    [
+        ("fallen", np.int64),  # 0 none, 1 pedestal (or both as one), 2 statue or lone block
+        ("fall_time", np.float64),  # [s], NaN if none
+        ("peak1", np.float64), ("peak2", np.float64),  # max |θ| [rad]
+        ("speed1", np.float64), ("speed2", np.float64),  # max |θ'| [rad/s]
+        ("ratio1", np.float64),  # max θ/θcritical of the pedestal (with what stands on it)
+        ("ratio2", np.float64),
+        ("impacts", np.int64),
+        ("grazings", np.int64),  # contacts that closed without speed
+        ("closest", np.float64),  # least distance to an unstable equilibrium, in units of (θc, p θc)
+        ("work", np.float64),  # of the ground acceleration on the moving body [J]
+        ("events", np.int64),
+        ("given_way", np.int64),  # impacts in which the law of a measured restitution had to give way
+        ("lost_contact", np.float64),  # when a normal force first was none [s], NaN if it never was
+        ("demand", DEMAND),  # until the fall is certain
+        ("beyond", DEMAND),  # since a block has last passed balance
+    ],
+    align=True,
+)  # fmt: skip
+"""Summary of a history."""
+
+SAMPLE = np.dtype(
+    [
+        ("theta1", np.float64), ("omega1", np.float64), ("theta2", np.float64), ("omega2", np.float64),
+        ("c1", np.int64), ("c2", np.int64),
+        ("alpha1", np.float64), ("alpha2", np.float64),
+        ("work", np.float64),  # so far
+    ],
+    align=True,
+)  # fmt: skip
+"""State at a sample."""
+
+EVENT = np.dtype(
+    [
+        ("time", np.float64), ("kind", np.int64),
+        ("before", STATE), ("after", STATE),
+        ("energy_before", np.float64), ("energy_after", np.float64),  # kinetic [J]
+    ],
+    align=True,
+)  # fmt: skip
+"""A change of the contact state."""
+
+OPENING, CLOSING, CHATTER, LIFTING = 0, 1, 2, 3
+"""Kinds of events; a contact that lifts would have to pull as a whole, and the march goes on as if it did."""
+
+BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
+"""A way to balance: critical angle [rad] and squared frequency parameter [1/s²]."""
+
+
+@inlined_kernel
+def copy_state(source, target):
+    """Make one state equal to another."""
+    target.c1, target.c2, target.ground, target.gravity = (
+        source.c1,
+        source.c2,
+        source.ground,
+        source.gravity,
+    )
+    target.theta1, target.omega1 = source.theta1, source.omega1
+    target.theta2, target.omega2 = source.theta2, source.omega2
+
+
+@kernel
+def begin(state, summary):
+    """Set the summary to that of a history that has not moved yet."""
+    summary.fallen, summary.fall_time = 0, math.nan
+    summary.impacts, summary.grazings, summary.events, summary.given_way = 0, 0, 0, 0
+    summary.closest, summary.work = math.inf, 0.0
+    summary.lost_contact = math.nan
+    no_demand(summary.demand)
+    no_demand(summary.beyond)
+    summary.ratio1, summary.ratio2 = 0.0, 0.0
+    summary.peak1, summary.speed1 = abs(state.theta1), abs(state.omega1)
+    summary.peak2, summary.speed2 = abs(state.theta2), abs(state.omega2)
+
+
+@kernel
+def fill_balances(body, balances):
+    """Fill the ways to balance, (8,): of the pedestal in places 0 to 5, of the statue in 6 and 7."""
+    for c1 in (1, -1):
+        for c2 in (-1, 0, 1):
+            critical, vx, vy, inertia = balance(body, c1, c2)
+            _keep_balance(body, balances[_way_of_pedestal(c1, c2)], critical, (vx, vy), inertia)
+    for c2 in (1, -1):
+        critical, vx, vy, inertia = statue_balance(body, c2)
+        _keep_balance(body, balances[_way_of_statue(c2)], critical, (vx, vy), inertia)
+
+
+@kernel
+def _keep_balance(body, way, critical, moment, inertia):
+    way.critical = critical
+    way.frequency2 = body.gravity * hypot(moment[0], moment[1]) / inertia
+
+
+@kernel
+def _way_of_pedestal(c1, c2):
+    return 1 + c2 + (0 if c1 > 0 else 3)
+
+
+@kernel
+def _way_of_statue(c2):
+    return 6 if c2 > 0 else 7
+
+
+@kernel
+def _approach(way, side, theta, omega, summary):
+    """Update the closest approach to one way to balance; return θ/θcritical."""
+    away = 1.0 - side * theta / way.critical
+    speed = omega / way.critical
+    square = away * away + speed * speed / way.frequency2
+    if square < summary.closest * summary.closest:
+        summary.closest = math.sqrt(square)
+    return side * theta / way.critical
+
+
+@kernel
+def _peak(angle, end, theta, rate_at_end, h):
+    """Largest |θ| of a step, between its ends too."""
+    peak = abs(theta)
+    if angle[1] * rate_at_end < 0.0:
+        # the rate changes sign within the step
+        tau = angle[1] / (angle[1] - rate_at_end * h) * end
+        peak = max(peak, abs(value(angle, tau)))
+    return peak
+
+
+@kernel
+def track(balances, state, series, end, h, summary):
+    """Update peaks and the closest approach to an unstable equilibrium after a step that ends in a state.
+
+    Returns
+    -------
+    Whether a block is beyond its balance then.
+    """
+    ratio1, ratio2 = 0.0, 0.0
+    theta1, theta2 = state.theta1, state.theta2
+    omega1, omega2 = state.omega1, state.omega2
+    summary.peak1 = max(summary.peak1, _peak(series.one.angle, end, theta1, omega1, h))
+    summary.peak2 = max(summary.peak2, _peak(series.two.angle, end, theta2, omega2, h))
+    summary.speed1 = max(summary.speed1, abs(omega1))
+    summary.speed2 = max(summary.speed2, abs(omega2))
+    c1, c2 = state.c1, state.c2
+    if c2 != 0:
+        ratio2 = _approach(balances[_way_of_statue(c2)], c2, theta2, omega2, summary)
+        summary.ratio2 = max(summary.ratio2, ratio2)
+    if c1 != 0:
+        ratio1 = _approach(balances[_way_of_pedestal(c1, c2)], c1, theta1, omega1, summary)
+        summary.ratio1 = max(summary.ratio1, ratio1)
+    return ratio1 >= 1.0 or ratio2 >= 1.0
+
+
+@kernel
+def note_demand(body, step, series, end, work, summary):
+    """Note what the forces of a step ask of its contacts, up to an instant ``end`` that its state has reached.
+
+    A step is looked at in its middle and at its end, and at its beginning if the contacts have just changed;
+    between them forces are nearly parabolas, and steps are short.  What is asked beyond balance counts only if the
+    block comes back.
+
+    Returns
+    -------
+    Time in the step at which a normal force first was none; NEVER if they push, or beyond balance.
+    """
+    state, trial = work.state, work.trial
+    # what has come back from beyond balance was not yet a fall
+    inside = not work.beyond[0]
+    demand = summary.demand if inside else summary.beyond
+    if inside:
+        add_demand(summary.demand, summary.beyond)
+        no_demand(summary.beyond)
+    lifts = NEVER
+    least = math.inf
+    one, two = series.one.angle, series.two.angle
+    per = 1.0 / (step.length * step.length)
+    trial.c1, trial.c2 = state.c1, state.c2
+    for part in range(3):
+        tau = 0.5 * part * end
+        trial.theta1, trial.omega1 = value(one, tau), slope(one, tau) / step.length
+        trial.theta2, trial.omega2 = value(two, tau), slope(two, tau) / step.length
+        trial.ground, trial.gravity = step.ground + step.rise * tau, step.gravity + step.lift * tau
+        before = least
+        least = ask_forces(body, trial, bend(one, tau) * per, bend(two, tau) * per, demand)
+        if least <= 0.0 and lifts == NEVER and inside:
+            # a straight line between the two
+            share = before / (before - least) if part > 0 else 0.0
+            lifts = tau if part == 0 else tau - 0.5 * end * (1.0 - share)
+    return lifts
+
+
+@kernel
+def work_of(body, c1, c2, series, end, step):
+    """Work of the ground's acceleration over (0, end] of a step [J]: -∫ Σ m (a x' + a_v y') dt."""
+    s1, s2 = pole(c1), pole(c2)
+    v1x, v1y = first_moment1(body, s1, s2)
+    v2x, v2y = first_moment2(body, s2)
+    # Gauss-Legendre, six points: exact to order 11
+    nodes = (0.2386191860831969, 0.6612093864662645, 0.9324695142031521)
+    weights = (0.4679139345726910, 0.3607615730481386, 0.1713244923791704)
+    total = 0.0
+    for i in range(3):
+        for sign in (-1.0, 1.0):
+            tau = 0.5 * end * (1.0 + sign * nodes[i])
+            t1 = value(series.one.angle, tau)
+            t2 = value(series.two.angle, tau)
+            w1 = slope(series.one.angle, tau)
+            w2 = slope(series.two.angle, tau)
+            if body.linear > 0:
+                rate = v1y * w1 + v2y * w2
+                fall = (v1x + v1y * t1) * w1 + (v2x + v2y * t2) * w2
+            else:
+                sine1, cosine1 = sin_cos(t1)
+                sine2, cosine2 = sin_cos(t2)
+                rate = w1 * (v1y * cosine1 - v1x * sine1) + w2 * (v2y * cosine2 - v2x * sine2)
+                fall = w1 * (v1x * cosine1 + v1y * sine1) + w2 * (v2x * cosine2 + v2y * sine2)
+            upward = step.gravity + step.lift * tau - body.gravity
+            total -= weights[i] * (step.ground + step.rise * tau) * rate
+            total += weights[i] * upward * fall
+    return 0.5 * end * total
+
+
+@kernel
+def keep_sample(body, state, sample, work):
+    """Write a state into the history."""
+    alpha1, alpha2 = accelerations(body, state.c1, state.c2, state)
+    sample.theta1, sample.omega1 = state.theta1, state.omega1
+    sample.theta2, sample.omega2 = state.theta2, state.omega2
+    sample.c1, sample.c2, sample.alpha1, sample.alpha2 = state.c1, state.c2, alpha1, alpha2
+    sample.work = work
+
+
+@kernel
+def keep_event(body, time, kind, before, after, events, summary):
+    """Write an event, if there is room, and count it."""
+    if summary.events < len(events):
+        event = events[summary.events]
+        event.time, event.kind = time, kind
+        copy_state(before, event.before)
+        copy_state(after, event.after)
+        event.energy_before = kinetic_energy(body, before)
+        event.energy_after = kinetic_energy(body, after)
+    summary.events += 1
+
+
+@entry_kernel
+def fill_energies(body, history, kinetic, potential, scratch):
+    """Fill the kinetic and potential energy [J] of each SAMPLE of a history; ``scratch`` is a STATE."""
+    for i in range(len(history)):
+        sample = history[i]
+        scratch.c1, scratch.c2 = sample.c1, sample.c2
+        scratch.theta1, scratch.omega1 = sample.theta1, sample.omega1
+        scratch.theta2, scratch.omega2 = sample.theta2, sample.omega2
+        kinetic[i] = kinetic_energy(body, scratch)
+        potential[i] = potential_energy(body, scratch)
+
+
+@entry_kernel
+def fill_sines(theta, sine, cosine):
+    """Fill the sine and cosine of each angle of arrays of two dimensions."""
+    for i in range(theta.shape[0]):
+        for j in range(theta.shape[1]):
+            sine[i, j], cosine[i, j] = sin_cos(theta[i, j])

@@ -1,0 +1,407 @@
+"""One history: march one body through an acceleration, event by event.
+
+Between events the rotations follow their series; an event is located on the series and handled before the
+march goes on.  Every step size, root and decision depends on this one case alone.
+
+Nothing here needs what a web page does not have: no thread, no file, no Python object, and no mathematics but
+that of ``elementary``.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.engines.kernels.chatter import HISTORY, RESTORING, Ahead, dies_out, fill_restoring
+from rockfrag.engines.kernels.contact_states import (
+    GROUND,
+    HALF_TURN,
+    INTERFACE,
+    first_contacts,
+    release,
+    settle,
+)
+from rockfrag.engines.kernels.demand import add_demand, ask_impulses, no_demand
+from rockfrag.engines.kernels.equations import (
+    STATE,
+    accelerations,
+    ground_hold,
+    interface_hold,
+    kinetic_energy,
+)
+from rockfrag.engines.kernels.impact import impact, stuck
+from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel
+from rockfrag.engines.kernels.record import (
+    BALANCE,
+    CHATTER,
+    CLOSING,
+    LIFTING,
+    OPENING,
+    begin,
+    copy_state,
+    fill_balances,
+    keep_event,
+    keep_sample,
+    note_demand,
+    track,
+    work_of,
+)
+from rockfrag.engines.kernels.roots import (
+    NEVER,
+    closing_time,
+    guess_between,
+    is_narrow,
+    narrowed,
+    slope,
+    value,
+)
+from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series
+
+GRAZING_SPEED = 1e-3
+"""Relative speed [rad/s] below which a contact grazes."""
+MAX_EVENTS_PER_STEP = 400
+"""Events of a sample after which its contacts are made to stay closed."""
+
+
+class Shaking(NamedTuple):
+    """What a body is shaken with.
+
+    Attributes
+    ----------
+    samples : acceleration of the ground [m/s²], linear between samples, zero after the last
+    vertical : likewise upwards, over gravity [-]; as many, or none where it is zero
+    scale : factor on them
+    dt : sampling interval [s]
+    substeps : steps per sample
+    free_samples : samples that the march goes on after the last one, at most
+    """
+
+    samples: NDArray[np.float64]
+    vertical: NDArray[np.float64]
+    scale: float
+    dt: float
+    substeps: int
+    free_samples: int
+
+
+class Scratch(NamedTuple):
+    """Memory that a march works in: ``scratch()``."""
+
+    state: Any
+    before: Any
+    trial: Any
+    series: Any
+    restoring: Any
+    balances: Any
+    beyond: Any  # (1,) whether a block is beyond its balance
+
+
+def scratch() -> Scratch:
+    """Memory for one march."""
+    return Scratch(
+        *np.zeros(3, STATE),
+        np.zeros(1, SERIES)[0],
+        np.zeros(1, RESTORING)[0],
+        np.zeros(8, BALANCE),
+        np.zeros(1, np.bool_),
+    )
+
+
+@entry_kernel
+def march(body, shaking, initial, history, events, summary, work):
+    """March one body through its shaking and, after it, free rocking.
+
+    Parameters
+    ----------
+    body : BODY
+    shaking : Shaking
+    initial : STATE, of which the angles and their rates count
+    history : SAMPLEs, filled until the march ends; as many as fit are kept
+    events : EVENTs, as many as fit are kept
+    summary : SUMMARY
+    work : Scratch
+
+    Returns
+    -------
+    Number of samples done, the first included.
+    """
+    state = work.state
+    copy_state(initial, state)
+    begin(state, summary)
+    samples, scale = shaking.samples, shaking.scale
+    n = samples.size
+    state.ground = samples[0] * scale
+    state.gravity = _gravity(body, shaking, 0)
+    state.c1, state.c2 = first_contacts(state)
+    state.c1, state.c2 = settle(body, state)
+    fill_balances(body, work.balances)
+    fill_restoring(body, work.restoring, work.trial)
+    work.beyond[0] = False
+    if len(history) > 0:
+        keep_sample(body, state, history[0], 0.0)
+    done = 1
+    for k in range(n - 1 + shaking.free_samples):
+        right = samples[k + 1] * scale if k + 1 < n else 0.0
+        _through_sample(body, shaking, k, events, summary, work)
+        done = k + 2
+        state.ground, state.gravity = right, _gravity(body, shaking, k + 1)
+        if len(history) > k + 1:
+            keep_sample(body, state, history[k + 1], summary.work)
+        lying1 = abs(state.theta1) >= HALF_TURN
+        lying2 = max(abs(state.theta2), abs(state.theta2 - state.theta1)) >= HALF_TURN
+        if lying1 or lying2:
+            summary.fallen = 1 if lying1 and not body.fixed else 2
+            summary.fall_time = (done - 1) * shaking.dt
+            break
+        if not work.beyond[0]:
+            add_demand(summary.demand, summary.beyond)
+            no_demand(summary.beyond)
+        if k >= n - 1 and state.c1 == 0 and state.c2 == 0:
+            break
+    return done
+
+
+@inlined_kernel
+def _gravity(body, shaking, k):
+    """Gravity and the ground's upward acceleration at a sample [m/s²]."""
+    if k < shaking.vertical.size:
+        return body.gravity + body.gravity * (shaking.scale * shaking.vertical[k])
+    return body.gravity
+
+
+@kernel
+def _through_sample(body, shaking, k, events, summary, work):
+    """Take a body from sample k to the next, through all events in between."""
+    samples, scale, substeps = shaking.samples, shaking.scale, shaking.substeps
+    n = samples.size
+    left = samples[k] * scale if k < n else 0.0
+    right = samples[k + 1] * scale if k + 1 < n else 0.0
+    h = shaking.dt / substeps
+    heavy, heavier = _gravity(body, shaking, k), _gravity(body, shaking, k + 1)
+    lift = (heavier - heavy) / substeps
+    state, series, before = work.state, work.series, work.before
+    count = 0
+    for sub in range(substeps):
+        a0 = left + (right - left) * (sub / substeps)
+        g0 = heavy + (heavier - heavy) * (sub / substeps)
+        rise = (right - left) / substeps
+        tau = 0.0
+        while tau < 1.0 and count <= MAX_EVENTS_PER_STEP + 20:
+            remaining = 1.0 - tau
+            step = Step(
+                h * remaining, a0 + rise * tau, rise * remaining, g0 + lift * tau, lift * remaining
+            )
+            fill_series(body, state, step, series)
+            when, fails, closes1, closes2 = _next_event(body, state, step, series, work.trial)
+            at = min(1.0, when)
+            moves = state.c1 != 0 or state.c2 != 0
+            _move(state, series, at, step.length)
+            lifts = note_demand(body, step, series, at, work, summary)
+            if lifts != NEVER and math.isnan(summary.lost_contact):
+                summary.lost_contact = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
+                keep_event(body, summary.lost_contact, LIFTING, state, state, events, summary)
+            if moves:
+                work.beyond[0] = track(work.balances, state, series, at, step.length, summary)
+                summary.work += work_of(body, state.c1, state.c2, series, at, step)
+            tau += at * remaining
+            if when > 1.0:
+                break
+            count += 1
+            state.ground, state.gravity = a0 + rise * tau, g0 + lift * tau
+            if fails == 0:
+                if closes1:
+                    state.theta1 = 0.0
+                if closes2 or state.c2 == 0:
+                    state.theta2 = state.theta1
+            copy_state(state, before)
+            if fails != 0:
+                kind = OPENING
+                state.c1, state.c2 = release(body, state, fails, at == 0.0)
+            else:
+                _count_impact(state, closes1, summary)
+                part = (sub + tau) / substeps
+                ahead = Ahead(samples, shaking.vertical, scale, n - 1, k, part, shaking.dt)
+                forced = count > MAX_EVENTS_PER_STEP
+                closes = closes1, closes2
+                kind, gave_way = land(body, state, closes, work.restoring, ahead, HISTORY, forced)
+                summary.given_way += gave_way
+                demand = summary.beyond if work.beyond[0] else summary.demand
+                # of a series of impacts that is ended at once, its first one asks as all do
+                after = state if kind == CLOSING else _struck(body, before, closes, work.trial)
+                ask_impulses(body, before, after, demand)
+            clock = (k + (sub + tau) / substeps) * shaking.dt
+            keep_event(body, clock, kind, before, state, events, summary)
+
+
+@kernel
+def _struck(body, before, closes, after):
+    """Fill the state after an impact that nothing else has ended, and return it."""
+    copy_state(before, after)
+    n1, n2, w1, w2, _ = impact(body, before, closes[0], closes[1])
+    after.c1, after.c2, after.omega1, after.omega2 = n1, n2, w1, w2
+    return after
+
+
+@kernel
+def _move(state, series, tau, h):
+    """Move a state to an instant of its series."""
+    one, two = series.one.angle, series.two.angle
+    open1, open2 = state.c1 != 0, state.c2 != 0
+    state.theta1 = value(one, tau) if open1 else 0.0
+    state.omega1 = slope(one, tau) / h if open1 else 0.0
+    state.theta2 = value(two, tau) if open2 else state.theta1
+    state.omega2 = slope(two, tau) / h if open2 else state.omega1
+
+
+@kernel
+def _count_impact(state, closes1, summary):
+    """Count an impact, and whether it grazes."""
+    summary.impacts += 1
+    if (abs(state.omega1) if closes1 else abs(state.omega2 - state.omega1)) < GRAZING_SPEED:
+        summary.grazings += 1
+
+
+@kernel
+def land(body, state, closes, restoring, ahead, thoroughness, forced):
+    """Take a state through an impact to what follows from it; the kind of event, and 1 if a law had to give way.
+
+    A contact that comes off slower than the closing speed stays closed, one that has met too often within a sample
+    (``forced``) too, and impacts that are sure to end at rest are not followed.
+    """
+    closes1, closes2 = closes
+    kind = CLOSING
+    free1 = closes1 or state.c1 == 0
+    free2 = closes2 or state.c2 == 0
+    n1, n2, w1, w2, gave_way = impact(body, state, closes1, closes2)
+    limit = math.inf if forced else thoroughness.closing_speed
+    slow1 = free1 and n1 != 0 and abs(w1) < limit
+    slow2 = free2 and n2 != 0 and abs(w2 - w1) < limit
+    if slow1 or slow2:
+        n1 = 0 if slow1 else n1
+        n2 = 0 if slow2 else n2
+        w1, w2 = stuck(body, state, n1, n2)
+        kind = CHATTER
+    before = kinetic_energy(body, state)
+    state.c1, state.c2, state.omega1, state.omega2 = n1, n2, w1, w2
+    level = state.theta1 == 0.0 and state.theta2 == 0.0
+    speed = max(abs(w1), abs(w2))
+    if kind == CLOSING and level and (n1 != 0 or n2 != 0) and speed < restoring.fastest:
+        share = math.sqrt(kinetic_energy(body, state) / before)
+        # a pedestal that is thrown about lengthens the flights of the statue
+        safety = 1.03 if body.fixed else 1.5
+        if dies_out(speed, share, safety, restoring, thoroughness.drop, ahead):
+            state.c1, state.c2, state.omega1, state.omega2 = 0, 0, 0.0, 0.0
+            kind = CHATTER
+    if not forced:
+        state.c1, state.c2 = settle(body, state)
+    return kind, gave_way
+
+
+# --------------------------------------------------------------------------- finding the next event
+
+
+@kernel
+def _hold_at(body, contact, step, series, tau, trial):
+    """Least contact moment of a closed contact at τ; ``trial`` holds the contacts of the step."""
+    one, two = series.one.angle, series.two.angle
+    trial.theta1 = value(one, tau)
+    trial.theta2 = value(two, tau)
+    trial.omega1 = slope(one, tau) / step.length
+    trial.omega2 = slope(two, tau) / step.length
+    trial.ground = step.ground + step.rise * tau
+    trial.gravity = step.gravity + step.lift * tau
+    alpha1, alpha2 = accelerations(body, trial.c1, trial.c2, trial)
+    if contact == GROUND:
+        least, _ = ground_hold(body, trial.c2, trial, alpha2)
+    else:
+        least, _ = interface_hold(body, trial.c1, trial, alpha1)
+    return least
+
+
+@kernel
+def _failing_time(body, contact, step, series, end, trial):
+    """Find when a closed contact's criterion first fails in [0, end]; NEVER if it holds."""
+    at_start = _hold_at(body, contact, step, series, 0.0, trial)
+    at_end = _hold_at(body, contact, step, series, end, trial)
+    high = end
+    if at_end >= 0.0:
+        # a parabola through the middle shows a dip between the ends
+        middle = _hold_at(body, contact, step, series, 0.5 * end, trial)
+        curve = 2.0 * (at_start + at_end - 2.0 * middle)
+        if curve <= 0.0:
+            return NEVER
+        vertex = -(4.0 * middle - 3.0 * at_start - at_end) / (2.0 * curve)
+        if not 0.0 < vertex < 1.0:
+            return NEVER
+        high = vertex * end
+        at_end = _hold_at(body, contact, step, series, high, trial)
+        if at_end >= 0.0:
+            return NEVER
+    if at_start < 0.0:
+        return 0.0
+    bracket = (0.0, at_start, high, at_end, 0)
+    for _ in range(200):
+        if is_narrow(bracket):
+            break
+        tau = guess_between(bracket)
+        bracket = narrowed(bracket, tau, _hold_at(body, contact, step, series, tau, trial))
+    return bracket[2]
+
+
+@kernel
+def fill_gap(series, contact, side):
+    """Fill the series of a contact's opening angle; return its value at the end of the step."""
+    one, two, gap = series.one.angle, series.two.angle, series.gap
+    end = 0.0
+    for i in range(ORDER + 1):
+        gap[i] = side * one[i] if contact == GROUND else side * (two[i] - one[i])
+        end += gap[i]
+    return end
+
+
+@kernel
+def first_closing(c1, c2, series):
+    """Time in a step at which a contact closes first, NEVER if none does; whether ground and interface do."""
+    when = NEVER
+    closes1 = False
+    closes2 = False
+    if c1 != 0:
+        fill_gap(series, GROUND, c1)
+        when = closing_time(series.gap, 1.0)
+        closes1 = when <= 1.0
+    if c2 != 0:
+        fill_gap(series, INTERFACE, c2)
+        time = closing_time(series.gap, min(1.0, when))
+        if time < when:
+            closes1 = False
+            closes2 = True
+            when = time
+        elif closes1 and value(series.gap, when) < 1e-13:
+            closes2 = True
+    return when, closes1, closes2
+
+
+@kernel
+def _next_event(body, state, step, series, trial):
+    """Find the earliest event within a step.
+
+    Returns
+    -------
+    Its time (NEVER if there is none), which closed contact fails (0 none), and whether ground and interface close.
+    """
+    c1, c2 = state.c1, state.c2
+    when, closes1, closes2 = first_closing(c1, c2, series)
+    trial.c1, trial.c2 = c1, c2
+    fails = 0
+    for contact in (GROUND, INTERFACE):
+        open_ = c1 != 0 if contact == GROUND else c2 != 0
+        if open_ or (contact == GROUND and body.fixed):
+            continue
+        time = _failing_time(body, contact, step, series, min(1.0, when), trial)
+        if time < when:
+            when = time
+            fails = contact
+    if fails != 0:
+        return when, fails, False, False
+    return when, 0, closes1, closes2

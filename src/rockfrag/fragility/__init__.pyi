@@ -1,0 +1,88 @@
+from .censored import (
+    Brackets as Brackets,
+    bracket_interval as bracket_interval,
+    brackets_from_table as brackets_from_table,
+    fit_brackets as fit_brackets,
+)
+from .discrete_hazard import (
+    StepHazard as StepHazard,
+    fit_step_hazard as fit_step_hazard,
+)
+from .empirical import (
+    isotonic_share as isotonic_share,
+    local_share as local_share,
+    share_in_bins as share_in_bins,
+    survival_windows as survival_windows,
+    wilson_interval as wilson_interval,
+)
+from .estimators import (
+    Fragility as Fragility,
+    IncrementalFragility as IncrementalFragility,
+    fit_cloud as fit_cloud,
+    fit_incremental as fit_incremental,
+    fit_step_tests as fit_step_tests,
+    fit_stripes as fit_stripes,
+    fragility_of as fragility_of,
+)
+from .goodness import (
+    GoodnessOfFit as GoodnessOfFit,
+    goodness_of_fit as goodness_of_fit,
+)
+from .intervals import (
+    Interval as Interval,
+    interval_over_motions as interval_over_motions,
+)
+from .lognormal import (
+    FragilityFit as FragilityFit,
+    fit_lognormal as fit_lognormal,
+)
+from .measure_choice import (
+    MeasureChoice as MeasureChoice,
+    area_under_curve as area_under_curve,
+    recommend_measure as recommend_measure,
+)
+from .measure_choice_sweeps import recommend_sweep_measure as recommend_sweep_measure
+from .nrml import write_nrml as write_nrml
+from .observations import (
+    Outcomes as Outcomes,
+    outcomes_from_table as outcomes_from_table,
+)
+from .seismic_hazard import (
+    OverturningRate as OverturningRate,
+    overturning_rate as overturning_rate,
+)
+from .simcenter import write_simcenter as write_simcenter
+from .states import (
+    ThreeStates as ThreeStates,
+    fit_three_states as fit_three_states,
+)
+from .surface import (
+    FragilitySurface as FragilitySurface,
+    fit_surface as fit_surface,
+)
+from .sweeps import (
+    fragility_row as fragility_row,
+    fragility_table as fragility_table,
+    fragility_tables as fragility_tables,
+    record_set_hash as record_set_hash,
+    table_hash as table_hash,
+    with_measures as with_measures,
+)
+from .tests_file import read_tests as read_tests
+from .user_table import (
+    UserFragility as UserFragility,
+    fit_user_table as fit_user_table,
+)
+from .variance import (
+    VarianceSplit as VarianceSplit,
+    split_variance as split_variance,
+)
+from .vector import (
+    Interaction as Interaction,
+    VectorFragility as VectorFragility,
+    fit_vector as fit_vector,
+)
+from .vector_checks import (
+    VectorChecks as VectorChecks,
+    check_vector as check_vector,
+)

@@ -1,0 +1,192 @@
+"""What stands beside a fragility in two measures: a test of fit, and what the outcomes say without it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import optimize, special
+
+from rockfrag.fragility.batch_glm import fit_batch
+from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.fragility.empirical import wilson_interval
+from rockfrag.fragility.goodness import binned_deviance
+from rockfrag.fragility.observations import Floats, labels, positive
+from rockfrag.fragility.observations import verdicts as read_outcomes
+from rockfrag.fragility.pooling import cells
+from rockfrag.fragility.surface import design_of
+from rockfrag.fragility.vector import VectorFragility
+
+BINS = 10
+"""Bins of the fitted probability in which observed and fitted numbers are compared."""
+
+MOST_CELLS = 12
+"""Cells of each measure in the non-parametric surface."""
+
+TOLERANCE = 1e-9
+"""Change of a probability at which the alternating projections of the surface end [-]."""
+
+MOST_CYCLES = 5_000
+"""Cycles of alternating projections; some hundreds are usual."""
+
+
+@dataclass(frozen=True)
+class VectorChecks:
+    """Test of fit and non-parametric surface of a fragility in two measures.
+
+    Attributes
+    ----------
+    p_fit
+        p value of the hypothesis that the fit describes the outcomes, by parametric bootstrap [-].
+    calibration
+        A row per bin of the fitted probability: ``tests``, ``predicted``, ``observed``, ``observed_lower``,
+        ``observed_upper`` (90 % binomial limits).
+    surface
+        A row per cell of the two measures that has tests: the measures' columns (geometric means of the cell's
+        row and column), ``tests``, ``overturned``, ``probability`` (rising in both measures) and ``fitted``.
+    """
+
+    p_fit: float
+    calibration: pd.DataFrame
+    surface: pd.DataFrame
+
+    @property
+    def rejected(self) -> bool:
+        """Whether the fit does not describe its outcomes."""
+        return self.p_fit < REJECTED
+
+
+def check_vector(
+    fit: VectorFragility,
+    table: pd.DataFrame,
+    *,
+    overturned: str = "overturned",
+    motion: str | None = "motion",
+    replicates: int = 200,
+    seed: int = 0,
+) -> VectorChecks:
+    """Judge a fragility in two measures by the outcomes that it was fitted to.
+
+    Parameters
+    ----------
+    fit, table
+        The fit and its table, one row a test.
+    overturned, motion
+        Columns of the outcome and of the motion; None where each test has a motion of its own.  In simulated data
+        each motion has one capacity, so that its tests depend on each other as in an incremental dynamic analysis.
+    replicates, seed
+        Of the parametric bootstrap.
+
+    Returns
+    -------
+    VectorChecks
+        p value, calibration and non-parametric surface.
+    """
+    logs = [np.log(positive(table, column)) for column in fit.measures]
+    outcome = read_outcomes(table, overturned)
+    design = design_of(logs, fit.interaction.kept)
+    eta = design @ np.array(fit.surface.coefficients)
+    bins = _bins(eta)
+    code = pd.factorize(pd.Series(labels(table, motion, "table")))[0]
+    p_fit = _p_fit(design, outcome, eta, bins, code, replicates, seed)
+    return VectorChecks(p_fit, _calibration(eta, outcome, bins), _surface_table(fit, logs, outcome))
+
+
+def _bins(eta: Floats) -> NDArray[np.intp]:
+    """Bin of each test, with about equally many in each, in order of the fitted probability."""
+    cell, values = cells(eta, BINS)
+    return cell if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
+
+
+def _p_fit(
+    design: Floats,
+    outcome: Floats,
+    eta: Floats,
+    bins: NDArray[np.intp],
+    motion: NDArray[np.intp],
+    replicates: int,
+    seed: int,
+) -> float:
+    trials = np.bincount(bins).astype(np.float64)
+    member = (bins[:, np.newaxis] == np.arange(trials.size)).astype(np.float64)
+    own = binned_deviance(outcome @ member, special.ndtr(eta) @ member, trials)
+    capacity = np.random.default_rng(seed).normal(size=(replicates, int(motion.max()) + 1))
+    drawn = (eta > capacity[:, motion]).astype(np.float64)
+    # the penalty keeps separated data sets finite and hardly moves the others
+    again = fit_batch(design, drawn, np.ones_like(drawn), penalised=True, tolerance=1e-4)
+    usable = np.isfinite(again.coefficients).all(axis=1)
+    fitted = special.ndtr(again.coefficients[usable] @ design.T)
+    simulated = binned_deviance(drawn[usable] @ member, fitted @ member, trials)
+    return float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
+
+
+def _calibration(eta: Floats, outcome: Floats, bins: NDArray[np.intp]) -> pd.DataFrame:
+    tests = np.bincount(bins)
+    fell = np.bincount(bins, outcome)
+    lower, upper = wilson_interval(fell, tests)
+    return pd.DataFrame(
+        {
+            "tests": tests,
+            "predicted": np.bincount(bins, special.ndtr(eta)) / tests,
+            "observed": fell / tests,
+            "observed_lower": lower,
+            "observed_upper": upper,
+        }
+    )
+
+
+def _surface_table(fit: VectorFragility, logs: list[Floats], outcome: Floats) -> pd.DataFrame:
+    (row, first), (column, second) = (cells(values, MOST_CELLS) for values in logs)
+    shape = (first.size, second.size)
+    flat = row * shape[1] + column
+    tests = np.bincount(flat, minlength=first.size * second.size).reshape(shape)
+    fell = np.bincount(flat, outcome, minlength=first.size * second.size).reshape(shape)
+    probability = monotone_probability(fell.astype(np.float64), tests.astype(np.float64))
+    i, j = np.nonzero(tests)
+    x, y = np.exp(first[i]), np.exp(second[j])
+    return pd.DataFrame(
+        {
+            fit.measures[0]: x,
+            fit.measures[1]: y,
+            "tests": tests[i, j],
+            "overturned": fell[i, j].astype(np.int64),
+            "probability": probability[i, j],
+            "fitted": fit.probability(x, y),
+        }
+    )
+
+
+def monotone_probability(overturned: Floats, tests: Floats) -> Floats:
+    """Probability of overturning by cell that rises along rows and columns and is closest to what was observed.
+
+    Weighted least squares under both orders, by alternating projections (Dykstra and Robertson 1982, Annals of
+    Statistics 10: 708-716).
+
+    Parameters
+    ----------
+    overturned, tests
+        Numbers by cell, shape (rows, columns); cells without tests follow their neighbours.
+
+    Returns
+    -------
+    Array of shape (rows, columns).
+    """
+    weight = np.maximum(tests, 1e-9)
+    value = np.where(tests > 0, overturned / weight, overturned.sum() / tests.sum())
+    by_row, by_column = np.zeros_like(value), np.zeros_like(value)
+    for _ in range(MOST_CYCLES):
+        along = _rising(value + by_row, weight)
+        by_row = value + by_row - along
+        across = _rising((along + by_column).T, weight.T).T
+        by_column = along + by_column - across
+        moved = float(np.abs(across - value).max())
+        value = across
+        if moved < TOLERANCE:
+            break
+    return np.asarray(np.clip(value, 0.0, 1.0))
+
+
+def _rising(values: Floats, weights: Floats) -> Floats:
+    """Isotonic regression of each row."""
+    pairs = zip(values, weights, strict=True)
+    return np.array([optimize.isotonic_regression(v, weights=w).x for v, w in pairs])

@@ -1,0 +1,52 @@
+"""What a column of a table of outcomes is: declared once, beside the array that holds it."""
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+Table = Literal["cases", "bodies", "contacts"]
+"""The three tables of outcomes: a row per case, per body of a case, per contact of a case."""
+
+SUFFIXES = {"": "", "s": "_s", "rad": "_rad", "rad/s": "_rad_s", "m": "_m", "N": "_n"}
+"""What a unit adds to the name of a column."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a table of outcomes.
+
+    Attributes
+    ----------
+    name
+        Name of the attribute of :class:`rockfrag.outcomes.Outcomes`.
+    table
+        Table that it belongs to.
+    unit
+        Unit, empty for a number without one, a count or a statement.
+    meaning
+        What it says, in one sentence; what NaN means where it can be NaN.
+    empty
+        What stands where no engine has answered; its type is that of the column.
+    """
+
+    name: str
+    table: Table
+    unit: str
+    meaning: str
+    empty: Any
+
+    @property
+    def title(self) -> str:
+        """Name in a table, with the unit."""
+        return self.name + SUFFIXES[self.unit]
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of its numbers."""
+        return np.asarray(self.empty).dtype
+
+
+def column(table: Table, unit: str, meaning: str, empty: Any) -> Any:
+    """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`."""
+    return field(metadata={"table": table, "unit": unit, "meaning": meaning, "empty": empty})

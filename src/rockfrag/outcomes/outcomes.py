@@ -1,0 +1,255 @@
+"""Outcomes of systems × motions × scales, as arrays, and as three tidy tables (``docs/definitions.md``)."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.outcomes.columns import Column, Table, column
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Whole = NDArray[np.int64]
+Small = NDArray[np.int8]
+
+NOT_TOLD = math.nan
+"""Where an engine does not tell a number."""
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """What became of systems × motions × scales.
+
+    Arrays of cases have shape (systems, motions, scales), those of bodies and contacts one axis more, from below:
+    body 0 is the lowest, contact 0 the ground's; what a system has fewer of is filled with what is not told.
+    ``docs/definitions.md`` defines each word.
+
+    Attributes
+    ----------
+    names
+        Names of the bodies of each system, from below.
+    scales
+        Factors on the motions, shape (motions, scales).
+    engines
+        Names of the engines that answered.
+    engine
+        Which of them answered each case.
+    overturned, overturned_body, fall_time, certain_time, impacts, flights, given_way, paradoxes
+        Of cases, see :func:`columns`.
+    unstable_distance, lightest, lost_contact
+        Likewise.
+    peak_rotation, peak_velocity, turn, walk, fall_direction
+        Of bodies.
+    slip, peak_slip, friction_demand, least_normal_force
+        Of contacts.
+    """
+
+    names: tuple[tuple[str, ...], ...]
+    scales: Floats
+    engines: tuple[str, ...]
+    engine: Small
+    overturned: Bools = column("cases", "", "Whether a body fell.", False)
+    overturned_body: Small = column(
+        "cases",
+        "",
+        "Number from below of the body that fell first, from 1; 0 without a fall.",
+        np.int8(0),
+    )
+    fall_time: Floats = column(
+        "cases",
+        "s",
+        "Instant of the fall; NaN without a fall, or where the engine stops before it.",
+        NOT_TOLD,
+    )
+    certain_time: Floats = column(
+        "cases", "s", "Instant from which the fall was certain whatever followed; NaN without one or not told.",
+        NOT_TOLD,
+    )  # fmt: skip
+    impacts: Whole = column("cases", "", "Impacts until the outcome was known.", np.int64(0))
+    flights: Whole = column(
+        "cases", "", "Times that a body left what it stood on with all of its base.", np.int64(0)
+    )
+    given_way: Whole = column(
+        "cases",
+        "",
+        "Impacts in which the law of a restitution gave way, lest energy grow.",
+        np.int64(0),
+    )
+    paradoxes: Whole = column(
+        "cases", "", "Times that no mode of contact was consistent.", np.int64(0)
+    )
+    unstable_distance: Floats = column(
+        "cases", "", "Least distance to an unstable equilibrium; infinite if it never rocked, NaN not told.",
+        math.inf,
+    )  # fmt: skip
+    lightest: Floats = column(
+        "cases", "", "Least effective gravity over gravity while the ground moves.", 1.0
+    )
+    lost_contact: Floats = column(
+        "cases", "s", "Instant at which pure rocking first needed a contact to pull; NaN if none or not told.",
+        NOT_TOLD,
+    )  # fmt: skip
+    peak_rotation: Floats = column(
+        "bodies",
+        "",
+        "Largest rotation over the critical angle of its side; infinite if it fell.",
+        NOT_TOLD,
+    )
+    peak_velocity: Floats = column(
+        "bodies", "rad/s", "Largest angular velocity until the outcome was known.", NOT_TOLD
+    )
+    turn: Floats = column(
+        "bodies", "rad", "Rotation about the vertical at the end; NaN of a planar body.", NOT_TOLD
+    )
+    walk: Floats = column(
+        "bodies",
+        "m",
+        "Horizontal displacement of the centre of gravity at the end; NaN not told.",
+        NOT_TOLD,
+    )
+    fall_direction: Floats = column(
+        "bodies",
+        "rad",
+        "Direction of the fall from x towards y; NaN without a fall or not told.",
+        NOT_TOLD,
+    )
+    slip: Floats = column(
+        "contacts",
+        "m",
+        "Displacement along the contact at the end, positive to the right.",
+        NOT_TOLD,
+    )
+    peak_slip: Floats = column("contacts", "m", "Largest displacement along the contact.", NOT_TOLD)
+    friction_demand: Floats = column(
+        "contacts",
+        "",
+        "Largest friction over normal force until the fall was due; NaN not told.",
+        NOT_TOLD,
+    )
+    least_normal_force: Floats = column(
+        "contacts", "N", "Least normal force until the fall was due; NaN not told.", NOT_TOLD
+    )
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of systems, motions and scales."""
+        systems, motions, scales = self.overturned.shape
+        return systems, motions, scales
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Number of bodies of each system."""
+        return tuple(len(names) for names in self.names)
+
+    def of_top(self, name: str) -> NDArray[Any]:
+        """Return a column of bodies or contacts of the uppermost one, shape (systems, motions, scales)."""
+        values = getattr(self, name)
+        return np.stack([values[i, ..., count - 1] for i, count in enumerate(self.counts)])
+
+    def table(
+        self, which: Table = "cases", columns_of: Sequence[str] | None = None
+    ) -> pd.DataFrame:
+        """Return one of the three tables, the scale running fastest, then bodies or contacts from below.
+
+        Parameters
+        ----------
+        which
+            ``"cases"``, ``"bodies"`` or ``"contacts"``.
+        columns_of
+            Attributes that become columns; all of the table if None.
+
+        Returns
+        -------
+        A row per case, or per body or contact of a case: ``system``, ``motion`` (positions in the lists given),
+        ``scale``, in tables of bodies and contacts ``body`` or ``contact`` (from below, from 1; contact k lies
+        under body k) and ``name`` of that body, and the columns of :func:`columns`, with their units in the names;
+        of cases ``engine`` too.
+        """
+        chosen = [one for one in columns(which) if columns_of is None or one.name in columns_of]
+        shape = self.shape
+        system = np.arange(shape[0])[:, np.newaxis, np.newaxis]
+        motion = np.arange(shape[1])[:, np.newaxis]
+        made: dict[str, Any] = {"system": system, "motion": motion, "scale": self.scales}
+        if which == "cases":
+            made |= {one.title: getattr(self, one.name) for one in chosen}
+            made["engine"] = np.array(self.engines, dtype=object)[self.engine]
+            return pd.DataFrame(
+                {name: np.broadcast_to(values, shape).ravel() for name, values in made.items()}
+            )
+        most = max(self.counts, default=0)
+        full = (*shape, most)
+        made = {name: np.asarray(values)[..., np.newaxis] for name, values in made.items()}
+        made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
+        padded = [[*names, *[""] * (most - len(names))] for names in self.names]
+        made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
+        made |= {one.title: getattr(self, one.name) for one in chosen}
+        there = np.arange(most) < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
+        rows = np.broadcast_to(there, full).ravel()
+        return pd.DataFrame(
+            {name: np.broadcast_to(values, full).ravel()[rows] for name, values in made.items()}
+        )
+
+
+def columns(table: Table | None = None) -> tuple[Column, ...]:
+    """Return the columns of a table of outcomes, or of all three, in their order."""
+    return tuple(
+        Column(one.name, **one.metadata)
+        for one in fields(Outcomes)
+        if one.metadata and table in (None, one.metadata["table"])
+    )
+
+
+def empty_outcomes(
+    names: Sequence[Sequence[str]], scales: Floats, engines: Sequence[str] = ()
+) -> Outcomes:
+    """Return outcomes in which no engine has answered yet, for it to write into.
+
+    Parameters
+    ----------
+    names
+        Names of the bodies of each system, from below.
+    scales
+        Factors on the motions, shape (motions, scales).
+    engines
+        Names of the engines that will answer.
+    """
+    shape = (len(names), *scales.shape)
+    most = max((len(each) for each in names), default=0)
+    arrays = {
+        one.name: np.full(shape if one.table == "cases" else (*shape, most), one.empty, one.dtype)
+        for one in columns()
+    }
+    return Outcomes(
+        names=tuple(tuple(each) for each in names),
+        scales=scales,
+        engines=tuple(engines),
+        engine=np.zeros(shape, np.int8),
+        **arrays,
+    )
+
+
+def merge_outcomes(into: Outcomes, rows: Sequence[int], found: Outcomes) -> None:
+    """Write the outcomes of some systems, answered by one engine, into those of all.
+
+    Parameters
+    ----------
+    into
+        Outcomes of all systems.
+    rows
+        Positions of the systems in it.
+    found
+        Outcomes of these systems.
+    """
+    place = np.asarray(rows, dtype=np.intp)
+    numbers = np.array([into.engines.index(name) for name in found.engines], dtype=np.int8)
+    into.engine[place] = numbers[found.engine]
+    for one in columns():
+        values = getattr(found, one.name)
+        if one.table == "cases":
+            getattr(into, one.name)[place] = values
+        else:
+            getattr(into, one.name)[place, ..., : values.shape[-1]] = values

@@ -1,0 +1,47 @@
+import rockfrag.system.blocks as _blocks
+import rockfrag.system.mesh as _mesh
+
+from . import closed_forms as closed_forms, rules_of_thumb as rules_of_thumb
+from .ensemble import (
+    EnsembleResult as EnsembleResult,
+    LightBodies as LightBodies,
+    overturns as overturns,
+)
+from .measured_restitution import MeasuredRestitution as MeasuredRestitution
+from .parquet import (
+    stream_histories as stream_histories,
+    stream_overturns as stream_overturns,
+)
+from .response import Response as Response
+from .restitution import (
+    RestitutionFit as RestitutionFit,
+    restitution_from_history as restitution_from_history,
+    restitution_from_impacts as restitution_from_impacts,
+    restitution_from_peaks as restitution_from_peaks,
+)
+from .simulation import simulate as simulate
+from .spectra import (
+    RockingSpectrum as RockingSpectrum,
+    rocking_spectrum as rocking_spectrum,
+    uniform_block as uniform_block,
+)
+from .step_sensitivity import (
+    FragileVerdicts as FragileVerdicts,
+    fragile_verdicts as fragile_verdicts,
+)
+from .sureness import verdict_sureness as verdict_sureness
+from .thresholds import (
+    Thresholds as Thresholds,
+    find_thresholds as find_thresholds,
+)
+from .worst_direction import (
+    WorstDirection as WorstDirection,
+    worst_direction as worst_direction,
+)
+
+Block = _blocks.Block
+Body = _blocks.Body
+Column = _blocks.Column
+Stack = _blocks.Stack
+Shape = _mesh.Shape
+read_shape = _mesh.read_shape

@@ -1,0 +1,35 @@
+from .high_pass import filter_effect as filter_effect
+from .instruments import (
+    Accelerometer as Accelerometer,
+    Exact as Exact,
+    ForceOverMass as ForceOverMass,
+)
+from .laboratory_table import read_measured as read_measured
+from .protocols import (
+    Outcome as Outcome,
+    Protocol as Protocol,
+    climb as climb,
+)
+from .readings import (
+    always_overturning as always_overturning,
+    first_overturning as first_overturning,
+    step_protocol as step_protocol,
+    tests_from_sweep as tests_from_sweep,
+)
+from .settings import (
+    make_shaker as make_shaker,
+    read_shaker as read_shaker,
+)
+from .shaker import (
+    Demand as Demand,
+    Shaker as Shaker,
+    limits_g as limits_g,
+    produced_motion as produced_motion,
+    required_corner as required_corner,
+    shaker_table as shaker_table,
+)
+from .steps import (
+    ForceSteps as ForceSteps,
+    GeometricSteps as GeometricSteps,
+    LinearSteps as LinearSteps,
+)

@@ -1,0 +1,171 @@
+"""What survival says about the hazard of a site: weights, curves, which object decides, and what it hangs on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.survival.evidence import StandingObject
+from rockfrag.survival.reweight import Reweighted, reweight, scaled
+from rockfrag.survival.site import Site
+
+LEAST_SURVIVAL = 1e-9
+"""Probability that all objects stand below which, in every branch, hazard, fragility or age must be wrong."""
+
+DECISION_RATE = 1e-4
+"""Annual rate at which sensitivities are compared [1/year]."""
+
+RULED_OUT = 0.01
+"""A branch whose weight falls below this fraction of what it was counts as ruled out."""
+
+IN_SPACE = 0.84
+"""Median of toppling of boxes under two horizontal components over that of planar rocking under one [-]; see
+``docs/space.md``.  Round bases: about a half."""
+
+LIMITS = (
+    "Survival tells how strong shaking at the site has been since the objects stand, not how strong it will be "
+    "in the "
+    "next 50 years if rates change.",
+    "The fragility is that of today; an object that was broader or lower, buried or supported was less fragile "
+    "then, "
+    "and counts for less: state since when with fragile_for_years.",
+    "The branches are reweighted, not validated: if none of them is right, none of the new weights is.",
+)
+"""What a reader of reweighted hazard must know."""
+
+
+@dataclass(frozen=True)
+class Constrained:
+    """Hazard of a site after survival, and what it hangs on.
+
+    Attributes
+    ----------
+    site
+        What is known of the site.
+    result
+        Weights and curves.
+    by_object
+        A row an object: ``object``, ``information_bit`` of it alone, ``level_ratio_alone`` and
+        ``level_ratio_without`` (mean hazard after over before at ``DECISION_RATE``).
+    sensitivity
+        A row an assumption: ``assumption`` and ``level_ratio``.
+    """
+
+    site: Site
+    result: Reweighted
+    by_object: pd.DataFrame
+    sensitivity: pd.DataFrame
+
+    @property
+    def level_ratio(self) -> float:
+        """Level of the mean hazard at ``DECISION_RATE`` after over before [-]."""
+        return _level_ratio(self.site, self.result)
+
+    @property
+    def ruled_out(self) -> list[str]:
+        """Branches whose weight fell below ``RULED_OUT`` of what it was."""
+        kept = self.result.weights >= RULED_OUT * self.result.prior
+        return [b.name for b, stays in zip(self.result.branches, kept, strict=True) if not stays]
+
+
+def constrain(site: Site) -> Constrained:
+    """Reweight the branches of a site by the survival of its objects.
+
+    Parameters
+    ----------
+    site
+        Branches and objects.
+
+    Returns
+    -------
+    Constrained
+        Weights, curves, contributions of objects and sensitivities.
+
+    Raises
+    ------
+    InputError
+        If no branch lets the objects stand, or a measure is in no hazard curve.
+    """
+    result = _reweighted(site, site.objects)
+    if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
+        raise InputError(
+            "objects: in no branch of the hazard do all of them stand with a probability above "
+            f"{LEAST_SURVIVAL:g}; {_most_at_odds(site)} is most at odds with the branches: check its fragility, "
+            f"its "
+            "age and the units of the hazard."
+        )
+    return Constrained(site, result, _by_object(site), _sensitivity(site))
+
+
+def _reweighted(
+    site: Site, objects: Sequence[StandingObject], shared: float | None = None
+) -> Reweighted:
+    return reweight(
+        site.branches,
+        objects,
+        shared_error=site.shared_error if shared is None else shared,
+        same_earthquakes=site.same_earthquakes,
+        velocity=site.velocity,
+    )
+
+
+def _most_at_odds(site: Site) -> str:
+    best = {body.name: _reweighted(site, [body]).log_survival.max() for body in site.objects}
+    return min(best, key=lambda name: best[name])
+
+
+def _level_ratio(site: Site, result: Reweighted) -> float:
+    ratios = result.ratios(site.measure)
+    row = ratios[np.isclose(ratios["annual_rate"], DECISION_RATE)]
+    return float(row["level_ratio"].iloc[0])
+
+
+def _by_object(site: Site) -> pd.DataFrame:
+    rows = []
+    for body in site.objects:
+        alone = _reweighted(site, [body])
+        others = [other for other in site.objects if other is not body]
+        rows.append(
+            {
+                "object": body.name,
+                "information_bit": alone.information,
+                "level_ratio_alone": _level_ratio(site, alone),
+                "level_ratio_without": _level_ratio(site, _reweighted(site, others))
+                if others
+                else 1.0,
+            }
+        )
+    return pd.DataFrame(rows).sort_values("information_bit", ascending=False, ignore_index=True)
+
+
+def _sensitivity(site: Site) -> pd.DataFrame:
+    """Ratio of levels where one assumption at a time is another."""
+    objects = site.objects
+    cases: list[tuple[str, Sequence[StandingObject], float | None]] = [
+        ("as stated", objects, None),
+        ("ages half as long", scaled(objects, age=0.5), None),
+        ("ages twice as long", scaled(objects, age=2.0), None),
+        ("objects withstand 25 % more", scaled(objects, capacity=1.25), None),
+        ("objects withstand 25 % less", scaled(objects, capacity=0.75), None),
+        (
+            f"boxes under two components instead of one plane (withstand {1 - IN_SPACE:.0%} less)",
+            scaled(objects, capacity=IN_SPACE),
+            None,
+        ),
+    ]
+    if len(objects) > 1:
+        cases += [
+            ("errors of fragilities independent", objects, 0.0),
+            ("errors of fragilities all the same", objects, 1.0),
+        ]
+    return pd.DataFrame(
+        [
+            {
+                "assumption": name,
+                "level_ratio": _level_ratio(site, _reweighted(site, moved, shared)),
+            }
+            for name, moved, shared in cases
+        ]
+    )

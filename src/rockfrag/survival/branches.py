@@ -1,0 +1,223 @@
+"""Branches of a hazard model: a logic tree's end branches, each with its weight and a hazard curve a measure.
+
+Two ways to give them: OpenQuake's exports (``realizations_….csv`` and a file of hazard curves for each
+realization, ``hazard_curve-rlz-000-PGA_….csv``), or plain tables with the columns ``branch``, ``weight``, a
+level (``pga_g``, ``pgv_cm_s``, ``sa_0_3s_g``) and how often it is exceeded (``annual_rate``,
+``return_period_years`` or such as ``poe_50_years``), a row a level; a second table may give another measure of
+the same branches.
+"""
+
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rockfrag.assess.hazard import openquake_csv
+from rockfrag.assess.hazard.curve import HazardCurve, make_curve
+from rockfrag.assess.hazard.measure import Measure
+from rockfrag.assess.hazard.table import annual_rates, level_column, measure_of
+from rockfrag.errors import InputError
+from rockfrag.plain_text import read_text
+from rockfrag.tabular import read_cells, read_rows
+
+LARGEST_FILE = 50_000_000
+"""Bytes of a file of branches."""
+
+MOST_BRANCHES = 10_000
+"""Branches of one site."""
+
+WEIGHT_ERROR = 1e-3
+"""By how much the sum of weights may differ from 1, which rounding to four digits explains."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One end branch of a logic tree at a site.
+
+    Attributes
+    ----------
+    name
+        What it is called.
+    weight
+        Its weight; those of all branches sum to 1.
+    curves
+        Its hazard curves by measure.
+    """
+
+    name: str
+    weight: float
+    curves: Mapping[Measure, HazardCurve] = field(default_factory=dict)
+
+
+def read_branches(
+    paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str] | None = None
+) -> list[Branch]:
+    """Read the branches of a site.
+
+    Parameters
+    ----------
+    paths
+        Tables of branches, one a measure; or, with ``realizations``, OpenQuake's files of hazard curves.
+    realizations
+        OpenQuake's file of realizations, with the columns ``rlz_id``, ``branch_path`` and ``weight``.
+
+    Returns
+    -------
+    The branches in the order of the file, with weights of sum 1 to the last digit.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, weights do not sum to one, or branches do not have the same measures.
+    """
+    if not paths:
+        raise InputError("hazard: name at least one file with hazard curves of branches.")
+    found = _of_openquake(paths, realizations) if realizations else _of_tables(paths)
+    where = str(realizations or paths[0])
+    if len(found) > MOST_BRANCHES:
+        raise InputError(
+            f"{where}: {len(found)} branches are more than the {MOST_BRANCHES} allowed."
+        )
+    _check(found, where)
+    total = sum(branch.weight for branch in found)
+    return [Branch(b.name, b.weight / total, b.curves) for b in found]
+
+
+def _check(branches: Sequence[Branch], where: str) -> None:
+    for branch in branches:
+        if not (math.isfinite(branch.weight) and branch.weight > 0):
+            raise InputError(
+                f"{where}: branch {branch.name[:60]} has the weight {branch.weight:g}; a weight is above 0."
+            )
+    total = sum(branch.weight for branch in branches)
+    if abs(total - 1.0) > WEIGHT_ERROR:
+        raise InputError(
+            f"{where}: the weights of the {len(branches)} branches sum to {total:.6g} and not to 1; give every "
+            f"end "
+            "branch once."
+        )
+    for branch in branches[1:]:
+        if set(branch.curves) != set(branches[0].curves):
+            raise InputError(
+                f"{where}: branch {branch.name[:60]} has curves of {_names(branch)}, branch "
+                f"{branches[0].name[:60]} "
+                f"of {_names(branches[0])}; give the same measures for all."
+            )
+
+
+def _names(branch: Branch) -> str:
+    return " and ".join(sorted(measure.name for measure in branch.curves)) or "nothing"
+
+
+def _of_tables(paths: Sequence[str | os.PathLike[str]]) -> list[Branch]:
+    """Branches of plain tables."""
+    weights: dict[str, float] = {}
+    curves: dict[str, dict[Measure, HazardCurve]] = {}
+    for path in paths:
+        for name, (weight, curve) in _table(path).items():
+            if weights.setdefault(name, weight) != weight:
+                raise InputError(
+                    f"{path}: branch {name[:60]} has the weight {weight:g}, and {weights[name]:g} elsewhere."
+                )
+            of_branch = curves.setdefault(name, {})
+            if curve.measure in of_branch:
+                raise InputError(
+                    f"{path}: {curve.measure.name} of branch {name[:60]} is given twice."
+                )
+            of_branch[curve.measure] = curve
+    return [Branch(name, weight, curves[name]) for name, weight in weights.items()]
+
+
+def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]:
+    """Weight and curve of every branch of one table."""
+    lines = read_cells(path)
+    header = [title.strip().lower() for title in lines[0][1]] if lines else []
+    levels = [title for title in header if level_column(title)]
+    rates = [title for title in header if title not in (*levels, "branch", "weight")]
+    if len(levels) != 1 or len(rates) != 1 or not {"branch", "weight"} <= set(header):
+        raise InputError(
+            f"{path}: expected the columns branch, weight, one of levels such as pga_g and one of annual_rate, "
+            f"return_period_years or such as poe_50_years; found {', '.join(header)[:120] or 'nothing'}."
+        )
+    measure, factor = measure_of(levels[0], str(path))
+    points: dict[str, list[tuple[float, float]]] = {}
+    weights: dict[str, float] = {}
+    for row in read_rows(path, header, least=2):
+        name, weight = row.text("branch"), row.number("weight")
+        if weights.setdefault(name, weight) != weight:
+            raise row.error(
+                "weight", f"branch {name} has the weight {weights[name]:g} in an earlier row"
+            )
+        points.setdefault(name, []).append((row.positive(levels[0]) * factor, row.number(rates[0])))
+    found = {}
+    for name, pairs in points.items():
+        x, y = zip(*sorted(pairs), strict=True)
+        where = f"{path}, branch {name[:60]}"
+        found[name] = (
+            weights[name],
+            make_curve(measure, x, annual_rates(rates[0], list(y), where), where),
+        )
+    return found
+
+
+def _of_openquake(
+    paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str]
+) -> list[Branch]:
+    """Branches of OpenQuake's exports."""
+    weights: dict[int, float] = {}
+    names: dict[int, str] = {}
+    for number, row in _realizations(realizations):
+        if number in weights:
+            raise InputError(f"{realizations}: realization {number} is given twice.")
+        weights[number], names[number] = row
+    curves: dict[int, dict[Measure, HazardCurve]] = {number: {} for number in weights}
+    for path in paths:
+        number = _realization_of(path)
+        if number not in weights:
+            raise InputError(f"{path}: realization {number} is not in {realizations}.")
+        curve = openquake_csv.read_curve(read_text(path, LARGEST_FILE), str(path))
+        if curve.measure in curves[number]:
+            raise InputError(
+                f"{path}: {curve.measure.name} of realization {number} is given twice."
+            )
+        curves[number][curve.measure] = curve
+    return [Branch(names[number], weights[number], curves[number]) for number in weights]
+
+
+def _realizations(path: str | os.PathLike[str]) -> list[tuple[int, tuple[float, str]]]:
+    """Number, weight and name of each realization."""
+    lines = read_cells(path)
+    header = lines[0][1] if lines else []
+    places = {title: i for i, title in enumerate(header)}
+    if not {"rlz_id", "weight"} <= set(places):
+        raise InputError(
+            f"{path}: expected OpenQuake's realizations with the columns rlz_id, branch_path and weight; found "
+            f"{', '.join(header)[:120] or 'nothing'}."
+        )
+    found = []
+    for line, cells in lines[1:]:
+        try:
+            number, weight = int(cells[places["rlz_id"]]), float(cells[places["weight"]])
+            path_of = cells[places["branch_path"]] if "branch_path" in places else ""
+        except (ValueError, IndexError):
+            raise InputError(f"{path}, line {line}: expected a number and a weight.") from None
+        found.append((number, (weight, f"rlz-{number:03d} {path_of}".strip())))
+    return found
+
+
+_RLZ = re.compile(r"rlz-(\d+)")
+
+
+def _realization_of(path: str | os.PathLike[str]) -> int:
+    """Which realization a file of hazard curves is of: its first line says so, or its name."""
+    head = read_text(path, LARGEST_FILE).partition("\n")[0]
+    found = _RLZ.search(head) or _RLZ.search(Path(path).name)
+    if found is None:
+        raise InputError(
+            f"{path}: neither its first line nor its name says which realization it is of (such as rlz-003); "
+            f"export "
+            "with individual_rlzs = true."
+        )
+    return int(found[1])

@@ -1,0 +1,167 @@
+"""How often a site sees shaking near given levels: a hazard curve as weights of points in one or two measures."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.measure import PGA, PGV, Measure
+from rockfrag.errors import InputError
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
+
+Floats = NDArray[np.float64]
+
+GRID = 600
+"""Levels on which a hazard curve is integrated."""
+
+VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
+"""PGV over (PGA times PGV/PGA): cm/s for g and s."""
+
+NODES = 15
+"""Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration."""
+
+
+@dataclass(frozen=True)
+class VelocityRelation:
+    """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal.
+
+    Attributes
+    ----------
+    median_s
+        Median of PGV/PGA [s].
+    sd_ln
+        Standard deviation of ln(PGV/PGA) from one earthquake to the next [-].
+    """
+
+    median_s: float
+    sd_ln: float
+
+
+@dataclass(frozen=True)
+class ShakingRates:
+    """Points of shaking with the annual rates that they stand for in each branch of the hazard.
+
+    Attributes
+    ----------
+    values
+        Value of each measure at each point, in the measure's unit, shape (points,).
+    rates
+        Annual rate of each point [1/year], shape (branches, points).  Their sum over points above a level is
+        how often that level is exceeded.
+    """
+
+    values: Mapping[Measure, Floats]
+    rates: Floats
+
+
+def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
+    """Weights with which a function that is linear in ln level is integrated over a hazard curve [1/year].
+
+    ∫ P(x) |dν(x)| from the first level on, where ν is a power law between levels and P stays as it is above the
+    last one, is the sum of P at the levels times these weights.
+
+    Parameters
+    ----------
+    curve
+        The hazard curve.
+    levels
+        Rising levels in the curve's unit, shape (n,), n ≥ 2.
+
+    Returns
+    -------
+    Array of shape (n,).
+    """
+    rate = curve.rate(levels)
+    fall = -np.diff(np.log(rate))
+    # mean of ν over a piece in ln x, (ν0 - ν1) / ln(ν0/ν1)
+    mean = rate[:-1] * np.where(fall > 1e-12, -np.expm1(-fall) / np.maximum(fall, 1e-300), 1.0)
+    weights = np.zeros(levels.size)
+    weights[:-1] += rate[:-1] - mean
+    weights[1:] += mean - rate[1:]
+    weights[-1] += rate[-1]
+    return weights
+
+
+def shaking_rates(
+    branches: Sequence[Mapping[Measure, HazardCurve]],
+    wanted: set[Measure],
+    velocity: VelocityRelation | None,
+    reach: tuple[float, float],
+) -> ShakingRates:
+    """Points of shaking at a site in all measures that the objects are sensitive to, the same for all branches.
+
+    Parameters
+    ----------
+    branches
+        Hazard curves of each branch by measure.
+    wanted
+        Measures of the objects' fragilities.
+    velocity
+        PGV that comes with a PGA, where PGV is wanted and the branches have no curve of it, or both are wanted.
+    reach
+        Lowest and highest level between which fragilities change, a range to be covered.
+
+    Returns
+    -------
+    ShakingRates
+        On a grid of levels of the one measure, and for PGA and PGV on nodes of the velocity at each.
+
+    Raises
+    ------
+    InputError
+        If a measure is in no curve and follows from none.
+    """
+    measures = set(branches[0])
+    if len(wanted) == 1 and wanted <= measures:
+        (measure,) = wanted
+        levels, rates = _on_grid([curves[measure] for curves in branches], reach)
+        return ShakingRates({measure: levels}, rates)
+    if wanted <= {PGA, PGV} and PGA in measures and velocity is not None:
+        levels, rates = _on_grid([curves[PGA] for curves in branches], reach)
+        return _with_velocity(levels, rates, velocity)
+    missing = sorted(measure.name for measure in wanted - measures) or ["PGV that comes with PGA"]
+    raise InputError(
+        f"hazard: an object's fragility needs {' and '.join(missing)}, but the branches give "
+        f"{', '.join(sorted(measure.name for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
+        f"the "
+        "PGV/PGA of the site, or a fragility in that measure."
+    )
+
+
+def _with_velocity(levels: Floats, rates: Floats, velocity: VelocityRelation) -> ShakingRates:
+    nodes, weight = np.polynomial.hermite_e.hermegauss(NODES)
+    ratio = velocity.median_s * np.exp(velocity.sd_ln * nodes)
+    pga = np.repeat(levels, NODES)
+    pgv = VELOCITY_PER_G * (levels[:, np.newaxis] * ratio).ravel()
+    spread = rates[:, :, np.newaxis] * (weight / weight.sum())
+    return ShakingRates({PGA: pga, PGV: pgv}, spread.reshape(len(rates), -1))
+
+
+def _on_grid(curves: Sequence[HazardCurve], reach: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Levels over all curves and the reach of the fragilities, and the rates that they stand for in each curve."""
+    known = np.concatenate([curve.levels for curve in curves])
+    grid = np.geomspace(min(known.min(), reach[0]), max(known.max(), reach[1]), GRID)
+    # a few hundred branches with levels of their own would make the grid needlessly fine
+    levels = np.union1d(grid, np.unique(known)) if np.unique(known).size <= GRID else grid
+    return levels, np.array([rate_weights(curve, levels) for curve in curves])
+
+
+def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floats:
+    """Weighted quantiles along the first axis, the cumulative weight interpolated, shape (quantiles, n).
+
+    Parameters
+    ----------
+    values
+        Shape (branches, n).
+    weights
+        Shape (branches,), of sum 1.
+    quantiles
+        Between 0 and 1, shape (quantiles,).
+    """
+    order = np.argsort(values, axis=0)
+    cumulative = np.cumsum(weights[order], axis=0)
+    ordered = np.take_along_axis(values, order, axis=0)
+    columns = zip(cumulative.T, ordered.T, strict=True)
+    return np.array([np.interp(quantiles, c, v) for c, v in columns]).T

@@ -1,0 +1,262 @@
+"""Posterior weights of hazard branches, given that objects still stand.
+
+The probability that all objects stand if branch i is true is
+
+    S_i = E[exp(-∫ λ_i(t) dt)],    λ_i(t) = ∫ [1 - Π (1 - P_k(x))] |dν_i(x)|,
+
+with the product over the objects k that stood at time t, and the expectation over their ages and the errors of
+their fragilities, which may be correlated.  Objects at one site feel the same earthquakes: λ is the rate of
+earthquakes that topple at least one of them, not the sum of their own rates.  Objects far apart feel different
+earthquakes; their rates add up.  Weights afterwards are w_i S_i / Σ w_j S_j (Bayes; Baker and others 2013, eq. 8).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import special
+
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.measure import Measure
+from rockfrag.errors import InputError
+from rockfrag.survival.branches import Branch
+from rockfrag.survival.evidence import StandingObject, draw_errors
+from rockfrag.survival.rates import (
+    ShakingRates,
+    VelocityRelation,
+    quantile_weights,
+    shaking_rates,
+)
+
+Floats = NDArray[np.float64]
+
+SAMPLES = 1024
+"""Draws of ages and errors of fragilities."""
+
+RATES = (1e-2, 1e-3, 1e-4, 1e-5)
+"""Annual rates at which curves before and after are compared [1/year]."""
+
+QUANTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
+"""Fractiles of the hazard over the branches."""
+
+
+@dataclass(frozen=True)
+class Reweighted:
+    """Weights of branches before and after.
+
+    Attributes
+    ----------
+    branches
+        The branches.
+    log_survival
+        ln S_i, the logarithm of the probability that all objects stand, shape (branches,).
+    weights
+        Weights afterwards, shape (branches,), of sum 1.
+    """
+
+    branches: tuple[Branch, ...]
+    log_survival: Floats
+    weights: Floats
+
+    @property
+    def prior(self) -> Floats:
+        """Weights before, shape (branches,)."""
+        return np.array([branch.weight for branch in self.branches])
+
+    @property
+    def information(self) -> float:
+        """How much the weights moved: Kullback and Leibler's divergence of after from before [bit]."""
+        return float(special.rel_entr(self.weights, self.prior).sum() / np.log(2.0))
+
+    def table(self) -> pd.DataFrame:
+        """A row a branch: ``branch``, ``weight_before``, ``survival``, ``weight_after``, ``ratio``."""
+        return pd.DataFrame(
+            {
+                "branch": [branch.name for branch in self.branches],
+                "weight_before": self.prior,
+                "survival": np.exp(self.log_survival),
+                "weight_after": self.weights,
+                "ratio": self.weights / self.prior,
+            }
+        )
+
+    def curves(self, measure: Measure) -> pd.DataFrame:
+        """Mean and fractile curves before and after.
+
+        Parameters
+        ----------
+        measure
+            A measure of the branches.
+
+        Returns
+        -------
+        A row a level: ``level``, and annual rates ``mean_before``, ``mean_after`` and such as
+        ``fractile_0.84_before``.
+        """
+        levels = common_levels(self.branches, measure)
+        rates = np.array([branch.curves[measure].rate(levels) for branch in self.branches])
+        columns = {"level": levels}
+        for when, weights in (("before", self.prior), ("after", self.weights)):
+            columns[f"mean_{when}"] = weights @ rates
+            fractiles = quantile_weights(rates, weights, np.array(QUANTILES))
+            for q, values in zip(QUANTILES, fractiles, strict=True):
+                columns[f"fractile_{q:g}_{when}"] = values
+        return pd.DataFrame(columns)
+
+    def ratios(self, measure: Measure) -> pd.DataFrame:
+        """Mean hazard before and after at annual rates of 1e-2 to 1e-5.
+
+        Returns
+        -------
+        A row a rate: ``annual_rate``, ``level_before``, ``level_after`` (NaN beyond the curves),
+        ``level_ratio``, and ``rate_ratio``, by which the rate at the level before has changed.
+        """
+        curves = self.curves(measure)
+        log_level = np.log(curves["level"].to_numpy())
+        before, after = (np.log(curves[f"mean_{when}"].to_numpy()) for when in ("before", "after"))
+        wanted = np.log(RATES)
+        levels = [
+            np.exp(np.interp(-wanted, -rates, log_level, left=np.nan, right=np.nan))
+            for rates in (before, after)
+        ]
+        at = np.interp(np.log(levels[0]), log_level, after)
+        return pd.DataFrame(
+            {
+                "annual_rate": RATES,
+                "level_before": levels[0],
+                "level_after": levels[1],
+                "level_ratio": levels[1] / levels[0],
+                "rate_ratio": np.exp(at - wanted),
+            }
+        )
+
+
+def common_levels(branches: Sequence[Branch], measure: Measure) -> Floats:
+    """Levels of a measure that any branch states."""
+    return np.unique(np.concatenate([branch.curves[measure].levels for branch in branches]))
+
+
+def reweight(
+    branches: Sequence[Branch],
+    objects: Sequence[StandingObject],
+    *,
+    shared_error: float = 0.0,
+    same_earthquakes: bool = True,
+    velocity: VelocityRelation | None = None,
+    samples: int = SAMPLES,
+) -> Reweighted:
+    """Weigh branches of the hazard by how probably they let all objects stand.
+
+    Parameters
+    ----------
+    branches
+        Branches with weights of sum 1 and a hazard curve each.
+    objects
+        Objects that stand.
+    shared_error
+        Correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the same) [-].
+    same_earthquakes
+        Whether the objects stand at one site and feel the same earthquakes; False where they are so far apart that
+        each feels its own.
+    velocity
+        PGV that comes with a PGA at the site, where a fragility asks for both.
+    samples
+        Draws of errors and ages, a power of two.
+
+    Returns
+    -------
+    Reweighted
+        Survival and weights of every branch.
+
+    Raises
+    ------
+    InputError
+        If there is no object, the correlation is not within 0 to 1, or a measure is in no hazard curve.
+    """
+    if not objects:
+        raise InputError("objects: give at least one that stands.")
+    if not 0.0 <= shared_error <= 1.0:
+        raise InputError(
+            f"shared_error: a correlation lies between 0 and 1, found {shared_error:g}."
+        )
+    wanted = set().union(*(body.measures for body in objects))
+    reach = (min(b.reach[0] for b in objects), max(b.reach[1] for b in objects))
+    normal, uniform = draw_errors(len(objects), shared_error, samples)
+    errors = normal * [body.sd_ln for body in objects]
+    years = np.column_stack(
+        [body.age.exposure(u) for body, u in zip(objects, uniform.T, strict=True)]
+    )
+    shaking = shaking_rates([branch.curves for branch in branches], wanted, velocity, reach)
+    expected = _expected_topplings(objects, shaking, errors, years, same_earthquakes)
+    log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
+    return _weighted(tuple(branches), np.asarray(log_survival))
+
+
+def _weighted(branches: tuple[Branch, ...], log_survival: Floats) -> Reweighted:
+    with np.errstate(divide="ignore"):
+        logs = np.log([branch.weight for branch in branches]) + log_survival
+    return Reweighted(branches, log_survival, np.exp(logs - special.logsumexp(logs)))
+
+
+def _expected_topplings(
+    objects: Sequence[StandingObject],
+    shaking: ShakingRates,
+    errors: Floats,
+    years: Floats,
+    same_earthquakes: bool,
+) -> Floats:
+    """Expected number of earthquakes that topple an object that stands, (samples, branches)."""
+    indices = [body.index(shaking) for body in objects]
+    expected = np.zeros((len(errors), len(shaking.rates)))
+    for at, (error, exposure) in enumerate(zip(errors, years, strict=True)):
+        stands = np.ones(shaking.rates.shape[1])
+        # from the object that has stood longest: each next one adds to what may topple since then
+        order = np.argsort(-exposure, kind="stable")
+        until = np.append(exposure[order[1:]], 0.0)
+        for k, next_exposure in zip(order, until, strict=True):
+            topples = objects[k].probability(indices[k], error[k])
+            if same_earthquakes:
+                stands = stands * (1.0 - topples)
+                expected[at] += (exposure[k] - next_exposure) * (shaking.rates @ (1.0 - stands))
+            else:
+                expected[at] += exposure[k] * (shaking.rates @ topples)
+    return expected
+
+
+def scaled(
+    objects: Sequence[StandingObject], capacity: float = 1.0, age: float = 1.0
+) -> list[StandingObject]:
+    """Objects that withstand a factor more shaking, or have stood a factor longer.
+
+    Parameters
+    ----------
+    objects
+        The objects.
+    capacity
+        Factor on the shaking that they withstand [-].
+    age
+        Factor on their ages and on the time for which they have been fragile [-].
+    """
+    found = []
+    for body in objects:
+        c = body.coefficients
+        moved = (c[0] - c[1] * float(np.log(capacity)), *c[1:])
+        ages = replace(
+            body.age,
+            low=body.age.low * age,
+            high=body.age.high * age,
+            fragile_for=body.age.fragile_for * age,
+        )
+        found.append(replace(body, coefficients=moved, age=ages))
+    return found
+
+
+def mean_hazard(
+    branches: Sequence[Branch], measure: Measure, weights: Floats, source: str
+) -> HazardCurve:
+    """Mean hazard curve of branches under weights."""
+    levels = common_levels(branches, measure)
+    rates = weights @ np.array([branch.curves[measure].rate(levels) for branch in branches])
+    return HazardCurve(measure, levels, np.asarray(rates), source)

@@ -1,0 +1,161 @@
+"""A site with the branches of its hazard and the objects that stand there, as ``site.yaml`` describes it."""
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rockfrag.assess.hazard.measure import PGA, Measure, read_measure
+from rockfrag.errors import InputError
+from rockfrag.schema import checked
+from rockfrag.survival.branches import Branch, read_branches
+from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficients
+from rockfrag.survival.rates import VelocityRelation
+from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
+from rockfrag.yaml_file import read_yaml
+
+
+@dataclass(frozen=True)
+class Site:
+    """What is known of a site.
+
+    Attributes
+    ----------
+    name
+        What the site is called.
+    branches
+        Branches of its hazard.
+    objects
+        What stands there.
+    shared_error
+        Correlation of the errors of the objects' fragilities [-].
+    same_earthquakes
+        Whether the objects feel the same earthquakes.
+    velocity
+        PGV that comes with a PGA; None if not stated.
+    """
+
+    name: str
+    branches: tuple[Branch, ...]
+    objects: tuple[StandingObject, ...]
+    shared_error: float
+    same_earthquakes: bool
+    velocity: VelocityRelation | None
+
+    @property
+    def measure(self) -> Measure:
+        """Measure in which curves are compared: PGA where the branches give it."""
+        measures = list(self.branches[0].curves)
+        return PGA if PGA in measures else measures[0]
+
+
+def read_site(path: str | os.PathLike[str]) -> Site:
+    """Read a site from a YAML file such as ``site.yaml``.
+
+    Parameters
+    ----------
+    path
+        The file; paths in it are relative to it.
+
+    Returns
+    -------
+    Site
+        Branches, objects and how these depend on each other.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or does not describe a site with branches and objects.
+    """
+    known = checked(read_yaml(path), "site", str(path))
+    try:
+        return _site(known, Path(path).parent)
+    except InputError as error:
+        text = str(error)
+        raise InputError(
+            text if text.startswith(str(Path(path).parent)) else f"{path}: {text}"
+        ) from None
+
+
+def _site(known: Mapping[str, Any], folder: Path) -> Site:
+    hazard = known["hazard"]
+    realizations = hazard.get("realizations")
+    velocity = hazard.get("velocity")
+    return Site(
+        name=known.get("name", "the site"),
+        branches=tuple(
+            read_branches(
+                [folder / name for name in hazard["curves"]],
+                folder / realizations if realizations else None,
+            )
+        ),
+        objects=tuple(_objects(known["objects"])),
+        shared_error=float(known.get("shared_error", 0.0)),
+        same_earthquakes=bool(known.get("same_earthquakes", True)),
+        velocity=None
+        if velocity is None
+        else VelocityRelation(velocity["median_s"], velocity["sd_ln"]),
+    )
+
+
+def _objects(given: Sequence[Mapping[str, Any]]) -> list[StandingObject]:
+    found: list[StandingObject] = []
+    for at, settings in enumerate(given, start=1):
+        name = settings.get("name", f"object {at}")
+        if any(body.name == name for body in found):
+            raise InputError(f"objects: {name} is given twice; give each its own name.")
+        try:
+            found.append(_object(name, settings))
+        except InputError as error:
+            raise InputError(f"objects, {name}: {error}") from None
+    return found
+
+
+def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
+    measure = read_measure(settings.get("measure", "PGA"), "measure")
+    coefficients = settings.get("coefficients")
+    if (coefficients is None) == ("median" not in settings):
+        raise InputError("give either median and beta, or coefficients, of its fragility.")
+    if coefficients is None:
+        if "beta" not in settings:
+            raise InputError(
+                "beta is missing; give the logarithmic standard deviation of its fragility."
+            )
+        coefficients = lognormal_coefficients(
+            _median(settings["median"], measure), settings["beta"]
+        )
+    if coefficients[1] <= 0:
+        raise InputError(
+            "coefficients: the second one, of ln PGA, must be above 0, or shaking would help it stand."
+        )
+    if len(coefficients) == 3 and measure != PGA:
+        raise InputError(
+            "coefficients: three of them are of 1, ln PGA and ln(PGV/PGA); leave measure out."
+        )
+    return StandingObject(
+        name, measure, tuple(coefficients), float(settings.get("median_sd_ln", 0.0)), _age(settings)
+    )
+
+
+def _median(text: str, measure: Measure) -> float:
+    """Median of a fragility in the measure's unit."""
+    velocity = measure.kind == "PGV"
+    value = quantity(text, "m_s" if velocity else "m_s2", None)
+    value = value * CENTIMETRES_PER_METRE if velocity else value / GRAVITY
+    if not value > 0:
+        raise InputError(f"median: expected more than 0, found {text}.")
+    return value
+
+
+def _age(settings: Mapping[str, Any]) -> Age:
+    age, longest = settings["age_years"], float(settings.get("fragile_for_years", math.inf))
+    if isinstance(age, Mapping):
+        return Age(age["median"], age["median"], age["sd_ln"], longest)
+    low, high = age if isinstance(age, list) else (age, age)
+    if high < low:
+        raise InputError(
+            f"age_years: the range [{low:g}, {high:g}] ends before it begins; write the lower end first."
+        )
+    return Age(float(low), float(high), 0.0, longest)

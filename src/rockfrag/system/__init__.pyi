@@ -1,0 +1,26 @@
+from .blocks import (
+    Block as Block,
+    Body as Body,
+    Column as Column,
+    Stack as Stack,
+    as_system as as_system,
+)
+from .body import (
+    Circle as Circle,
+    Interval as Interval,
+    Polygon as Polygon,
+    RigidBody as RigidBody,
+)
+from .contact import (
+    Contact as Contact,
+    Friction as Friction,
+    ImpactLaw as ImpactLaw,
+)
+from .mesh import (
+    Shape as Shape,
+    read_shape as read_shape,
+)
+from .system import (
+    Start as Start,
+    System as System,
+)

@@ -1,0 +1,542 @@
+"""Rigid blocks and stacks of two: what every integrator, fast or plain, starts from.
+
+Conventions (thesis chapter 2, ``docs/derivation.md``): a rotation θ > 0 is clockwise and its pole is the
+right corner, s = +1; an acceleration a > 0 of the ground pushes blocks towards θ < 0.  Lengths are read
+in the standing block's frame, x to the right and y up, and
+R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwise.
+"""
+
+import math
+import os
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from rockfrag.errors import InputError
+from rockfrag.input_checks import positive_number, real_number, shown
+from rockfrag.keywords import named_fields
+from rockfrag.plausibility import inertia_warning, light_giant_warning
+from rockfrag.system import geometry
+from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
+from rockfrag.system.contact import Contact
+from rockfrag.system.system import MOST_BODIES, System, box, cylinder, round_inertia, stands
+from rockfrag.units import GRAVITY
+
+
+class Vector(NamedTuple):
+    """A vector in the plane [m]: x to the right, y up."""
+
+    x: float
+    y: float
+
+    def turned(self, angle: float) -> "Vector":
+        """Turn clockwise by ``angle`` [rad]: R(angle)(x, y)."""
+        return Vector(*geometry.turned(self.x, self.y, angle))
+
+    def minus(self, other: "Vector") -> "Vector":
+        """Return the vector from ``other``'s tip to this one's."""
+        return Vector(self.x - other.x, self.y - other.y)
+
+
+class UnlikelyBlock(UserWarning):
+    """A block whose sizes or inertia are probably given in other units."""
+
+
+@named_fields
+@dataclass(frozen=True)
+class Block:
+    """A rigid body that stands on two edges.
+
+    Parameters
+    ----------
+    width
+        Distance between the two edges it stands and rocks on, 2b [m].
+    height
+        Height of the block, 2h [m]; a statue on a pedestal stands at the pedestal's height.
+    mass
+        Mass [kg].
+    inertia
+        Moment of inertia about the centre of gravity [kg m²]; that of a uniform rectangle,
+        m (b² + h²) / 3, if not given.
+    cg_height
+        Height of the centre of gravity above the base [m]; half the height if not given.
+    cg_offset
+        Distance of the centre of gravity to the right of the middle of the base [m].
+    lean
+        Angle by which an uneven base makes the block lean clockwise as it stands [rad].
+    depth
+        Width across the plane of motion [m], which makes the block a body in space with a rectangular base; its
+        inertia, where given, is then the tensor, shape (3, 3) [kg m²].
+    round
+        Whether base and block are round, of the diameter ``width``; a body in space as well.
+
+    Raises
+    ------
+    InputError
+        If a length, mass or inertia is not positive, if the centre of gravity is above the top, or if the
+        block cannot stand because its centre of gravity is not above its base.
+
+    Warns
+    -----
+    UnlikelyBlock
+        If it is larger than 20 m and lighter than air, or its inertia is that of a body of another size.
+
+    Examples
+    --------
+    >>> from rockfrag import Block
+    >>> statue = Block(width=0.35, height=1.2, mass=180.0)
+    >>> round(statue.alpha, 3), round(statue.frequency(), 2)
+    (0.284, 3.43)
+    """
+
+    width: float
+    height: float
+    mass: float
+    inertia: float | Tensor | None = None
+    cg_height: float | None = None
+    cg_offset: float = 0.0
+    lean: float = 0.0
+    depth: float | None = None
+    round: bool = False
+
+    def __post_init__(self) -> None:
+        positive_number("Block: width", self.width, "metres")
+        positive_number("Block: height", self.height, "metres")
+        positive_number("Block: mass", self.mass, "kilograms")
+        self._check_space()
+        if self.cg_height is not None:
+            positive_number("Block: cg_height", self.cg_height, "metres")
+        real_number("Block: cg_offset", self.cg_offset, "metres")
+        real_number("Block: lean", self.lean, "radians")
+        if self.cg_height is not None and self.cg_height > self.height:
+            raise InputError(
+                f"Block: cg_height {self.cg_height} m is above the top, which is at height {self.height} m."
+            )
+        doubts = light_giant_warning(self.width, self.height, self.mass) or inertia_warning(
+            self.width, self.height, self.mass, self.centroidal_inertia
+        )
+        if doubts:
+            warnings.warn(f"Block: {doubts}", UnlikelyBlock, stacklevel=4)
+        if not geometry.can_stand(self.shape):
+            raise InputError(
+                f"Block: with cg_offset {self.cg_offset} m and lean {self.lean} rad its centre of "
+                f"gravity is not above its base of {self.width} m, so it cannot stand."
+            )
+
+    def _check_space(self) -> None:
+        """Refuse an inertia, depth or roundness that do not fit together."""
+        if not isinstance(self.round, bool):
+            raise InputError(f"Block: round: expected True or False, got {shown(self.round)}.")
+        if self.depth is not None:
+            positive_number("Block: depth", self.depth, "metres")
+            if self.round:
+                raise InputError("Block: a round block has its width as depth; leave depth out.")
+        if self.inertia is not None and self.in_space:
+            object.__setattr__(self, "inertia", checked_tensor(self.inertia))
+        elif self.inertia is not None:
+            positive_number("Block: inertia", self.inertia, "kg m²")
+
+    @classmethod
+    def from_edges(
+        cls,
+        left: float,
+        right: float,
+        *,
+        cg_height: float,
+        height: float,
+        mass: float,
+        inertia: float,
+    ) -> "Block":
+        """Make a block of the distances at which its edges were measured.
+
+        Parameters
+        ----------
+        left, right
+            Horizontal distances of the edges from the centre of gravity [m].
+        cg_height, height
+            Height of the centre of gravity above the base, and of the whole body [m].
+        mass
+            Mass [kg].
+        inertia
+            Moment of inertia about the centre of gravity [kg m²].
+
+        Raises
+        ------
+        InputError
+            As :class:`Block`.
+        """
+        return cls(
+            width=left + right,
+            height=height,
+            mass=mass,
+            inertia=inertia,
+            cg_height=cg_height,
+            cg_offset=(left - right) / 2,
+        )
+
+    @classmethod
+    def from_mesh(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        direction_deg: float,
+        contact_tolerance: float,
+        edge_retreat: float = 0.0,
+        mass: float | None = None,
+        density: float | None = None,
+        metres_per_unit: float = 1.0,
+    ) -> "Block":
+        """Make the planar block that a body of any shape is in one direction of shaking.
+
+        Parameters
+        ----------
+        path
+            Closed mesh as OBJ, PLY or STL with z up, see :func:`rockfrag.system.mesh.read_shape`.
+        direction_deg
+            Direction of shaking, from the mesh's x axis towards its y axis [degrees].
+        contact_tolerance
+            Height above the lowest point up to which points carry [m].
+        edge_retreat
+            Distance by which the edges carry further in than those points [m].
+        mass, density
+            Mass [kg] or density [kg/m³]; one of them.
+        metres_per_unit
+            Length of the mesh's unit [m].
+
+        Raises
+        ------
+        InputError
+            If the mesh cannot be used, or the body could not stand so.
+        """
+        from rockfrag.system.mesh import read_shape
+
+        shape = read_shape(path, mass=mass, density=density, metres_per_unit=metres_per_unit)
+        return shape.block(direction_deg, contact_tolerance, edge_retreat)
+
+    @property
+    def in_space(self) -> bool:
+        """Whether the block is known in all directions, not in one plane only."""
+        return self.round or self.depth is not None
+
+    @property
+    def blocks(self) -> "tuple[Block, ...]":
+        """The blocks from below: this one."""
+        return (self,)
+
+    @cached_property
+    def body(self) -> RigidBody:
+        """The block as a body of a system."""
+        centre = (self.cg_offset, 0.0, self.h)
+        if self.round:
+            return cylinder(self.width, self.height, self.mass, self.inertia, centre)
+        if self.depth is not None:
+            return box(self.width, self.depth, self.height, self.mass, self.inertia, centre)
+        ends = Interval(-self.width / 2, self.width / 2)
+        return RigidBody(self.mass, self.shape.inertia, centre, ends, self.height, ends)
+
+    def system(self) -> System:
+        """Return the block as a system: it rocks, never slides, and conserves momentum in impacts."""
+        return System((self.body,), (Contact(tilt=self.lean),))
+
+    @cached_property
+    def shape(self) -> geometry.Shape:
+        """The block as the kernels know it, in the plane of its width."""
+        inertia = math.nan
+        if isinstance(self.inertia, tuple):
+            inertia = self.inertia[1][1]
+        elif self.inertia is not None:
+            inertia = self.inertia
+        elif self.round:
+            inertia = round_inertia(self.width, self.height, self.mass)
+        return geometry.shape_of(
+            self.width,
+            self.height,
+            self.mass,
+            inertia,
+            math.nan if self.cg_height is None else self.cg_height,
+            self.cg_offset,
+            self.lean,
+        )
+
+    @property
+    def b(self) -> float:
+        """Half the width [m]."""
+        return self.shape.b
+
+    @property
+    def h(self) -> float:
+        """Height of the centre of gravity above the base, before any lean [m]."""
+        return self.height / 2 if self.cg_height is None else self.cg_height
+
+    @property
+    def centroidal_inertia(self) -> float:
+        """Moment of inertia about the centre of gravity [kg m²]."""
+        return self.shape.inertia
+
+    @property
+    def slenderness(self) -> float:
+        """Height over width, H/B [-]."""
+        return self.height / self.width
+
+    @property
+    def centre(self) -> Vector:
+        """Centre of gravity of the standing block, from the middle of its base [m]."""
+        return Vector(self.shape.x, self.shape.y)
+
+    def arm(self, pole: int) -> Vector:
+        """Vector from the pole (+1 right, -1 left) to the centre of gravity as it stands [m]."""
+        return Vector(*geometry.arm(self.shape, pole))
+
+    def critical_angle(self, pole: int) -> float:
+        """Rotation about ``pole`` at which the block balances on it, a positive angle [rad]."""
+        return geometry.critical_angle(self.shape, pole)
+
+    @property
+    def alpha(self) -> float:
+        """The smaller of the two critical angles, θc = atan(b/h) of a symmetric block [rad]."""
+        return min(self.critical_angle(+1), self.critical_angle(-1))
+
+    def radius(self, pole: int = 1) -> float:
+        """Distance R from the pole to the centre of gravity [m]."""
+        return geometry.radius(self.shape, pole)
+
+    def pole_inertia(self, pole: int = 1) -> float:
+        """Moment of inertia about the pole, I_O = I_C + m R² [kg m²]."""
+        return geometry.pole_inertia(self.shape, pole)
+
+    def frequency(self, pole: int = 1, g: float = GRAVITY) -> float:
+        """Frequency parameter p = √(m g R / I_O) [1/s]; thesis eq. 2.16 with its square mended."""
+        return geometry.frequency(self.shape, pole, g)
+
+    def momentum_restitution(self, pole_before: int = 1) -> float:
+        """Ratio of angular velocities after and before an impact that conserves momentum [-].
+
+        The block turns about ``pole_before`` and comes down on the other pole (Housner 1963; thesis
+        eq. 2.12, 2.14: 1 - 1.5 sin²α for a uniform block).
+        """
+        return geometry.momentum_restitution(self.shape, -pole_before)
+
+
+@named_fields
+@dataclass(frozen=True)
+class Stack:
+    """A statue standing on a pedestal, both free to rock.
+
+    The two touch where the statue's base and the pedestal's top overlap.  A statue that reaches beyond its
+    pedestal rocks on the pedestal's upper edge, a point of both bodies as long as neither slides; so the ends
+    of the overlap are the poles, and all equations are those of a statue whose base is as wide as the overlap
+    (``contact_statue``).
+
+    Parameters
+    ----------
+    pedestal, statue
+        The lower and the upper block (blocks 1 and 2 of the thesis).
+    offset
+        Distance of the middle of the statue's base to the right of the pedestal's middle [m].
+
+    Raises
+    ------
+    InputError
+        If the two together cannot stand, or if the statue reaches so far beyond the pedestal that its edge
+        could touch the ground before anything has fallen.
+
+    Examples
+    --------
+    >>> from rockfrag import Block, Stack
+    >>> Stack(pedestal=Block(0.6, 0.4, 300.0), statue=Block(0.35, 1.2, 180.0)).mass
+    480.0
+    """
+
+    pedestal: Block
+    statue: Block
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, block in (("pedestal", self.pedestal), ("statue", self.statue)):
+            if not isinstance(block, Block):
+                raise InputError(f"Stack: {name} must be a Block, got {shown(block)}.")
+        real_number("Stack: offset", self.offset, "metres")
+        fault = geometry.fault_of(self.pile)
+        if fault == geometry.BESIDE:
+            raise InputError(
+                f"Stack: the statue's base (width {self.statue.width} m, offset {self.offset} m) "
+                f"does not lie on the pedestal (width {self.pedestal.width} m)."
+            )
+        if fault == geometry.OFF_CONTACT:
+            raise InputError(
+                "Stack: the statue's centre of gravity is not above the part of its base that lies "
+                "on the pedestal, so the stack cannot stand."
+            )
+        if fault == geometry.TILTED_OFF:
+            raise InputError(
+                "Stack: a centre of gravity is not above its base once the pedestal's lean "
+                "is counted, so the stack cannot stand."
+            )
+        if fault == geometry.REACHES_GROUND:
+            overhang, pole = max((geometry.overhang(self.pile, pole), pole) for pole in (1, -1))
+            raise InputError(
+                f"Stack: the statue reaches {overhang:.4g} m beyond its pedestal, whose upper edge can come as "
+                f"low as {geometry.lowest_edge(self.pile, pole):.4g} m, so it could touch the ground; such "
+                "contacts are not modelled."
+            )
+
+    @property
+    def blocks(self) -> tuple[Block, ...]:
+        """The blocks from below."""
+        return self.pedestal, self.statue
+
+    def system(self) -> System:
+        """Return the stack as a system: it rocks, never slides, and conserves momentum in impacts."""
+        return Column(self.blocks, (self.offset,)).system()
+
+    @cached_property
+    def pile(self) -> geometry.Pile:
+        """The stack as the kernels know it."""
+        pedestal, statue = self.pedestal, self.statue
+        return geometry.pile_of(
+            pedestal.shape, statue.shape, pedestal.height, pedestal.lean, self.offset
+        )
+
+    @property
+    def contact_offset(self) -> float:
+        """Distance of the middle of the contact to the right of the pedestal's middle [m]."""
+        pile = self.pile
+        return self.offset if pile.statue is pile.above else (pile.low + pile.high) / 2
+
+    @cached_property
+    def contact_statue(self) -> Block:
+        """The statue as it stands on the contact: itself, or one whose base is no wider than the overlap."""
+        pile = self.pile
+        if pile.statue is pile.above:
+            return self.statue
+        aside = Vector(self.contact_offset - self.offset, 0.0)
+        centre = self.statue.centre.minus(aside).turned(-self.statue.lean)
+        made = Block(
+            width=pile.high - pile.low,
+            height=self.statue.height,
+            mass=self.statue.mass,
+            inertia=self.statue.centroidal_inertia,
+            cg_height=centre.y,
+            cg_offset=centre.x,
+            lean=self.statue.lean,
+        )
+        # to the last bit what the kernels know, without the turn there and back
+        vars(made)["shape"] = pile.statue
+        return made
+
+    def interface_pole(self, pole: int) -> Vector:
+        """Statue's pole as it stands, from the middle of the pedestal's base [m]."""
+        return Vector(*(self.pile.right if pole > 0 else self.pile.left))
+
+    def reach(self, ground_pole: int, statue_pole: int) -> Vector:
+        """Vector d from the pedestal's pole to the statue's pole as they stand [m].
+
+        Its length is l (poles on the same side) or l' (opposite sides) of thesis eq. 2.61, 2.63.
+        """
+        return Vector(*geometry.reach(self.pile, ground_pole, statue_pole))
+
+    def statue_arm(self, statue_pole: int) -> Vector:
+        """Vector r2 from the statue's pole to its centre of gravity as it stands [m]."""
+        return Vector(*geometry.statue_arm(self.pile, statue_pole))
+
+    def common_arm(self, ground_pole: int) -> Vector:
+        """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
+        return Vector(*geometry.common_arm(self.pile, ground_pole))
+
+    @property
+    def mass(self) -> float:
+        """Total mass [kg]."""
+        return self.pedestal.mass + self.statue.mass
+
+    def rigidly_joined(self) -> Block:
+        """Return the two as one rigid body, which is what rocks in pattern 3."""
+        whole = geometry.joined(self.pile)
+        return Block(
+            width=self.pedestal.width,
+            height=self.pedestal.height + self.statue.height,
+            mass=whole.mass,
+            inertia=whole.inertia,
+            cg_height=whole.y,
+            cg_offset=whole.x,
+        )
+
+
+@dataclass(frozen=True)
+class Column:
+    """Any number of blocks on top of each other, all free to rock.
+
+    Parameters
+    ----------
+    blocks
+        From below, 1 to 12.
+    offsets
+        Distance of the middle of each base to the right of the middle of the block below [m], for all blocks but
+        the lowest; zero if not given.
+
+    Raises
+    ------
+    InputError
+        If there is not an offset for each block but the lowest, or the blocks above a contact have their common
+        centre of gravity beside it.
+    """
+
+    blocks: tuple[Block, ...]
+    offsets: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "blocks", tuple(self.blocks))
+        for block in self.blocks:
+            if not isinstance(block, Block):
+                raise InputError(f"Column: expected blocks from below, got {shown(block)}.")
+        if not 1 <= len(self.blocks) <= MOST_BODIES:
+            raise InputError(f"Column: expected 1 to {MOST_BODIES} blocks, got {len(self.blocks)}.")
+        offsets = (0.0,) * (len(self.blocks) - 1) if self.offsets is None else tuple(self.offsets)
+        if len(offsets) != len(self.blocks) - 1:
+            raise InputError(
+                f"Column: expected {len(self.blocks) - 1} offset(s), one for each block but the lowest, got "
+                f"{len(offsets)}."
+            )
+        for offset in offsets:
+            real_number("Column: offsets", offset, "metres")
+        object.__setattr__(self, "offsets", offsets)
+        if not stands(self.system()):
+            raise InputError(
+                "Column: the blocks above one contact have their common centre of gravity beside it, so the "
+                "column cannot stand."
+            )
+
+    @property
+    def mass(self) -> float:
+        """Total mass [kg]."""
+        return sum(block.mass for block in self.blocks)
+
+    def system(self) -> System:
+        """Return the column as a system: it rocks, never slides, and conserves momentum in impacts."""
+        contacts = (
+            Contact(tilt=block.lean, offset=(offset, 0.0))
+            for block, offset in zip(self.blocks, (0.0, *(self.offsets or ())), strict=True)
+        )
+        bodies = [block.body for block in self.blocks]
+        # one body that is known in a plane leaves all of them known there only
+        if any(body.planar for body in bodies):
+            bodies = [body.seen_along() for body in bodies]
+        return System(tuple(bodies), tuple(contacts))
+
+
+def as_system(thing: "System | Body | Column") -> System:
+    """Return a system as it is, or the one that a block, a stack or a column writes.
+
+    Raises
+    ------
+    InputError
+        If it is none of them.
+    """
+    if isinstance(thing, System):
+        return thing
+    if isinstance(thing, (Block, Stack, Column)):
+        return thing.system()
+    raise InputError(f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}.")
+
+
+Body = Block | Stack

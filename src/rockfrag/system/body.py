@@ -1,0 +1,201 @@
+"""One rigid body: its mass properties, and the outlines on which it stands and carries.
+
+Lengths are read in the body's own frame: the origin lies in the plane of its base, z points from the base to the
+face, x and y lie in the base.  A planar body moves in the plane of x and z.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.errors import InputError
+from rockfrag.input_checks import positive_number, real_array, real_number, shown
+
+Vector3 = tuple[float, float, float]
+Tensor = tuple[Vector3, Vector3, Vector3]
+
+
+class Interval(NamedTuple):
+    """Base or face of a planar body: its two ends, left < right [m]."""
+
+    left: float
+    right: float
+
+
+class Polygon(NamedTuple):
+    """Base or face of a body in space: the vertices of a convex polygon, anticlockwise seen from above [m]."""
+
+    vertices: tuple[tuple[float, float], ...]
+
+
+class Circle(NamedTuple):
+    """Round base or face of a body in space: radius and centre [m]."""
+
+    radius: float
+    centre: tuple[float, float] = (0.0, 0.0)
+
+
+Outline = Interval | Polygon | Circle
+
+
+def convex_polygon(points: object) -> Polygon:
+    """Return the convex hull of points, shape (n, 2) [m], as a polygon.
+
+    Raises
+    ------
+    InputError
+        If the points span no area.
+    """
+    # scipy is loaded only by those who need it
+    from scipy.spatial import ConvexHull, QhullError
+
+    values = real_array("outline", points, "m")
+    try:
+        hull = ConvexHull(values)
+    except (QhullError, ValueError) as error:
+        raise InputError(f"outline: {shown(points)} are no corners of a polygon.") from error
+    return Polygon(tuple((float(x), float(y)) for x, y in values[hull.vertices]))
+
+
+@dataclass(frozen=True)
+class RigidBody:
+    """One rigid body of a system.
+
+    Attributes
+    ----------
+    mass
+        Mass [kg].
+    inertia
+        About the centre of gravity [kg m²]: a number, the moment about the axis across the plane, of a planar
+        body; a symmetric tensor, shape (3, 3), of a body in space.
+    centre
+        Centre of gravity (x, y, z) in the body's frame [m]; its z is the height above the base.
+    base
+        What the body stands on.
+    height
+        Height of the face above the base [m].
+    face
+        What it carries the next body with; None where nothing stands on it.
+    name
+        Short name, for tables and messages.
+
+    Raises
+    ------
+    InputError
+        If mass or inertia is not that of a body, or the outlines are not all planar or all in space.
+    """
+
+    mass: float
+    inertia: float | Tensor
+    centre: Vector3
+    base: Outline
+    height: float
+    face: Outline | None = None
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        positive_number("RigidBody: mass", self.mass, "kilograms")
+        positive_number("RigidBody: height", self.height, "metres")
+        for value in self.centre:
+            real_number("RigidBody: centre", value, "metres")
+        if isinstance(self.inertia, (int, float, np.floating)):
+            positive_number("RigidBody: inertia", self.inertia, "kg m²")
+        else:
+            object.__setattr__(self, "inertia", checked_tensor(self.inertia))
+        spatial = {
+            isinstance(outline, Interval) for outline in (self.base, self.face) if outline
+        } | {self.planar}
+        if len(spatial) > 1:
+            raise InputError(
+                "RigidBody: a planar body has a number as inertia and intervals as base and face, a body in "
+                "space a tensor and polygons or circles."
+            )
+
+    @property
+    def planar(self) -> bool:
+        """Whether the body is known in one plane only."""
+        return not isinstance(self.inertia, tuple)
+
+    @property
+    def tensor(self) -> NDArray[np.float64]:
+        """Tensor of inertia about the centre of gravity [kg m²], shape (3, 3); NaN but yy of a planar body."""
+        if isinstance(self.inertia, tuple):
+            return np.array(self.inertia)
+        unknown = np.full((3, 3), math.nan)
+        unknown[1, 1] = self.inertia
+        return unknown
+
+    def seen_along(self, direction_deg: float = 0.0) -> "RigidBody":
+        """Return the planar body that moves in the vertical plane of a direction.
+
+        Parameters
+        ----------
+        direction_deg
+            From the body's x axis towards its y axis [degrees]; of a planar body 0.
+
+        Raises
+        ------
+        InputError
+            If a planar body is asked for another plane than its own.
+        """
+        if self.planar:
+            if direction_deg % 360:
+                raise InputError(
+                    "direction: a planar body is known in its own plane only; give its depth."
+                )
+            return self
+        angle = math.radians(direction_deg)
+        # an axis of the body is met exactly
+        along = (math.cos(angle), math.sin(angle)) if direction_deg else (1.0, 0.0)
+        x, y, z = self.centre
+        (xx, xy, _), (_, yy, _), _ = self.inertia  # type: ignore[misc]
+        inertia = yy
+        if direction_deg:
+            inertia = along[1] ** 2 * xx - 2 * along[0] * along[1] * xy + along[0] ** 2 * yy
+        return replace(
+            self,
+            inertia=inertia,
+            centre=(x * along[0] + y * along[1] if direction_deg else x, 0.0, z),
+            base=interval_of(self.base, along),
+            face=None if self.face is None else interval_of(self.face, along),
+        )
+
+
+def interval_of(outline: Outline, along: tuple[float, float]) -> Interval:
+    """Return the ends of an outline along a horizontal direction, a unit vector."""
+    if isinstance(outline, Interval):
+        return outline
+    if isinstance(outline, Circle):
+        middle = outline.centre[0] * along[0] + outline.centre[1] * along[1]
+        return Interval(middle - outline.radius, middle + outline.radius)
+    at = [x * along[0] + y * along[1] for x, y in outline.vertices]
+    return Interval(min(at), max(at))
+
+
+def checked_tensor(given: object) -> Tensor:
+    """Return a tensor of inertia as three rows.
+
+    Raises
+    ------
+    InputError
+        If it is not symmetric, or no body can have it: each principal moment is positive and at most the sum of
+        the other two.
+    """
+    values = real_array("RigidBody: inertia", given, "kg m²")
+    if values.shape != (3, 3) or not np.isfinite(values).all():
+        raise InputError(
+            f"RigidBody: inertia is a number of kg m² or a tensor of shape (3, 3), got {shown(given)}."
+        )
+    if not np.allclose(values, values.T, rtol=1e-9, atol=1e-12 * float(np.abs(values).max())):
+        raise InputError("RigidBody: the tensor of inertia must be symmetric.")
+    moments = np.linalg.eigvalsh(values)
+    if not moments[0] > 0 or moments[2] > (moments[0] + moments[1]) * (1 + 1e-9):
+        raise InputError(
+            f"RigidBody: no body has the principal moments of inertia {shown(moments.round(6).tolist())}; each is "
+            "positive and at most the sum of the other two."
+        )
+    rows = values.tolist()
+    return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))

@@ -1,0 +1,106 @@
+"""What lies between two bodies: friction, the law of impacts, and how the upper one was set on the lower."""
+
+import math
+import numbers
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from rockfrag.errors import InputError
+from rockfrag.input_checks import real_number, shown
+
+ROUGHEST = 1e6
+"""Larger coefficients, infinite ones too, are taken as this one: a contact that is about to lift off while it
+carries a shear then slides off, as in the limit, and no case of its own is needed."""
+
+
+class Friction(NamedTuple):
+    """Coefficients of friction of one contact [-], at most ``ROUGHEST``."""
+
+    static: float
+    kinetic: float
+
+
+class ImpactLaw(NamedTuple):
+    """How a contact comes off an impact.
+
+    Attributes
+    ----------
+    name
+        Name of a law in ``rockfrag.laws``.
+    right, left
+        Measured ratio of the angular velocities after and before an impact of the lone body on a rigid support
+        [-], of impacts that end on its right and on its left end; NaN where the law has no number.
+    """
+
+    name: str = "momentum"
+    right: float = math.nan
+    left: float = math.nan
+
+
+BY_MOMENTUM = ImpactLaw()
+"""Angular momentum about the new pivot is conserved."""
+
+
+@dataclass(frozen=True)
+class Contact:
+    """What lies under one body of a system.
+
+    Attributes
+    ----------
+    friction
+        Coefficients of friction; None: the contact never slides and no body leaves it.
+    law
+        Law of its impacts.
+    tilt
+        Angle by which the body stands turned clockwise on the face below, because of an uneven base [rad].
+    offset
+        Position of the origin of the body's base on the face below, from the origin of that face (x, y) [m]; of
+        the lowest body its position on the ground, which changes nothing.
+
+    Raises
+    ------
+    InputError
+        If tilt or offset is not a finite number.
+    """
+
+    friction: Friction | None = None
+    law: ImpactLaw = BY_MOMENTUM
+    tilt: float = 0.0
+    offset: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        real_number("Contact: tilt", self.tilt, "radians")
+        for value in self.offset:
+            real_number("Contact: offset", value, "metres")
+
+
+def checked_friction(name: str, value: object) -> Friction | None:
+    """Return the friction of one contact: of a coefficient, a pair (static, kinetic) or a Friction; None as it is.
+
+    Raises
+    ------
+    InputError
+        If a number is negative or none, or the static coefficient is less than the kinetic one.
+    """
+    if value is None:
+        return None
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value.item()
+    pair = (value, value) if isinstance(value, numbers.Real) else value
+    if not isinstance(pair, (list, tuple, np.ndarray)) or len(pair) != 2:
+        raise InputError(
+            f"{name}: expected a coefficient or a pair (static, kinetic), got {shown(value)}."
+        )
+    for number in pair:
+        known = isinstance(number, numbers.Real) and not isinstance(number, (bool, np.bool_))
+        if not known or math.isnan(number) or number < 0:
+            raise InputError(f"{name}: a coefficient is 0 or more, got {shown(number)}.")
+    static, kinetic = (min(float(number), ROUGHEST) for number in pair)
+    if kinetic > static:
+        raise InputError(
+            f"{name}: the static coefficient {static:g} is less than the kinetic one {kinetic:g}; "
+            "give (static, kinetic)."
+        )
+    return Friction(static, kinetic)

@@ -1,0 +1,260 @@
+"""Blocks and stacks as numbers: where their parts are as they stand, and what the kernels are told of them.
+
+Ordinary Python that kernels may call too (see ``jit``), so that a body has the same bits wherever it is
+described.  Lengths [m] are from the middle of a base, x to the right and y up; poles are +1 (right) and -1.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from rockfrag.elementary import atan2, hypot, sin_cos
+
+
+class Shape(NamedTuple):
+    """A block as it stands.
+
+    Attributes
+    ----------
+    b : half the width of its base [m]
+    mass : [kg]
+    inertia : about the centre of gravity [kg m²]
+    x, y : centre of gravity, from the middle of its base [m]
+    """
+
+    b: float
+    mass: float
+    inertia: float
+    x: float
+    y: float
+
+
+class Pile(NamedTuple):
+    """A statue as it stands on its pedestal.
+
+    Attributes
+    ----------
+    pedestal, above : the two blocks, each as it stands by itself
+    statue : the statue, as if its base were no wider than the part of it that lies on the pedestal
+    lean : of the pedestal [rad]
+    offset : of the middle of the statue's base from the middle of the pedestal's top [m]
+    low, high : ends of the contact, likewise [m]
+    left, right : these ends, from the middle of the pedestal's base [m]
+    """
+
+    pedestal: Shape
+    above: Shape
+    statue: Shape
+    lean: float
+    offset: float
+    low: float
+    high: float
+    left: tuple[float, float]
+    right: tuple[float, float]
+
+
+STANDS, FALLS_ALONE, BESIDE, OFF_CONTACT, TILTED_OFF, REACHES_GROUND = 0, 1, 2, 3, 4, 5
+"""Whether a body can stand, or why not: a block's centre of gravity is not above its base; the statue's base
+does not lie on the pedestal; its centre of gravity is not above the part that does; one is not above its base
+once the pedestal's lean is counted; the statue could touch the ground before anything has fallen."""
+
+
+def turned(x: float, y: float, angle: float) -> tuple[float, float]:
+    """Turn a vector clockwise by ``angle`` [rad]."""
+    s, c = sin_cos(angle)
+    return x * c + y * s, -x * s + y * c
+
+
+# --------------------------------------------------------------------------- one block
+
+
+def shape_of(
+    width: float, height: float, mass: float, inertia: float, cg_height: float, cg_offset: float, lean: float
+) -> Shape:  # fmt: skip
+    """Return a block as it stands; NaN stands for an inertia or a height of the centre that is not given."""
+    own = mass * (width * width + height * height) / 12 if math.isnan(inertia) else inertia
+    h = height / 2 if math.isnan(cg_height) else cg_height
+    x, y = turned(cg_offset, h, lean)
+    return Shape(width / 2, mass, own, x, y)
+
+
+def arm(shape: Shape, pole: int) -> tuple[float, float]:
+    """Vector from the pole to the centre of gravity [m]."""
+    return shape.x - pole * shape.b, shape.y
+
+
+def critical_angle(shape: Shape, pole: int) -> float:
+    """Rotation about the pole at which the block balances on it [rad]."""
+    x, y = arm(shape, pole)
+    return atan2(-pole * x, y)
+
+
+def radius(shape: Shape, pole: int) -> float:
+    """Distance from the pole to the centre of gravity [m]."""
+    x, y = arm(shape, pole)
+    return hypot(x, y)
+
+
+def pole_inertia(shape: Shape, pole: int) -> float:
+    """Moment of inertia about the pole [kg m²]."""
+    x, y = arm(shape, pole)
+    return shape.inertia + shape.mass * (x * x + y * y)
+
+
+def frequency(shape: Shape, pole: int, g: float) -> float:
+    """Frequency parameter p [1/s]."""
+    return math.sqrt(shape.mass * g * radius(shape, pole) / pole_inertia(shape, pole))
+
+
+def can_stand(shape: Shape) -> bool:
+    """Whether the centre of gravity is above the base."""
+    return critical_angle(shape, 1) > 0.0 and critical_angle(shape, -1) > 0.0
+
+
+# --------------------------------------------------------------------------- impacts of a lone block
+
+MOMENTUM, COUPLE, POSITION, RATIO = 0, 1, 2, 3
+"""Laws by which a contact comes off an impact (``docs/restitution.md``)."""
+
+
+def _product(shape: Shape, pole: int) -> float:
+    """Moment of inertia in the angular momentum about the other pole of what turns about this one."""
+    x, y = arm(shape, pole)
+    return shape.inertia + shape.mass * (shape.x * x + shape.y * y)
+
+
+def momentum_restitution(shape: Shape, pole: int) -> float:
+    """Ratio of the rates after and before an impact on this pole that conserves momentum [-]."""
+    (x1, y1), (x2, y2) = arm(shape, -pole), arm(shape, pole)
+    return (shape.inertia + shape.mass * (x1 * x2 + y1 * y2)) / pole_inertia(shape, pole)
+
+
+def largest_restitution(shape: Shape, pole: int) -> float:
+    """Largest ratio with which no impact on this pole gains energy [-]."""
+    return math.sqrt(pole_inertia(shape, -pole) / pole_inertia(shape, pole))
+
+
+def impulse_position(shape: Shape, restitution: float, pole: int) -> float:
+    """Where the impulse acts if the block comes off with this ratio, from the middle (0) to the new pole (1)."""
+    old, new = arm(shape, -pole)[0], arm(shape, pole)[0]
+    excess = _product(shape, -pole) - restitution * _product(shape, pole)
+    return excess / (shape.mass * pole * shape.b * (old - restitution * new))
+
+
+def by_position(shape: Shape, restitution: float, pole: int) -> tuple[int, float]:
+    """Law and number of a measured restitution: its place, or a couple where momentum leaves more than that."""
+    by_momentum = momentum_restitution(shape, pole)
+    if restitution >= by_momentum:
+        return POSITION, impulse_position(shape, restitution, pole)
+    return COUPLE, restitution / by_momentum
+
+
+# --------------------------------------------------------------------------- a statue on a pedestal
+
+
+def pile_of(pedestal: Shape, statue: Shape, height: float, lean: float, offset: float) -> Pile:
+    """Return a statue as it stands on a pedestal of this height [m], lean [rad] and offset [m]."""
+    low = max(-pedestal.b, offset - statue.b)
+    high = min(pedestal.b, offset + statue.b)
+    middle, on_contact = offset, statue
+    if abs(offset) + statue.b > pedestal.b * (1 + 1e-12):
+        middle = (low + high) / 2
+        on_contact = Shape(
+            (high - low) / 2, statue.mass, statue.inertia, statue.x - (middle - offset), statue.y
+        )
+    left = turned(middle - on_contact.b, height, lean)
+    right = turned(middle + on_contact.b, height, lean)
+    return Pile(pedestal, statue, on_contact, lean, offset, low, high, left, right)
+
+
+def reach(pile: Pile, ground_pole: int, statue_pole: int) -> tuple[float, float]:
+    """Vector from the pedestal's pole to the statue's pole [m]."""
+    x, y = pile.right if statue_pole > 0 else pile.left
+    return x - ground_pole * pile.pedestal.b, y
+
+
+def statue_arm(pile: Pile, pole: int) -> tuple[float, float]:
+    """Vector from the statue's pole to its centre of gravity, as it stands on the pedestal [m]."""
+    x, y = arm(pile.statue, pole)
+    return turned(x, y, pile.lean)
+
+
+def common_arm(pile: Pile, pole: int) -> tuple[float, float]:
+    """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
+    m1, m2 = pile.pedestal.mass, pile.statue.mass
+    x1, y1 = arm(pile.pedestal, pole)
+    dx, dy = reach(pile, pole, 1)
+    x2, y2 = statue_arm(pile, 1)
+    return (m1 * x1 + m2 * (dx + x2)) / (m1 + m2), (m1 * y1 + m2 * (dy + y2)) / (m1 + m2)
+
+
+def joined(pile: Pile) -> Shape:
+    """Return the two as one rigid block, which is what rocks in pattern 3."""
+    one, two = pile.pedestal, pile.statue
+    m1, m2 = one.mass, two.mass
+    dx, dy = reach(pile, 1, 1)
+    ax, ay = statue_arm(pile, 1)
+    x2, y2 = one.b + dx + ax, dy + ay
+    x = (m1 * one.x + m2 * x2) / (m1 + m2)
+    y = (m1 * one.y + m2 * y2) / (m1 + m2)
+    apart_x, apart_y = one.x - x2, one.y - y2
+    spread = m1 * m2 / (m1 + m2) * (apart_x * apart_x + apart_y * apart_y)
+    return Shape(one.b, m1 + m2, one.inertia + two.inertia + spread, x, y)
+
+
+def overhang(pile: Pile, pole: int) -> float:
+    """What the statue's base reaches beyond the pedestal [m]."""
+    end = pile.high if pole > 0 else pile.low
+    return pole * (pile.offset - end) + pile.above.b
+
+
+def lowest_edge(pile: Pile, pole: int) -> float:
+    """How low the pedestal's upper edge can come before anything has fallen [m].
+
+    It is lowest where the pedestal, or both as one, balance on their pole.
+    """
+    x, y = reach(pile, pole, pole)
+    wx, wy = common_arm(pile, pole)
+    furthest = max(critical_angle(pile.pedestal, pole), atan2(-pole * wx, wy))
+    return min(y, turned(x, y, pole * furthest)[1])
+
+
+def fault_of(pile: Pile) -> int:
+    """Whether a statue stands on its pedestal, or why not; each is known to stand by itself."""
+    if pile.low >= pile.high:
+        return BESIDE
+    if not pile.low < pile.offset + pile.above.x < pile.high:
+        return OFF_CONTACT
+    for pole in (1, -1):
+        if pole * statue_arm(pile, pole)[0] >= 0.0 or pole * common_arm(pile, pole)[0] >= 0.0:
+            return TILTED_OFF
+        beyond = overhang(pile, pole)
+        # the statue may have turned by a right angle on that edge by then
+        if beyond > 1e-12 * pile.pedestal.b and beyond >= lowest_edge(pile, pole):
+            return REACHES_GROUND
+    return STANDS
+
+
+# --------------------------------------------------------------------------- what the kernels are told
+
+
+def fill_block(body: Any, block: Shape) -> None:
+    """Fill the geometry of a lone block into its record: block 2, on a support that cannot move."""
+    # the support's numbers never matter
+    body.m1, body.i1, body.b1, body.c1x, body.c1y = 1.0, 1.0, 1.0, 0.0, 0.0
+    body.tx, body.ty, body.ex, body.ey = 0.0, 0.0, 1.0, 0.0
+    body.m2, body.i2, body.b2 = block.mass, block.inertia, block.b
+    body.c2x, body.c2y = block.x, block.y
+    body.fixed = True
+
+
+def fill_pile(body: Any, pile: Pile) -> None:
+    """Fill the geometry of a stack into its record."""
+    one, two = pile.pedestal, pile.statue
+    body.m1, body.i1, body.b1, body.c1x, body.c1y = one.mass, one.inertia, one.b, one.x, one.y
+    (rx, ry), (lx, ly) = pile.right, pile.left
+    width = 2 * two.b
+    body.tx, body.ty = (rx + lx) / 2, (ry + ly) / 2
+    body.ex, body.ey = (rx - lx) / width, (ry - ly) / width
+    body.m2, body.i2, body.b2 = two.mass, two.inertia, two.b
+    body.c2x, body.c2y = turned(two.x, two.y, pile.lean)
+    body.fixed = False

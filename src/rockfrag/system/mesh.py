@@ -1,0 +1,293 @@
+"""Bodies of any shape: mass properties from a closed mesh, and the planar block that rocks in one direction.
+
+A rock or a statue does not stand on a flat base but on a few points.  Which points carry depends on how
+close to the support a point must be to count, the contact tolerance; the polygon around them gives, for a
+direction of shaking, the distances of the two edges from the centre of gravity.  Those distances, the
+height of the centre of gravity and the moment of inertia make the planar block of :class:`Block`.
+"""
+
+import math
+import os
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
+
+from rockfrag.errors import InputError
+from rockfrag.plausibility import LARGEST_SIZE, MEAN_DENSITIES
+from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Block
+
+MESH_ENDINGS = (".obj", ".ply", ".stl")
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Where a body stands in one direction of shaking.
+
+    Attributes
+    ----------
+    left, right
+        Horizontal distances of the edges from the centre of gravity, against and along the direction [m].
+    """
+
+    left: float
+    right: float
+
+    def retreated(self, distance: float) -> "Edges":
+        """Return the edges moved inwards by ``distance`` [m]: rounded or crushed edges carry further in."""
+        return Edges(self.left - distance, self.right - distance)
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A rigid body described by its surface, standing as its mesh stands (z up).
+
+    Attributes
+    ----------
+    points
+        Vertices of the surface relative to the centre of gravity [m], shape (n, 3).
+    mass
+        Mass [kg].
+    inertia
+        Tensor of inertia about the centre of gravity [kg m²], shape (3, 3).
+    volume
+        Volume [m³].
+    name
+        Name of the file it came from.
+    """
+
+    points: Array
+    mass: float
+    inertia: Array
+    volume: float
+    name: str = ""
+
+    __repr__ = short_repr
+
+    @cached_property
+    def cg_height(self) -> float:
+        """Height of the centre of gravity above the lowest point [m]."""
+        return float(-self.points[:, 2].min())
+
+    @property
+    def height(self) -> float:
+        """Overall height [m]."""
+        return float(np.ptp(self.points[:, 2]))
+
+    @property
+    def density(self) -> float:
+        """Mass over volume [kg/m³]."""
+        return self.mass / self.volume
+
+    @property
+    def outline(self) -> Array:
+        """Convex outline seen from above, relative to the centre of gravity, in order [m], shape (n, 2)."""
+        seen = self.points[:, :2]
+        return np.asarray(seen[ConvexHull(seen).vertices])
+
+    def contact_polygon(self, tolerance: float) -> Array:
+        """Return the polygon around all points that are within ``tolerance`` of the lowest one.
+
+        Parameters
+        ----------
+        tolerance
+            Height above the lowest point up to which a point carries [m].
+
+        Returns
+        -------
+        Corners relative to the centre of gravity, in order [m], shape (n, 2).
+
+        Raises
+        ------
+        InputError
+            If fewer than three points carry, or they lie on one line.
+        """
+        low = self.points[self.points[:, 2] <= tolerance - self.cg_height][:, :2]
+        try:
+            hull = ConvexHull(low)
+        except (QhullError, ValueError) as error:
+            raise InputError(
+                f"{self.name}: within {1000 * tolerance:g} mm of its lowest point the mesh has "
+                f"{len(low)} point(s), which make no polygon to stand on; give a larger contact tolerance."
+            ) from error
+        return np.asarray(low[hull.vertices])
+
+    def edges(self, direction_deg: float, tolerance: float) -> Edges:
+        """Return the edge distances for shaking along a direction.
+
+        Parameters
+        ----------
+        direction_deg
+            Direction of shaking, from the mesh's x axis towards its y axis [degrees].
+        tolerance
+            As in :meth:`contact_polygon`.
+        """
+        angle = math.radians(direction_deg)
+        along = self.contact_polygon(tolerance) @ np.array([math.cos(angle), math.sin(angle)])
+        return Edges(left=float(-along.min()), right=float(along.max()))
+
+    def scanned_again(self, scan_tolerance: float, rng: np.random.Generator) -> "Shape":
+        """Return the shape as another scan of the same accuracy might have seen it.
+
+        Parameters
+        ----------
+        scan_tolerance
+            Standard deviation of the height of a point of the surface [m].
+        rng
+            Source of the random numbers.
+        """
+        points = self.points.copy()
+        points[:, 2] += scan_tolerance * rng.standard_normal(len(points))
+        return replace(self, points=points)
+
+    def inertia_about(self, direction_deg: float) -> float:
+        """Moment of inertia for rotation in the vertical plane of a direction [kg m²]."""
+        angle = math.radians(direction_deg)
+        axis = np.array([-math.sin(angle), math.cos(angle), 0.0])
+        return float(axis @ self.inertia @ axis)
+
+    def block(self, direction_deg: float, tolerance: float, retreat: float = 0.0) -> Block:
+        """Return the planar block that rocks in the vertical plane of a direction.
+
+        Parameters
+        ----------
+        direction_deg, tolerance
+            As in :meth:`edges`.
+        retreat
+            Distance by which the edges lie further in than the polygon [m].
+
+        Raises
+        ------
+        InputError
+            If the centre of gravity is not above what is left of the base.
+        """
+        edges = self.edges(direction_deg, tolerance).retreated(retreat)
+        if min(edges.left, edges.right) <= 0:
+            raise InputError(
+                f"{self.name}: along {direction_deg:g}° its edges are {edges.left:.4f} and {edges.right:.4f} m "
+                "from the centre of gravity, so it cannot stand; give a larger tolerance or less retreat."
+            )
+        return Block.from_edges(
+            edges.left,
+            edges.right,
+            cg_height=self.cg_height,
+            height=self.height,
+            mass=self.mass,
+            inertia=self.inertia_about(direction_deg),
+        )
+
+    def worst_direction(self, tolerance: float, step_deg: float = 1.0) -> tuple[float, float]:
+        """Return the direction towards which the body leans over its edge at the least angle.
+
+        Parameters
+        ----------
+        tolerance
+            As in :meth:`contact_polygon`.
+        step_deg
+            Step of the search [degrees].
+
+        Returns
+        -------
+        The direction [degrees], and the critical angle of the edge there [rad].
+        """
+        directions = np.arange(0.0, 360.0, step_deg)
+        angle = np.radians(directions)
+        polygon = self.contact_polygon(tolerance)
+        reach = (polygon @ np.array([np.cos(angle), np.sin(angle)])).max(axis=0)
+        least = int(reach.argmin())
+        return float(directions[least]), float(math.atan2(reach[least], self.cg_height))
+
+
+def read_shape(
+    path: str | os.PathLike[str],
+    *,
+    mass: float | None = None,
+    density: float | None = None,
+    metres_per_unit: float = 1.0,
+) -> Shape:
+    """Read a closed surface and derive its mass properties.
+
+    Parameters
+    ----------
+    path
+        Mesh as OBJ, PLY or STL with z up, standing on its lowest points.
+    mass, density
+        Mass [kg] or density [kg/m³] of the body, taken as homogeneous; one of them.
+    metres_per_unit
+        Length of the mesh's unit [m].
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, the surface is not closed, its size is not that of an object, or mass and
+        density are both given or both missing.
+    """
+    if (mass is None) == (density is None):
+        raise InputError(f"{path}: give either the mass or the density of the body.")
+    mesh = _closed_mesh(Path(path))
+    mesh.apply_scale(metres_per_unit)
+    size = float(np.ptp(mesh.bounds, axis=0).max())
+    if size > LARGEST_SIZE:
+        raise InputError(
+            f"{path}: the mesh is {size:.4g} m large; if its unit is not the metre, give metres_per_unit "
+            "(0.001 for millimetres, 0.3048 for feet)."
+        )
+    volume = float(mesh.volume)
+    given = density if density is not None else _positive(path, "mass", mass) / volume
+    weight = _positive(path, "density", given) * volume
+    if not MEAN_DENSITIES[0] <= given <= MEAN_DENSITIES[1]:
+        raise InputError(
+            f"{path}: {weight:.4g} kg in {volume:.4g} m³ are {given:.4g} kg/m³, which no solid object has; "
+            "check the mass and the unit of the mesh (metres_per_unit)."
+        )
+    return Shape(
+        points=np.asarray(mesh.vertices - mesh.center_mass, dtype=np.float64),
+        mass=weight,
+        inertia=np.asarray(mesh.moment_inertia, dtype=np.float64) * (weight / volume),
+        volume=volume,
+        name=Path(path).name,
+    )
+
+
+def _positive(path: str | os.PathLike[str], name: str, value: float | None) -> float:
+    if value is None or not (math.isfinite(value) and value > 0):
+        raise InputError(f"{path}: {name} must be a positive number, got {value}.")
+    return float(value)
+
+
+def _closed_mesh(path: Path) -> Any:
+    """Read a mesh with trimesh and turn it outside out; refuse one with holes."""
+    import trimesh
+
+    if path.suffix.lower() not in MESH_ENDINGS:
+        raise InputError(f"{path}: a mesh is read from {', '.join(MESH_ENDINGS)} files.")
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file; correct the path.")
+    try:
+        mesh: Any = trimesh.load(path, process=False, force="mesh")
+        # the triangles of an STL file do not know their neighbours
+        if path.suffix.lower() == ".stl":
+            mesh.merge_vertices()
+        faces, vertices = np.asarray(mesh.faces), np.asarray(mesh.vertices)
+    except Exception as error:
+        raise InputError(f"{path}: cannot be read as a mesh ({type(error).__name__}).") from error
+    if len(faces) == 0 or not np.isfinite(vertices).all():
+        raise InputError(f"{path}: the mesh has no triangles or a vertex that is not finite.")
+    if not mesh.is_watertight:
+        _, count = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
+        raise InputError(
+            f"{path}: the surface is not closed ({int((count % 2).sum())} edges belong to one triangle only), "
+            "so it has no volume; close its holes first."
+        )
+    if mesh.volume < 0:
+        mesh.invert()
+    if not mesh.volume > 0:
+        raise InputError(f"{path}: the surface encloses no volume.")
+    return mesh

@@ -1,0 +1,312 @@
+"""What is shaken: bodies that stand on each other, the contacts between them, and how they begin."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from rockfrag.errors import InputError
+from rockfrag.input_checks import shown
+from rockfrag.system import geometry
+from rockfrag.system.body import Circle, Interval, Polygon, RigidBody
+from rockfrag.system.contact import Contact
+
+MOST_BODIES = 12
+"""Bodies of a column."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """How the bodies begin, relative to the moving ground.
+
+    Attributes
+    ----------
+    rotation
+        Of each body from below, from how it stands: clockwise [rad] of planar bodies, a rotation vector (x, y, z)
+        [rad] of bodies in space.
+    velocity
+        Angular velocity of each body, likewise [rad/s].
+    """
+
+    rotation: tuple[Any, ...]
+    velocity: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class System:
+    """Rigid bodies that stand on each other.
+
+    Attributes
+    ----------
+    bodies
+        From below.
+    contacts
+        Contact k lies under body k; the first is the ground's.
+    start
+        Rotations and velocities at the start; None: at rest.
+    name
+        Short name, for tables and messages.
+
+    Raises
+    ------
+    InputError
+        If there is not one contact for each body, planar bodies and bodies in space are mixed, a body carries
+        another one without a face, or the system cannot stand.
+    """
+
+    bodies: tuple[RigidBody, ...]
+    contacts: tuple[Contact, ...]
+    start: Start | None = None
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bodies", tuple(self.bodies))
+        object.__setattr__(self, "contacts", tuple(self.contacts))
+        count = len(self.bodies)
+        if not 1 <= count <= MOST_BODIES or len(self.contacts) != count:
+            raise InputError(
+                f"System: expected 1 to {MOST_BODIES} bodies and a contact under each, got {count} and "
+                f"{len(self.contacts)}."
+            )
+        for k, body in enumerate(self.bodies[:-1]):
+            if body.face is None:
+                raise InputError(
+                    f"System: body {k + 1} from below has no face for the next to stand on."
+                )
+        if len({body.planar for body in self.bodies}) > 1:
+            raise InputError(
+                "System: planar bodies and bodies in space cannot stand on each other."
+            )
+        start = self.start
+        if start is not None and not len(start.rotation) == len(start.velocity) == count:
+            raise InputError(
+                f"System: expected {count} rotation(s) and velocities at the start, got {shown(start)}."
+            )
+
+    @property
+    def count(self) -> int:
+        """Number of bodies."""
+        return len(self.bodies)
+
+    @property
+    def planar(self) -> bool:
+        """Whether the bodies are known in one plane only."""
+        return self.bodies[0].planar
+
+    @property
+    def loose(self) -> bool:
+        """Whether a contact may slide and open as a whole: one has friction."""
+        return any(contact.friction is not None for contact in self.contacts)
+
+    @property
+    def mass(self) -> float:
+        """Total mass [kg]."""
+        return sum(body.mass for body in self.bodies)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Name of each body from below: its own, or its number."""
+        return tuple(body.name or f"body {k + 1}" for k, body in enumerate(self.bodies))
+
+    def in_plane(self, direction_deg: float = 0.0) -> "System":
+        """Return the planar system that moves in the vertical plane of a direction [degrees]."""
+        if self.planar and not direction_deg % 360:
+            return self
+        return replace(self, bodies=tuple(body.seen_along(direction_deg) for body in self.bodies))
+
+    @cached_property
+    def shapes(self) -> tuple[geometry.Shape, ...]:
+        """Each body as it stands by itself, of a planar system, as the kernels know it."""
+        return tuple(
+            planar_shape(body, contact.tilt)
+            for body, contact in zip(self.in_plane().bodies, self.contacts, strict=True)
+        )
+
+    @cached_property
+    def pile(self) -> geometry.Pile:
+        """The two bodies of a planar system as the kernels know them.
+
+        Raises
+        ------
+        InputError
+            If the system has another number of bodies.
+        """
+        if self.count != 2:
+            raise InputError(f"System: expected two bodies, got {self.count}.")
+        lower, upper = self.in_plane().bodies
+        assert isinstance(lower.face, Interval)
+        assert isinstance(upper.base, Interval)
+        middle = self.contacts[1].offset[0] + (upper.base.left + upper.base.right) / 2
+        return geometry.pile_of(
+            self.shapes[0],
+            self.shapes[1],
+            lower.height,
+            self.contacts[0].tilt,
+            middle - (lower.face.left + lower.face.right) / 2,
+        )
+
+    @cached_property
+    def carried(self) -> tuple[geometry.Shape, ...]:
+        """Each body of a planar system as it rocks on its contact, whose ends are those of base and face."""
+        if self.count == 1:
+            return self.shapes
+        if self.count == 2:
+            return self.shapes[0], self.pile.statue
+        bodies = self.in_plane().bodies
+        found = [self.shapes[0]]
+        for k in range(1, self.count):
+            lower, upper, shape = bodies[k - 1], bodies[k], self.shapes[k]
+            assert isinstance(lower.face, Interval)
+            assert isinstance(upper.base, Interval)
+            middle = self.contacts[k].offset[0] + (upper.base.left + upper.base.right) / 2
+            low = max(lower.face.left, middle - shape.b)
+            high = min(lower.face.right, middle + shape.b)
+            found.append(shape._replace(b=(high - low) / 2, x=shape.x + middle - (low + high) / 2))
+        return tuple(found)
+
+
+def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
+    """Return a planar body as it stands with a tilt [rad], from the middle of its base."""
+    base = body.base
+    assert isinstance(base, Interval)
+    assert isinstance(body.inertia, float | int)
+    x, y = geometry.turned(body.centre[0] - (base.left + base.right) / 2, body.centre[2], tilt)
+    return geometry.Shape((base.right - base.left) / 2, body.mass, body.inertia, x, y)
+
+
+def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
+    """Return what is given for each contact of a system, from the ground up.
+
+    Parameters
+    ----------
+    name
+        What messages call it.
+    given
+        One value for all contacts; or a mapping with ``ground`` and ``interface``, the latter one value for all
+        contacts above the ground or a list with one for each.
+    count
+        Number of contacts.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown, or the number of values is not that of the contacts.
+    """
+    if not isinstance(given, dict):
+        return (given,) * count
+    unknown = [key for key in given if key not in ("ground", "interface")]
+    if unknown or (count == 1 and "interface" in given):
+        wrong = shown(unknown[0] if unknown else "interface")
+        raise InputError(
+            f"{name}: {wrong} is no contact of a system of {count}; name them ground"
+            + (" and interface." if count > 1 else ".")
+        )
+    above = given.get("interface")
+    each = list(above) if isinstance(above, list) else [above] * (count - 1)
+    if len(each) != count - 1:
+        raise InputError(
+            f"{name}: expected {count - 1} value(s) for the interfaces from below, got {len(each)}."
+        )
+    return (given.get("ground"), *each)
+
+
+def box(
+    width: float, depth: float, height: float, mass: float, inertia: Any, centre: Sequence[float]
+) -> RigidBody:
+    """Return a body in space with a rectangular base and face [m], of uniform mass where inertia is None."""
+    x, y = width / 2, depth / 2
+    outline = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
+    if inertia is None:
+        inertia = diagonal(
+            mass * (depth * depth + height * height) / 12,
+            mass * (width * width + height * height) / 12,
+            mass * (width * width + depth * depth) / 12,
+        )
+    place = (float(centre[0]), float(centre[1]), float(centre[2]))
+    return RigidBody(mass, inertia, place, outline, height, outline)
+
+
+def cylinder(
+    diameter: float, height: float, mass: float, inertia: Any, centre: Sequence[float]
+) -> RigidBody:
+    """Return a body in space with a round base and face [m], of uniform mass where inertia is None."""
+    outline = Circle(diameter / 2)
+    if inertia is None:
+        across = round_inertia(diameter, height, mass)
+        inertia = diagonal(across, across, mass * diameter * diameter / 8)
+    place = (float(centre[0]), float(centre[1]), float(centre[2]))
+    return RigidBody(mass, inertia, place, outline, height, outline)
+
+
+def round_inertia(diameter: float, height: float, mass: float) -> float:
+    """Moment of inertia of a uniform cylinder about an axis across it through its centre [kg m²]."""
+    return mass * (0.75 * diameter * diameter + height * height) / 12
+
+
+def diagonal(*moments: float) -> Any:
+    """Return the tensor with these moments about x, y and z [kg m²]."""
+    rows = [[0.0] * 3 for _ in range(3)]
+    for k, moment in enumerate(moments):
+        rows[k][k] = moment
+    return tuple(tuple(row) for row in rows)
+
+
+def stands(system: System) -> bool:
+    """Whether the bodies above each contact of a planar system have their common centre between its ends."""
+    positions = _standing(system)
+    for k in range(system.count):
+        low, high = _ends(system, k)
+        mass = sum(body.mass for body in system.bodies[k:])
+        x = (
+            sum(
+                body.mass * at[0] for body, at in zip(system.bodies[k:], positions[k:], strict=True)
+            )
+            / mass
+        )
+        if not low < x < high or not math.isfinite(x):
+            return False
+    return True
+
+
+def _standing(system: System) -> list[tuple[float, float]]:
+    """Centres of gravity of planar bodies as they stand on each other [m]."""
+    found = []
+    for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
+        assert isinstance(body.base, Interval)
+        middle = (body.base.left + body.base.right) / 2
+        dx, dy = geometry.turned(middle + shape.x, shape.y, angle)
+        found.append((x + dx, y + dy))
+    return found
+
+
+def _bases(system: System) -> list[tuple[float, tuple[float, float], RigidBody]]:
+    """Angle of the face [rad] that each planar body stands on, origin of its base [m], and the body."""
+    found = []
+    angle, origin = 0.0, (0.0, 0.0)
+    below: RigidBody | None = None
+    for k, (body, contact) in enumerate(
+        zip(system.in_plane().bodies, system.contacts, strict=True)
+    ):
+        if below is not None:
+            angle += system.contacts[k - 1].tilt
+            dx, dy = geometry.turned(contact.offset[0], below.height, angle)
+            origin = (origin[0] + dx, origin[1] + dy)
+        found.append((angle, origin, body))
+        below = body
+    return found
+
+
+def _ends(system: System, k: int) -> tuple[float, float]:
+    """Horizontal positions of the two ends of a contact as all stand [m]."""
+    bases = _bases(system)
+    angle, origin, body = bases[k]
+    assert isinstance(body.base, Interval)
+    low, high = body.base.left, body.base.right
+    if k:
+        face = bases[k - 1][2].face
+        assert isinstance(face, Interval)
+        offset = system.contacts[k].offset[0]
+        low, high = max(low, face.left - offset), min(high, face.right - offset)
+    left, right = (origin[0] + geometry.turned(end, 0.0, angle)[0] for end in (low, high))
+    return left, right

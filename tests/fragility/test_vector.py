@@ -1,0 +1,158 @@
+"""Fragility in two measures: recovers what was drawn, keeps its level, agrees with statsmodels and itself."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import statsmodels.api as sm
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.vector import fit_vector
+from rockfrag.fragility.vector_checks import check_vector, monotone_probability
+
+MEASURES = ("pga_g", "pgv_over_pga_s")
+VELOCITY = 0.6
+"""Weight of ln PGV/PGA beside that of ln PGA in the made laboratories."""
+
+
+def laboratory(rng, earthquakes, motions=5, levels=6, interaction=0.0):
+    """Tests of a made laboratory: earthquakes and motions shift the capacity, PGV/PGA belongs to the motion."""
+    earthquake = np.repeat(np.arange(earthquakes), motions)
+    ratio = rng.normal(0, 0.35, earthquakes)[earthquake] + rng.normal(0, 0.3, earthquake.size)
+    apart = rng.normal(0, 0.25, earthquakes)[earthquake] + rng.normal(0, 0.3, earthquake.size)
+    x, y = np.broadcast_arrays(np.linspace(-1.2, 1.2, levels), ratio[:, np.newaxis])
+    index = x + VELOCITY * y + interaction * x * y + apart[:, np.newaxis]
+    index = index + rng.normal(0, 0.15, x.shape)
+    return pd.DataFrame(
+        {
+            "event": np.repeat(earthquake, levels).astype(str),
+            "motion": np.repeat(np.arange(earthquake.size), levels).astype(str),
+            MEASURES[0]: np.exp(x).ravel(),
+            MEASURES[1]: np.exp(y).ravel(),
+            "overturned": (index > 0).ravel().astype(int),
+        }
+    )
+
+
+def test_fit_and_aic_are_those_of_statsmodels():
+    table = laboratory(np.random.default_rng(1), 20)
+    fit = fit_vector(table, MEASURES)
+    logs = np.log(table[list(MEASURES)])
+    model = sm.GLM(
+        table["overturned"],
+        sm.add_constant(logs),
+        family=sm.families.Binomial(sm.families.links.Probit()),
+    ).fit(tol=1e-12)
+    assert fit.surface.coefficients[:3] == pytest.approx(model.params.to_numpy(), abs=1e-6)
+    assert fit.surface.aic == pytest.approx(model.aic, abs=1e-6)
+
+
+def test_contour_is_where_the_probability_has_its_level_and_limits_hold_it():
+    fit = fit_vector(laboratory(np.random.default_rng(2), 10), MEASURES)
+    second = np.array([0.6, 1.0, 1.5])
+    for p in (0.1, 0.5, 0.9):
+        value, lower, upper = fit.contour(p, second)
+        assert fit.probability(value, second) == pytest.approx(p)
+        assert (lower < value).all() and (value < upper).all()
+        across, *_ = fit.contour(p, value, of=1)
+        assert across == pytest.approx(second)
+    low, high = fit.band(1.0, second)
+    assert (low < fit.probability(1.0, second)).all() and (
+        fit.probability(1.0, second) < high
+    ).all()
+
+
+def test_probability_in_one_measure_is_the_mean_over_the_records():
+    fit = fit_vector(laboratory(np.random.default_rng(3), 10), MEASURES)
+    ratios = np.array([0.5, 1.0, 2.0])
+    expected = (fit.probability(0.9, ratios) * [1, 2, 1]).sum() / 4
+    assert fit.mean_over(0.9, ratios, [1, 2, 1]) == pytest.approx([expected])
+
+
+def test_interaction_is_found_where_there_is_one_and_kept_in_the_fit():
+    table = laboratory(np.random.default_rng(4), 40, interaction=0.8)
+    fit = fit_vector(table, MEASURES)
+    assert (
+        fit.interaction.kept and fit.interaction.p < 0.01 and fit.interaction.likelihood_ratio > 10
+    )
+    assert len(fit.surface.coefficients) == 4
+    value, *_ = fit.contour(0.5, [1.3])
+    assert fit.probability(value, 1.3) == pytest.approx(0.5)
+
+
+def test_one_earthquake_gives_no_limits_and_says_so():
+    table = laboratory(np.random.default_rng(5), 1, motions=30)
+    fit = fit_vector(table, MEASURES)
+    _, lower, upper = fit.contour(0.5, [1.0])
+    assert lower == 0 and upper == np.inf
+    assert any("one earthquake" in note for note in fit.warnings)
+
+
+def test_separated_tests_are_said_to_be():
+    table = laboratory(np.random.default_rng(6), 4)
+    index = np.log(table[MEASURES[0]]) + np.log(table[MEASURES[1]])
+    fit = fit_vector(table.assign(overturned=(index > 0).astype(int)), MEASURES)
+    assert any("separates" in note for note in fit.warnings)
+    assert np.isfinite(fit.surface.coefficients).all()
+
+
+def test_proportional_measures_are_refused():
+    table = laboratory(np.random.default_rng(7), 4)
+    table["twice_g"] = 2 * table["pga_g"]
+    with pytest.raises(InputError, match="proportional"):
+        fit_vector(table, ("pga_g", "twice_g"))
+
+
+def test_fit_that_describes_its_outcomes_is_not_rejected_and_another_is():
+    rng = np.random.default_rng(8)
+    table = laboratory(rng, 30)
+    good = check_vector(fit_vector(table, MEASURES), table)
+    assert not good.rejected
+    # outcomes that fall and rise again with the first measure
+    index = np.abs(np.log(table["pga_g"])) - 0.6 + rng.normal(0, 0.1, len(table))
+    bad = table.assign(overturned=(index > 0).astype(int))
+    assert check_vector(fit_vector(bad, MEASURES), bad).rejected
+
+
+def test_nonparametric_surface_rises_both_ways_and_keeps_the_number_overturned():
+    table = laboratory(np.random.default_rng(9), 20)
+    fit = fit_vector(table, MEASURES)
+    surface = check_vector(fit, table).surface
+    assert surface["tests"].sum() == len(table)
+    assert (surface["probability"] * surface["tests"]).sum() == pytest.approx(
+        table["overturned"].sum(), rel=1e-6
+    )
+    wide = surface.pivot_table("probability", MEASURES[0], MEASURES[1]).to_numpy()
+    for rows in (wide, wide.T):
+        for values in rows:
+            assert (np.diff(values[~np.isnan(values)]) >= -1e-6).all()
+
+
+def test_surface_of_one_row_is_isotonic_regression():
+    fell = np.array([[0.0, 2.0, 1.0, 4.0]])
+    tests = np.array([[4.0, 4.0, 4.0, 4.0]])
+    assert monotone_probability(fell, tests)[0] == pytest.approx([0, 0.375, 0.375, 1])
+
+
+def test_shakebot_tests_tell_velocity_from_acceleration(shared):
+    table = pd.read_csv(shared / "measured" / "shakebot" / "september_0.csv")
+    table["overturned"] = (table["toppled"] == "yes").astype(int)
+    fit = fit_vector(table, MEASURES, earthquake=None)
+    assert fit.n == 83 and fit.n_overturned == 46
+    assert min(fit.surface.coefficients[1:3]) > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("earthquakes", [4, 10, 40])
+def test_limits_cover_and_the_interaction_test_keeps_its_level(earthquakes):
+    rng = np.random.default_rng(earthquakes)
+    held = np.zeros(2)
+    found, laboratories = 0, 1000
+    for _ in range(laboratories):
+        fit = fit_vector(laboratory(rng, earthquakes), MEASURES, level=0.90)
+        found += fit.interaction.p < 0.05
+        for of, other, truth in ((0, 1.35, 1.35**-VELOCITY), (1, 0.8, 0.8 ** (-1 / VELOCITY))):
+            _, lower, upper = fit.contour(0.5, [other], of=of)
+            held[of] += lower[0] <= truth <= upper[0]
+    print(f"{earthquakes} earthquakes: covered {held / laboratories}, level {found / laboratories}")
+    assert (abs(held / laboratories - 0.90) <= 0.03).all()
+    assert abs(found / laboratories - 0.05) <= 0.02

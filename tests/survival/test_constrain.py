@@ -1,0 +1,157 @@
+"""The command `constrain` as a user meets it: an answer with its files, or one sentence."""
+
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockfrag.cli import main
+from rockfrag.errors import InputError
+from rockfrag.survival.branches import read_branches
+
+SITE = """
+name: Hill
+hazard: {{curves: [branches.csv]}}
+objects:
+  - {{name: rock A, median: 0.4 g, beta: 0.3, median_sd_ln: 0.2, age_years: {age}}}
+  - {{name: rock B, median: 0.5 g, beta: 0.3, age_years: [2000, 6000], fragile_for_years: 3000}}
+shared_error: 0.5
+"""
+
+
+def write_branches(path, weights=(0.25, 0.5, 0.25), scale=1.0):
+    """A table of three branches, power laws."""
+    levels = np.geomspace(0.02, 3.0, 12)
+    rows = [
+        {"branch": f"b{i}", "weight": w, "pga_g": x, "annual_rate": scale * 1e-4 * factor * x**-2.5}
+        for i, (w, factor) in enumerate(zip(weights, (0.5, 1.0, 2.0), strict=True))
+        for x in levels
+    ]
+    pd.DataFrame(rows).to_csv(path, index=False)
+
+
+@pytest.fixture
+def site(tmp_path):
+    write_branches(tmp_path / "branches.csv")
+    path = tmp_path / "site.yaml"
+    path.write_text(SITE.format(age="3000"))
+    return path
+
+
+def run(site, capsys, *more):
+    status = main(["constrain", str(site), "--output", str(site.parent / "out"), *more])
+    return status, capsys.readouterr()
+
+
+def test_answer_page_json_and_tables(site, capsys):
+    status, said = run(site, capsys, "--json")
+    assert status == 0
+    answer = json.loads(said.out)
+    after = [row["weight_after"] for row in answer["branches"]]
+    assert sum(after) == pytest.approx(1.0)
+    assert after[0] > 0.25 > after[2]
+    folder = site.parent / "out"
+    page = (folder / "Hill.html").read_text(encoding="utf-8")
+    assert "reweighted, not validated" in page
+    assert "validated by" not in page
+    weights = pd.read_csv(folder / "Hill-weights.csv")
+    assert list(weights.columns[:3]) == ["rlz_id", "branch_path", "weight"]
+    assert weights["weight"].tolist() == pytest.approx(after)
+    curves = pd.read_csv(folder / "Hill-curves.csv")
+    assert (curves["mean_after"] <= curves["mean_before"]).all()
+
+
+def test_lines_say_how_the_mean_hazard_moved_and_which_object_decides(site, capsys):
+    status, said = run(site, capsys)
+    assert status == 0
+    first, *_ = said.out.splitlines()
+    assert "lower" in first and "1e-4 a year" in first
+    assert "rock A tells most" in said.out
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda t: t.replace("age_years: 3000", "age_years: -3"), "age_years"),
+        (lambda t: t.replace("[2000, 6000]", "[6000, 2000]"), "ends before it begins"),
+        (lambda t: t.replace("median: 0.4 g", "median: 0.4"), "unit"),
+        (lambda t: t.replace("median: 0.4 g, beta: 0.3", "coefficients: [1, -2]"), "above 0"),
+        (lambda t: t.replace("median: 0.4 g, ", ""), "either median and beta, or coefficients"),
+        (lambda t: t.replace("rock B", "rock A"), "given twice"),
+        (lambda t: t.replace("shared_error: 0.5", "shared_error: 1.5"), "0 to 1"),
+        (lambda t: t.replace("branches.csv", "absent.csv"), "absent.csv"),
+        (lambda t: t.replace("median: 0.4 g", "measure: PGV, median: 30 cm/s"), "PGV"),
+        (lambda t: t.replace("objects:", "things:"), "things"),
+    ],
+)
+def test_what_cannot_be_is_said_in_one_sentence(site, capsys, change, sentence):
+    site.write_text(change(SITE.format(age="3000")))
+    status, said = run(site, capsys)
+    assert status == 2
+    assert sentence in said.err and said.err.count("\n") == 1
+    assert not (site.parent / "out").exists()
+
+
+def test_objects_that_no_branch_lets_stand_are_said_to_be_at_odds(site, capsys):
+    write_branches(site.parent / "branches.csv", scale=50)
+    status, said = run(site, capsys)
+    assert status == 2
+    assert "in no branch" in said.err and "rock A" in said.err
+
+
+@pytest.mark.parametrize("weights", [(0.25, 0.5, 0.3), (0.25, 0.75, 0.0), (0.5, 0.75, -0.25)])
+def test_weights_that_are_none_are_refused(tmp_path, weights):
+    write_branches(tmp_path / "b.csv", weights)
+    with pytest.raises(InputError, match=r"sum to|above 0"):
+        read_branches([tmp_path / "b.csv"])
+
+
+def test_branches_of_openquake_are_read_back_with_their_weights(tmp_path):
+    levels = [0.05, 0.1, 0.2, 0.4]
+    header = "lon,lat,depth," + ",".join(f"poe-{x:.7f}" for x in levels)
+    rates = {0: [0.02, 0.006, 0.001, 0.0001], 1: [0.04, 0.01, 0.003, 0.0004]}
+    for number, values in rates.items():
+        poes = ",".join(f"{1 - math.exp(-50 * r):.9e}" for r in values)
+        facts = f"kind='rlz-{number:03d}', investigation_time=50.0, imt='PGA'"
+        (tmp_path / f"hazard_curve-rlz-{number:03d}-PGA_1.csv").write_text(
+            f'#,,,,"{facts}"\n{header}\n10.0,45.0,0.0,{poes}\n'
+        )
+    (tmp_path / "realizations_1.csv").write_text(
+        "rlz_id,branch_path,weight\n0,A~A,0.3\n1,B~A,0.7\n"
+    )
+    paths = sorted(tmp_path.glob("hazard*.csv"))
+    found = read_branches(paths, tmp_path / "realizations_1.csv")
+    assert [branch.weight for branch in found] == pytest.approx([0.3, 0.7])
+    (curve,) = found[1].curves.values()
+    assert curve.rate(0.2).item() == pytest.approx(0.003, rel=1e-5)
+    with pytest.raises(InputError, match="realization 1"):
+        read_branches([paths[0], paths[1], paths[1]], tmp_path / "realizations_1.csv")
+
+
+def test_two_tables_give_two_measures_of_the_same_branches(tmp_path):
+    write_branches(tmp_path / "pga.csv")
+    table = pd.read_csv(tmp_path / "pga.csv").rename(columns={"pga_g": "pgv_cm_s"})
+    table["pgv_cm_s"] *= 100
+    table.to_csv(tmp_path / "pgv.csv", index=False)
+    found = read_branches([tmp_path / "pga.csv", tmp_path / "pgv.csv"])
+    assert {m.name for m in found[0].curves} == {"PGA", "PGV"}
+    table["weight"] = 1 / 3
+    table.to_csv(tmp_path / "pgv.csv", index=False)
+    with pytest.raises(InputError, match="elsewhere"):
+        read_branches([tmp_path / "pga.csv", tmp_path / "pgv.csv"])
+
+
+def test_the_example_of_the_documentation_runs_as_it_stands_there(tmp_path, monkeypatch, capsys):
+    document = Path(__file__).resolve().parents[2] / "docs" / "survival.md"
+    first, second = re.findall(r"```python\n(.*?)```", document.read_text(encoding="utf-8"), re.S)
+    monkeypatch.chdir(tmp_path)
+    exec(first, {})
+    assert main(["constrain", "site.yaml"]) == 0
+    assert "lower" in capsys.readouterr().out
+    exec(second, {})
+    table = capsys.readouterr().out
+    assert "weight_after" in table and "level_ratio" in table

@@ -1,0 +1,189 @@
+"""Survival reweights hazard branches: closed forms, limits, and histories that are drawn."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy import special
+
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.measure import PGA, PGV
+from rockfrag.errors import InputError
+from rockfrag.survival.branches import Branch
+from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficients
+from rockfrag.survival.rates import VelocityRelation, rate_weights, shaking_rates
+from rockfrag.survival.reweight import reweight, scaled
+
+SLOPE = 2.5
+
+
+def power_law(k0: float, slope: float = SLOPE) -> HazardCurve:
+    """H(x) = k0 x^-slope."""
+    levels = np.geomspace(0.01, 5.0, 25)
+    return HazardCurve(PGA, levels, k0 * levels**-slope, "made")
+
+
+def made_branches(*factors: float, weights: list[float] | None = None) -> list[Branch]:
+    shares = weights or [1 / len(factors)] * len(factors)
+    return [
+        Branch(f"factor {f:g}", w, {PGA: power_law(1e-4 * f)})
+        for f, w in zip(factors, shares, strict=True)
+    ]
+
+
+def rock(years: float, theta: float = 0.4, beta: float = 0.3, sd: float = 0.0, name: str = "rock"):
+    age = Age(years, years)
+    return StandingObject(name, PGA, lognormal_coefficients(theta, beta), sd, age)
+
+
+def closed_form(k0: float, theta: float = 0.4, beta: float = 0.3) -> float:
+    """λ = k0 θ^-k exp(k² β² / 2) (Cornell and others 2002)."""
+    return k0 * theta**-SLOPE * math.exp((SLOPE * beta) ** 2 / 2)
+
+
+def test_rate_of_toppling_under_a_power_law_is_the_closed_form():
+    years = 100.0
+    found = reweight(made_branches(1.0, 3.0), [rock(years)])
+    expected = [-years * closed_form(1e-4 * factor) for factor in (1.0, 3.0)]
+    assert found.log_survival == pytest.approx(expected, rel=1e-3)
+
+
+def test_weights_integrate_what_is_linear_in_the_logarithm_exactly():
+    curve = power_law(1e-3)
+    levels = np.geomspace(0.05, 2.0, 7)
+    weights = rate_weights(curve, levels)
+    assert weights.sum() == pytest.approx(curve.rate(0.05).item())
+    # ∫ ln(x/x0) |dν| over a power law is ν0/k [1 - (x1/x0)^-k] when what lies above stays at ln(x1/x0)
+    expected = curve.rate(0.05).item() / SLOPE * (1 - (2.0 / 0.05) ** -SLOPE)
+    assert weights @ np.log(levels / 0.05) == pytest.approx(expected)
+
+
+def test_no_time_leaves_the_weights_and_long_time_leaves_the_gentlest_branch():
+    branches = made_branches(0.5, 1.0, 2.0, weights=[0.2, 0.5, 0.3])
+    assert reweight(branches, [rock(1e-9)]).weights == pytest.approx([0.2, 0.5, 0.3])
+    assert reweight(branches, [rock(1e6)]).weights == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+
+
+def test_equal_branches_keep_equal_weights():
+    found = reweight(made_branches(1.0, 1.0, 1.0), [rock(3000, sd=0.3)])
+    assert found.weights == pytest.approx([1 / 3] * 3)
+    assert found.information == pytest.approx(0.0, abs=1e-12)
+
+
+def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_not():
+    branches = made_branches(0.5, 1.0, 2.0)
+    one, other = rock(2000, sd=0.4, name="one"), rock(2000, sd=0.4, name="other")
+    alone = reweight(branches, [one]).log_survival
+    apart = reweight(branches, [one, other], shared_error=0.0, same_earthquakes=False)
+    assert apart.log_survival == pytest.approx(2 * alone, rel=5e-3)
+    together = reweight(branches, [one, other], shared_error=1.0, same_earthquakes=False)
+    assert (together.log_survival > 2 * alone + 0.02).all()
+
+
+def test_a_twin_that_topples_with_its_brother_says_nothing_new():
+    branches = made_branches(0.5, 2.0)
+    sharp = [rock(2000, beta=0.05, name=name) for name in ("one", "other")]
+    alone = reweight(branches, sharp[:1]).log_survival
+    # the weaker of two normal capacities lies 0.5642 standard deviations below the mean
+    expected = alone * math.exp(SLOPE * 0.5642 * 0.05)
+    assert reweight(branches, sharp).log_survival == pytest.approx(expected, rel=5e-3)
+
+
+def test_an_object_that_came_later_is_exposed_to_fewer_earthquakes():
+    branches = made_branches(1.0, 2.0)
+    old, young = rock(2000, theta=0.4, name="old"), rock(500, theta=0.3, name="young")
+    found = reweight(branches, [old, young])
+    for k0, value in zip((1e-4, 2e-4), found.log_survival, strict=True):
+        x = np.geomspace(1e-3, 50, 20_001)
+        fall = -np.diff(k0 * x**-SLOPE)
+        middle = np.sqrt(x[1:] * x[:-1])
+        p_old, p_young = (special.ndtr(np.log(middle / theta) / 0.3) for theta in (0.4, 0.3))
+        both = 1 - (1 - p_old) * (1 - p_young)
+        assert value == pytest.approx(-(1500 * (p_old @ fall) + 500 * (both @ fall)), rel=2e-3)
+
+
+def test_two_measures_reduce_to_one_where_velocity_does_not_matter_or_does_not_scatter():
+    branches = made_branches(1.0, 3.0)
+    plain = rock(1000)
+    c0, c1 = plain.coefficients
+    velocity = VelocityRelation(0.1, 0.6)
+    idle = StandingObject("idle", PGA, (c0, c1, 0.0), 0.0, Age(1000, 1000))
+    expected = reweight(branches, [plain]).log_survival
+    assert reweight(branches, [idle], velocity=velocity).log_survival == pytest.approx(
+        expected, rel=1e-3
+    )
+    # with a certain PGV/PGA of 0.1 s the third coefficient moves the first
+    fixed = StandingObject("fixed", PGA, (c0 - 2.0 * math.log(0.1), c1, 2.0), 0.0, Age(1000, 1000))
+    found = reweight(branches, [fixed], velocity=VelocityRelation(0.1, 1e-9))
+    assert found.log_survival == pytest.approx(expected, rel=1e-3)
+
+
+def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_theory_says():
+    """Φ(c0 + c1 ln a + c2 (m + s Z)) averaged over Z is Φ((c0 + c1 ln a + c2 m) / √(1 + c2² s²))."""
+    body = StandingObject("rock", PGA, (10.0, 4.0, 3.0), 0.0, Age(1000, 1000))
+    m, s = math.log(0.08), 0.5
+    root = math.sqrt(1 + (3.0 * s) ** 2)
+    merged = StandingObject(
+        "merged", PGA, ((10.0 + 3.0 * m) / root, 4.0 / root), 0.0, Age(1000, 1000)
+    )
+    branches = made_branches(0.1, 0.3)
+    found = reweight(branches, [body], velocity=VelocityRelation(0.08, s))
+    assert found.log_survival == pytest.approx(reweight(branches, [merged]).log_survival, rel=2e-3)
+
+
+def test_fragility_in_velocity_needs_a_curve_or_a_relation():
+    body = StandingObject("rock", PGV, lognormal_coefficients(40.0, 0.4), 0.0, Age(1000, 1000))
+    with pytest.raises(InputError, match="needs PGV"):
+        reweight(made_branches(1.0), [body])
+    shaking = shaking_rates([{PGA: power_law(1e-4)}], {PGV}, VelocityRelation(0.1, 0.5), (0.1, 1.0))
+    assert shaking.rates.sum() == pytest.approx(
+        power_law(1e-4).rate(shaking.values[PGA].min()).item()
+    )
+
+
+def test_drawn_histories_of_sites_recover_the_weights():
+    """Draw a branch, then a history of T years, and keep the histories in which the object stands."""
+    rng = np.random.default_rng(12)
+    factors, weights, years = np.array([0.3, 1.0, 3.0]), [0.3, 0.4, 0.3], 2000.0
+    found = reweight(made_branches(*factors, weights=weights), [rock(years, sd=0.3)], samples=8192)
+    n = 20_000
+    branch = rng.choice(3, n, p=weights)
+    theta = 0.4 * np.exp(rng.normal(0, 0.3, n))
+    # earthquakes above 0.08 g in T years; hardly one below topples it
+    lowest = 0.08
+    counts = rng.poisson(years * 1e-4 * factors[branch] * lowest**-SLOPE)
+    history = np.repeat(np.arange(n), counts)
+    level = lowest * rng.random(history.size) ** (-1 / SLOPE)
+    topples = rng.random(history.size) < special.ndtr(np.log(level / theta[history]) / 0.3)
+    stands = np.bincount(history[topples], minlength=n) == 0
+    kept = np.bincount(branch[stands], minlength=3) / stands.sum()
+    error = np.sqrt(kept * (1 - kept) / stands.sum())
+    assert (np.abs(found.weights - kept) < 4 * error + 0.002).all()
+
+
+def test_curves_before_are_the_weighted_mean_and_ratios_follow_from_the_curves():
+    branches = made_branches(0.5, 1.0, 2.0, weights=[0.25, 0.5, 0.25])
+    found = reweight(branches, [rock(3000)])
+    curves = found.curves(PGA)
+    mean = sum(b.weight * b.curves[PGA].rate(curves["level"].to_numpy()) for b in branches)
+    assert curves["mean_before"].to_numpy() == pytest.approx(mean)
+    fractiles = curves.filter(regex="fractile.*before").to_numpy()
+    assert (np.diff(fractiles, axis=1) >= 0).all()
+    row = found.ratios(PGA).set_index("annual_rate").loc[1e-3]
+    assert row["rate_ratio"] == pytest.approx(row["level_ratio"] ** SLOPE, rel=1e-3)
+    assert row["level_after"] < row["level_before"]
+
+
+def test_more_capacity_or_less_age_tells_less():
+    branches, body = made_branches(0.5, 1.0, 2.0), rock(3000)
+    base = reweight(branches, [body]).information
+    assert reweight(branches, scaled([body], capacity=1.5)).information < base
+    assert reweight(branches, scaled([body], age=0.5)).information < base
+
+
+def test_ages_are_certain_uniform_or_lognormal_and_end_with_fragility():
+    uniform = np.array([0.0, 0.5, 1.0])
+    assert Age(3000, 3000).exposure(uniform) == pytest.approx([3000] * 3)
+    assert Age(1000, 3000).exposure(uniform) == pytest.approx([1000, 2000, 3000])
+    assert Age(9000, 9000, 0.3).exposure(np.array([0.5])) == pytest.approx([9000])
+    assert Age(9000, 9000, 0.3, 4000).exposure(np.array([0.5])) == pytest.approx([4000])

@@ -1,0 +1,137 @@
+"""A system is its bodies, its contacts and its start; blocks, stacks and columns are ways to write one."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rockfrag.errors import InputError
+from rockfrag.system.blocks import Block, Column, Stack, as_system
+from rockfrag.system.body import Circle, Interval, Polygon, RigidBody, convex_polygon
+from rockfrag.system.contact import Contact, Friction, checked_friction
+from rockfrag.system.system import Start, System, each_contact, stands
+
+SIZES = st.floats(0.05, 3.0)
+
+
+@given(SIZES, SIZES, st.floats(-0.2, 0.2), st.floats(-0.02, 0.02), st.floats(-0.2, 0.2))
+def test_a_system_has_the_same_bits_as_the_blocks_that_wrote_it(width, height, aside, lean, offset):
+    block = Block(width, height, 40.0, cg_offset=aside * width, lean=lean)
+    assert block.system().shapes == (block.shape,)
+    stack = Stack(Block(2 * width, 2 * width, 90.0, lean=-lean), block, offset * width)
+    assert stack.system().pile == stack.pile
+    assert stack.system().carried == (stack.pedestal.shape, stack.pile.statue)
+
+
+def test_a_statue_that_reaches_beyond_its_pedestal_rocks_on_the_overlap():
+    stack = Stack(Block(0.4, 0.3, 150.0), Block(0.5, 1.2, 100.0), offset=0.01)
+    assert stack.system().carried[1] == stack.contact_statue.shape
+    three = Column((stack.pedestal, stack.statue, Block(0.2, 0.4, 10.0)), (0.01, 0.0))
+    lower, upper = three.system().carried[1], stack.contact_statue.shape
+    assert lower.b == pytest.approx(upper.b, rel=1e-15)
+    assert lower.x == pytest.approx(upper.x, rel=1e-12)
+
+
+def test_a_uniform_box_in_space_is_the_planar_block_in_its_plane():
+    box = Block(0.3, 1.0, 50.0, depth=0.2)
+    assert box.system().in_plane().shapes == (Block(0.3, 1.0, 50.0).shape,)
+    assert box.body.seen_along(90.0).base == pytest.approx(Interval(-0.1, 0.1))
+    assert box.body.seen_along(90.0).inertia == pytest.approx(50 * (0.2**2 + 1.0) / 12)
+
+
+def test_a_round_block_is_a_cylinder_and_the_same_from_all_sides():
+    round_ = Block(0.4, 1.0, 50.0, round=True)
+    body = round_.body
+    assert body.base == Circle(0.2)
+    assert np.diag(body.tensor) == pytest.approx([50 * (0.12 + 1) / 12] * 2 + [50 * 0.04 / 2])
+    for angle in (0.0, 30.0, 217.0):
+        assert body.seen_along(angle).inertia == pytest.approx(round_.centroidal_inertia, rel=1e-14)
+
+
+def test_a_body_turned_by_some_angle_is_seen_as_its_tensor_says():
+    tensor = ((2.0, 0.3, 0.1), (0.3, 1.5, -0.2), (0.1, -0.2, 1.0))
+    body = RigidBody(
+        10.0,
+        tensor,
+        (0.01, 0.02, 0.5),
+        convex_polygon(np.random.default_rng(1).uniform(-1, 1, (9, 2))),
+        1.0,
+    )
+    angle = math.radians(37.0)
+    axis = np.array([-math.sin(angle), math.cos(angle), 0.0])
+    seen = body.seen_along(37.0)
+    assert seen.inertia == pytest.approx(axis @ np.array(tensor) @ axis)
+    assert seen.centre[0] == pytest.approx(0.01 * math.cos(angle) + 0.02 * math.sin(angle))
+    back = body.seen_along(217.0).base
+    assert isinstance(back, Interval)
+    assert isinstance(seen.base, Interval)
+    assert (back.left, back.right) == pytest.approx((-seen.base.right, -seen.base.left))
+
+
+def test_a_column_falls_apart_where_a_part_of_it_has_no_support():
+    low, high = Block(0.4, 0.3, 50.0), Block(0.2, 0.3, 10.0)
+    assert stands(Column((low, high, high), (0.05, 0.05)).system())
+    # each block stands on the one below, and the upper two together do not
+    with pytest.raises(InputError, match="beside it"):
+        Column((low, high, high, high), (0.15, 0.09, 0.09))
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Block(0.3, 1.0, 50.0, depth=0.2, round=True), "leave depth out"),
+        (lambda: Block(0.3, 1.0, 50.0, depth=0.2, inertia=3.0), "tensor"),
+        (lambda: Block(0.3, 1.0, 50.0, round=1), "True or False"),
+        (lambda: Column(()), "1 to 12"),
+        (lambda: Column((Block(0.3, 1.0, 50.0),) * 13), "1 to 12"),
+        (lambda: Column((Block(0.3, 1.0, 50.0),), (0.1,)), "0 offset"),
+        (lambda: System((), ()), "1 to 12"),
+        (lambda: RigidBody(1.0, ((1, 0, 0), (0, 1, 0), (0, 0, 3)), (0, 0, 1), Circle(1.0), 2.0), "no body"),
+        (lambda: RigidBody(1.0, 1.0, (0, 0, 1), Circle(1.0), 2.0), "planar body"),
+        (lambda: as_system("block"), "expected a Block"),
+    ],
+)  # fmt: skip
+def test_what_is_no_system_is_refused_in_one_sentence(make, words):
+    with pytest.raises(InputError, match=words):
+        make()
+
+
+def test_bodies_of_a_system_need_a_face_below_them_and_a_start_for_each():
+    body = Block(0.3, 1.0, 50.0).body
+    bare = RigidBody(body.mass, body.inertia, body.centre, body.base, body.height)
+    with pytest.raises(InputError, match="no face"):
+        System((bare, body), (Contact(), Contact()))
+    with pytest.raises(InputError, match="at the start"):
+        System((body, body), (Contact(), Contact()), Start((0.1,), (0.0,)))
+    with pytest.raises(InputError, match="cannot stand on each other"):
+        System((body, Block(0.3, 1.0, 50.0, depth=0.3).body), (Contact(), Contact()))
+
+
+def test_contacts_are_named_so_that_no_pair_can_be_misread():
+    assert each_contact("friction", 0.4, 2) == (0.4, 0.4)
+    assert each_contact("friction", {"ground": 0.6, "interface": 0.2}, 2) == (0.6, 0.2)
+    assert each_contact("friction", {"ground": 0.6}, 3) == (0.6, None, None)
+    assert each_contact("friction", {"interface": [0.3, 0.2]}, 3) == (None, 0.3, 0.2)
+    with pytest.raises(InputError, match="no contact"):
+        each_contact("friction", {"interface": 0.2}, 1)
+    with pytest.raises(InputError, match="no contact"):
+        each_contact("friction", {"floor": 0.2}, 2)
+
+
+def test_friction_of_a_contact():
+    assert checked_friction("friction", (0.6, 0.3)) == Friction(0.6, 0.3)
+    assert checked_friction("friction", math.inf) == Friction(1e6, 1e6)
+    # a number in an array without axes is a number
+    assert checked_friction("friction", np.array(0.4)) == Friction(0.4, 0.4)
+    with pytest.raises(InputError, match="less than the kinetic"):
+        checked_friction("friction", (0.2, 0.3))
+
+
+def test_convex_outlines_are_anticlockwise():
+    square = convex_polygon([(0, 0), (1, 1), (1, 0), (0, 1), (0.5, 0.5)])
+    assert isinstance(square, Polygon)
+    x, y = np.array(square.vertices).T
+    assert len(x) == 4
+    assert 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) == pytest.approx(1.0)

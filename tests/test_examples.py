@@ -1,0 +1,179 @@
+"""Examples of docstrings are run, and what a name at a prompt shows fits the screen."""
+
+import doctest
+import importlib
+import inspect
+import pydoc
+
+import numpy as np
+import pytest
+
+import rockfrag
+from rockfrag import Block, Motion, Stack, find_thresholds, overturns, read_motion, simulate
+from rockfrag.errors import InputError
+from rockfrag.rocking.inputs import UnitDoubt
+from rockfrag.system.blocks import UnlikelyBlock
+
+SUBPACKAGES = (
+    *("", ".assess", ".building", ".campaign", ".fragility", ".motions", ".pedestal", ".records"),
+    *(".rocking", ".shaketable"),
+)
+SHOWN_FIRST = (
+    *("Block", "Stack", "simulate", "overturns", "find_thresholds", "rocking_spectrum"),
+    *("fragile_verdicts", "verdict_sureness"),
+)
+TIME = np.arange(0, 2, 0.01)
+PULSE = np.sin(2 * np.pi * TIME) * (TIME < 1)
+STATUE = Block(0.3, 1.2, 180.0)
+STACK = Stack(Block(0.6, 0.4, 300.0), STATUE)
+
+
+def public() -> dict[str, object]:
+    """Functions and classes that the package and its subpackages export, by their full names."""
+    found = {}
+    for subpackage in SUBPACKAGES:
+        package = importlib.import_module(f"rockfrag{subpackage}")
+        for name in package.__all__:
+            value = getattr(package, name)
+            if inspect.isfunction(value) or inspect.isclass(value):
+                found[f"{value.__module__}.{name}"] = value
+    return found
+
+
+PUBLIC = public()
+WITH_EXAMPLES = {
+    name: value for name, value in PUBLIC.items() if ">>>" in (inspect.getdoc(value) or "")
+}
+
+
+def run_examples(value: object, name: str) -> None:
+    for example in doctest.DocTestFinder(recurse=False).find(value, name, globs={}):
+        report: list[str] = []
+        doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(
+            example, out=report.append
+        )
+        assert not report, "".join(report)
+
+
+@pytest.mark.parametrize("name", sorted(WITH_EXAMPLES))
+def test_an_example_shows_what_it_says(name):
+    run_examples(WITH_EXAMPLES[name], name)
+
+
+def test_the_first_example_of_all_shows_what_it_says():
+    assert ">>>" in rockfrag.__doc__
+    run_examples(rockfrag, "rockfrag")
+
+
+@pytest.mark.parametrize("name", SHOWN_FIRST)
+def test_what_is_used_first_says_what_comes_back_and_shows_it(name):
+    value = getattr(rockfrag, name)
+    words = inspect.getdoc(value)
+    assert "Examples\n--------" in words
+    assert "Returns\n-------" in words or inspect.isclass(value)
+
+
+@pytest.mark.parametrize("name", sorted(PUBLIC))
+def test_help_begins_with_types_that_a_person_can_read(name):
+    head = pydoc.render_doc(PUBLIC[name], renderer=pydoc.plaintext).splitlines()[2]
+    assert "numpy._typing" not in head
+    assert len(head) < 1000
+
+
+RESULTS = {
+    "Motion": lambda: Motion(PULSE, 0.01, metadata={str(i): i for i in range(9)}),
+    "Response of a block": lambda: simulate(STATUE, 4 * PULSE, 0.01),
+    "Response of a stack": lambda: simulate(STACK, 4 * PULSE, 0.01),
+    "EnsembleResult": lambda: overturns([STATUE, STACK], PULSE, 0.01, np.arange(2.5, 8, 0.1)),
+    "Thresholds": lambda: find_thresholds(
+        [STATUE] * 9, PULSE, 0.01, 8.0, tolerance=0.1, smallest_window=0.5
+    ),
+    "RockingSpectrum": lambda: rockfrag.rocking_spectrum(Motion(4 * PULSE, 0.01), [1, 2, 3], 0.2),
+    "ResponseSpectrum": lambda: rockfrag.response_spectrum(
+        Motion(PULSE, 0.01), np.linspace(0.1, 2, 50)
+    ),
+}
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_at_the_prompt_fits_a_screen(name):
+    lines = repr(RESULTS[name]()).splitlines()
+    assert len(lines) <= 30
+    assert max(map(len, lines)) <= 100
+    assert lines[0] == f"{name.split()[0]}("
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda: overturns(STATUE, PULSE, 0.01, scale=2), "did you mean scales?"),
+        (lambda: simulate(STATUE, PULSE, 0.01, frictions=0.3), "did you mean friction?"),
+        (lambda: simulate(STATUE, PULSE, 0.01, mu=0.3), "it has body, motion, dt, "),
+        (lambda: Block(0.3, 1.2, 180.0, cgheight=0.5), "did you mean cg_height?"),
+        (lambda: Stack(plinth=STATUE, statue=STATUE), "it has pedestal, statue, offset."),
+        (lambda: read_motion("x.AT2", units="g"), "did you mean unit?"),
+    ],
+)
+def test_a_wrong_keyword_is_answered_with_the_right_one(call, sentence):
+    with pytest.raises(TypeError) as caught:
+        call()
+    assert isinstance(caught.value, InputError)
+    assert sentence in str(caught.value)
+
+
+@pytest.mark.parametrize("motion", ["Kobe.dat", "records/Kobe.dat"])
+def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it(motion):
+    for call in (
+        lambda: simulate(STATUE, motion),
+        lambda: overturns(STATUE, motion),
+        lambda: overturns(STATUE, [motion, motion], 0.01),
+        lambda: find_thresholds(STATUE, motion, None, 8.0, tolerance=0.1, smallest_window=0.5),
+    ):
+        with pytest.raises(InputError, match=r"rockfrag\.read_motion") as caught:
+            call()
+        assert motion in str(caught.value)
+
+
+@pytest.mark.parametrize("body", [STATUE, STACK])
+@pytest.mark.parametrize("peak", [0.26, 0.34, 1.0, 2.0])
+def test_accelerations_in_g_are_warned_of_by_what_they_would_lift(body, peak):
+    with pytest.warns(UnitDoubt, match=r"less than the 2\.45 m/s² that start rocking"):
+        assert not simulate(body, peak * PULSE, 0.01).overturned
+    with pytest.warns(UnitDoubt, match=r"multiply it by 9\.81"):
+        overturns([body], [peak * PULSE], 0.01, [0.5, 1.0])
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: simulate(STATUE, 2.5 * PULSE, 0.01),
+        lambda: overturns(STATUE, PULSE, 0.01, [1.0, 3.0]),
+        # its unit is known
+        lambda: simulate(STATUE, Motion(PULSE, 0.01)),
+        lambda: overturns(STATUE, Motion(PULSE, 0.01)),
+        # in g it would lift nothing either
+        lambda: simulate(STATUE, 0.2 * PULSE, 0.01),
+        lambda: find_thresholds(STATUE, PULSE, 0.01, 8.0, tolerance=0.01, smallest_window=0.5),
+    ],
+)
+def test_what_is_in_the_right_unit_is_not_doubted(call):
+    call()
+
+
+def test_a_block_in_centimetres_or_millimetres_is_doubted():
+    with pytest.warns(UnlikelyBlock, match="42 m wide, 165 m high and of 410 kg .* give metres"):
+        Block(42, 165, 410)
+    with pytest.warns(UnlikelyBlock, match="lighter than air"):
+        Block(200.0, 800.0, 50.0)
+
+
+@pytest.mark.parametrize("inertia", [1e9, 1e-9])
+def test_an_inertia_of_another_body_is_doubted(inertia):
+    with pytest.warns(UnlikelyBlock, match="radius of gyration"):
+        Block(0.2, 0.8, 50.0, inertia=inertia)
+
+
+def test_a_centre_of_gravity_above_the_top_is_refused():
+    with pytest.raises(InputError, match=r"cg_height 2 m is above the top, .* height 1\.65 m"):
+        Block(0.42, 1.65, 410, cg_height=2)
