@@ -121,7 +121,9 @@ def rest_ends(body, y, field, tau, dt):
             high, below = middle, value
             above *= 0.5 if side < 0 else 1.0
             side = -1
-        if high - low < 1e-15 or value == 0.0:
+        if abs(value) < 1e-14:
+            return middle
+        if high - low < 1e-15:
             break
     return high
 
@@ -257,7 +259,9 @@ def locate(body, tau, h, y, s):
             high, below = middle, value
             above *= 0.5 if side < 0 else 1.0
             side = -1
-        if high - low < 1e-14 or abs(value) < 1e-14:
+        if abs(value) < 1e-14:
+            return middle, what
+        if high - low < 1e-14:
             break
     attempt(body, tau, high, y, s)
     _, what = margin(body, s.new, s)
@@ -550,7 +554,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
             if many % MANY == 0:
-                s.close *= 2.0
+                s.close = min(2.0 * s.close, 1e-3)
             if stuck > 100:
                 # nothing is consistent here: let the motion go on as it is for a moment
                 tau = force_step(body, tau, dt, y, s)

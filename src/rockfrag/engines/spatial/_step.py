@@ -140,7 +140,7 @@ def dips(body, y, h, s):
         rising = point_velocity(new, after, arm(body, after[2], i))[2]
         if sinking < 0 < rising:
             lowest = gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (rising - sinking)
-            if lowest < 0.02 * h * (rising - sinking):
+            if lowest - 0.02 * h * (rising - sinking) < -0.5 * TOUCH:
                 return True
     return False
 
