@@ -2,7 +2,8 @@
 # make smoke    a small study in under a minute
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
-# make torture  a small study killed, starved and misused; make fuzz damaged inputs (INPUTS=10000 for fewer)
+# make torture  a small study killed, starved and misused; make fuzz damaged inputs
+#               (INPUTS=10000 for fewer) and random requests of assess (REQUESTS=200)
 # make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
@@ -14,14 +15,16 @@ unexport PYTHONDONTWRITEBYTECODE
 PYTHON ?= python3
 STUDY ?= config/thesis.yaml
 INPUTS ?= 1000000
+REQUESTS ?= 2000
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
 PIP := $(RUN) pip install --quiet --disable-pip-version-check
 # where the digests of all wheels are known they are checked (maintenance/pins.py writes them)
 HASHES = hashes/$(shell "$(PYTHON)" -c 'import sys, platform; print(f"{sys.platform}-{platform.machine()}-py{sys.version_info[0]}{sys.version_info[1]}")').txt
-# what failed has said so in a sentence; make, which would add three lines, dies of a closed pipe instead
-QUIETLY := || { kill -PIPE $$PPID; exit 1; }
+# what failed has said so in a sentence, which stays the last: SIGQUIT makes make end with status 1 and without a word
+# (where that signal is ignored, as in the background of some shells, make adds its line and ends with status 2)
+QUIETLY := || { trap 'kill -QUIT $$PPID; sleep 1; exit 0' QUIT; kill -QUIT $$$$; exit 1; }
 
 .PHONY: run smoke report-pdf test validate coverage lint docs bench fuzz torture format
 .DEFAULT_GOAL := run
@@ -52,18 +55,19 @@ lint: .venv/installed
 	@$(RUN) ruff format --check .
 	@$(RUN) mypy
 	@$(RUN) codespell_lib
-	@.venv/bin/python .venv/bin/snakefmt --check Snakefile workflow
+	@.venv/bin/python .venv/bin/snakefmt --check workflow
 	@$(RUN) snakemake --lint
 
 format: .venv/installed
 	@$(RUN) ruff format .
-	@.venv/bin/python .venv/bin/snakefmt Snakefile workflow
+	@.venv/bin/python .venv/bin/snakefmt workflow
 
 fuzz: .venv/installed
-	@.venv/bin/python benchmarks/fuzz.py --inputs $(INPUTS)
+	@$(RUN) tests.fuzz --inputs $(INPUTS)
+	@$(RUN) tests.fuzz.requests --requests $(REQUESTS)
 
 torture: .venv/installed
-	@.venv/bin/python benchmarks/torture.py
+	@$(RUN) tests.fault_injection
 
 docs: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[docs]"

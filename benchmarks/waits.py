@@ -25,7 +25,6 @@ from rockfrag.stages.log import last_seconds
 ROOT = Path(__file__).resolve().parents[1]
 COPIED = (
     "Makefile",
-    "Snakefile",
     "pyproject.toml",
     "constraints.txt",
     "workflow",

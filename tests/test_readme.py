@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-PROJECT = ("Makefile", "Snakefile", "pyproject.toml", "constraints.txt", "workflow", "profiles")
+PROJECT = ("Makefile", "pyproject.toml", "constraints.txt", "workflow", "profiles")
 
 
 def fences(language: str) -> list[str]:

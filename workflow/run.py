@@ -2,7 +2,8 @@
 
     python workflow/run.py config/thesis.yaml --cores all
 
-What stands behind the study goes to Snakemake. Whatever goes wrong is said in one sentence.
+What stands behind the study goes to Snakemake. Whatever goes wrong is said in one sentence; the exit status is 2
+where the study, its folder or the machine is to be mended, and 1 where a stage failed.
 """
 
 import io
@@ -10,52 +11,65 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import redirect_stderr, redirect_stdout
+from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 
 from rockfrag.errors import InputError
-from rockfrag.stages.means import check_folders, check_memory
+from rockfrag.stages.preflight import check_folders, check_memory
+from rockfrag.yaml_file import read_yaml
 
-SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parents[1] / "Snakefile"))
+SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parent / "Snakefile"))
 
 
 def main(study_file: str, arguments: Sequence[str]) -> int:
-    """Run a study; return 0, or another number if it could not be run to its end."""
+    """Run a study; return 0, or the exit status if it could not be run to its end."""
     try:
         check_memory()
+        # what takes much memory is loaded now that there is some
+        from rockfrag.cli import main as rockfrag
+        from rockfrag.stages.log import in_words
+        from rockfrag.stages.run_lock import run_lock
+        from rockfrag.stages.running import results_folder
+        from rockfrag.study.loading import load_any
     except InputError as error:
         print(error, file=sys.stderr)
-        return 1
-    # what takes much memory is loaded now that there is some
-    from rockfrag.cli import main as rockfrag
-    from rockfrag.stages.loaded import loaded
-    from rockfrag.stages.log import in_words
-    from rockfrag.stages.one_run import RUNS, only_run
-    from rockfrag.stages.running import results_folder
-    from rockfrag.study.loading import load_any
-
+        return 2
     status = rockfrag(["check-config", "--quiet", study_file])
     if status:
         return status
     try:
-        study = load_any(study_file)
-        results = results_folder(study)
+        _check_executor(arguments)
+        results = results_folder(load_any(study_file))
         try:
-            check_folders(results, RUNS)
+            check_folders(results, Path(".snakemake"))
         except PermissionError:
             # a finished study may lie where nobody writes
             if not _is_finished(study_file, arguments):
                 raise
             print(f"Nothing to do; the report is {results}/report.html")
             return 0
-        with only_run(study.name, results), loaded(RUNS / f"{study.name}.socket"):
+        with run_lock(results):
             return _snakemake(study_file, ["--keep-going", *arguments])
-    except InputError as error:
-        print(error, file=sys.stderr)
     except KeyboardInterrupt:
         print("stopped; the same command takes it up again", file=sys.stderr)
+        return 1
     except Exception as error:
-        print(in_words(error), file=sys.stderr)
-    return 1
+        print(error if isinstance(error, InputError) else in_words(error), file=sys.stderr)
+        return 2
+
+
+def _check_executor(arguments: Sequence[str]) -> None:
+    """See that the plugin is installed by which a profile has jobs executed."""
+    for option, profile in pairwise(arguments):
+        file = Path(profile) / "config.yaml"
+        known = option == "--profile" and file.is_file()
+        executor = read_yaml(file).get("executor", "local") if known else "local"
+        plugin = f"snakemake-executor-plugin-{executor}"
+        if executor != "local" and find_spec(plugin.replace("-", "_")) is None:
+            raise InputError(
+                f"{file}: {plugin} is not installed; install it with '{sys.executable} -m pip install {plugin}'."
+            )
 
 
 def _is_finished(study_file: str, arguments: Sequence[str]) -> bool:

@@ -24,10 +24,10 @@ MOST_EVENTS = 30
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return 0, 1 if a file could not be read, 2 if an input is not usable."""
-    options = make_parser().parse_args(arguments)
     with warnings.catch_warnings():
         warnings.showwarning = _print_warning
         try:
+            options = make_parser().parse_args(arguments)
             status = int(options.run(options))
             sys.stdout.flush()
         except InputError as error:

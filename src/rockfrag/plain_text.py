@@ -27,6 +27,11 @@ def unfit_character(text: str) -> str:
     return found[0] if found else ""
 
 
+def printable(text: str) -> str:
+    """Text with a replacement character for each that no line of a terminal or a table can show."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else "\ufffd" for c in text)
+
+
 def read_text(path: str | os.PathLike[str], most_bytes: int) -> str:
     """Read a file of text in UTF-8, or in UTF-16 with a byte order mark.
 

@@ -1,12 +1,19 @@
-"""The same function on many things, in several processes, with results in order."""
+"""The same function on many things, in several processes, with results in order; none outlives its parent."""
 
 import multiprocessing
+import os
+import select
+import threading
+import time
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any, TypeVar
 
 T = TypeVar("T")
 R = TypeVar("R")
+
+LOOK_S = 0.2
+"""How often a process looks whether those it belongs to are still there [s]."""
 
 _waiting: tuple[Callable[[Any], Any], Sequence[Any]] = (str, ())
 """What the processes of :func:`in_processes` have to do."""
@@ -24,6 +31,11 @@ def in_processes(function: Callable[[T], R], things: Iterable[T], processes: int
     processes
         How many processes may work at once; the results do not depend on it.
 
+    Returns
+    -------
+    What the function returned. It should be small: a process that was killed while it handed over more than a
+    pipe takes at once would leave this one waiting for the rest.
+
     Raises
     ------
     concurrent.futures.process.BrokenProcessPool
@@ -34,7 +46,11 @@ def in_processes(function: Callable[[T], R], things: Iterable[T], processes: int
     global _waiting
     _waiting = (function, [*things])
     fork = multiprocessing.get_context("fork")
-    with ProcessPoolExecutor(processes, mp_context=fork) as pool:
+    # a worker reads from a pipe that it holds open itself, so it would not see that this process was killed
+    parent = (os.getpid(),)
+    with ProcessPoolExecutor(
+        processes, mp_context=fork, initializer=end_with, initargs=parent
+    ) as pool:
         # a fork has everything that is loaded already, and needs to pickle no argument
         return list(pool.map(_call, range(len(_waiting[1])), chunksize=1))
 
@@ -42,3 +58,45 @@ def in_processes(function: Callable[[T], R], things: Iterable[T], processes: int
 def _call(number: int) -> Any:
     function, things = _waiting
     return function(things[number])
+
+
+def end_with(process: int) -> None:
+    """End this process as soon as its parent, or another process that it belongs to, has ended.
+
+    Parameters
+    ----------
+    process
+        Number of the process that it belongs to, on the same machine.
+    """
+    threading.Thread(target=_watch, args=(process, os.getppid()), daemon=True).start()
+
+
+def _watch(process: int, parent: int) -> None:
+    has_ended = _watcher(process)
+    while os.getppid() == parent and not has_ended():
+        pass
+    os._exit(1)
+
+
+def _watcher(process: int) -> Callable[[], bool]:
+    """Return what waits a moment for the end of a process, and says whether it has ended."""
+    try:
+        end = os.pidfd_open(process)
+    except ProcessLookupError:
+        return lambda: True
+    except (AttributeError, OSError):
+        # no Linux, or an old one
+        return lambda: _has_ended(process)
+    return lambda: bool(select.select([end], [], [], LOOK_S)[0])
+
+
+def _has_ended(process: int) -> bool:
+    time.sleep(LOOK_S)
+    if os.name != "posix":
+        # there signal 0 would end the process
+        return False
+    try:
+        os.kill(process, 0)
+    except OSError:
+        return True
+    return False

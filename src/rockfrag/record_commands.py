@@ -6,9 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.errors import InputError
+from rockfrag.plain_text import printable
+from rockfrag.records.wording import for_command_line
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from rockfrag.records.motion import Motion
 
 
 def add_record_commands(commands: Any) -> None:
@@ -24,12 +28,21 @@ def _add_reading(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--dt", type=float, help="sampling interval [s] of files without one")
 
 
+def _add_force(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--force",
+        action="store_true",
+        help="take --unit as given although peaks are then above 3 g",
+    )
+
+
 def _add_info(commands: Any) -> None:
     info = commands.add_parser("info", help="say what is in strong-motion records")
     info.add_argument(
         "files", nargs="+", metavar="FILE", help="record, archive or folder of records"
     )
     _add_reading(info)
+    _add_force(info)
     info.add_argument(
         "--format", choices=("table", "csv", "json"), default="table", help="of the output"
     )
@@ -80,13 +93,23 @@ def _add_write(commands: Any) -> None:
     write.add_argument("--format", help="AT2, CSV, SEISMOSOFT, OPENSEES or MSEED")
     write.add_argument("--in-unit", metavar="UNIT", help="unit of the numbers written")
     _add_reading(write)
+    _add_force(write)
     write.add_argument("--channel", help="channel, where the record has several")
     write.set_defaults(run=_write)
 
 
+def _read(file: str, options: argparse.Namespace) -> "Motion":
+    """Read a record as the options say, with errors that name them."""
+    from rockfrag.records.read import read_motion
+
+    try:
+        return read_motion(file, options.unit, options.channel, options.dt, force=options.force)
+    except InputError as error:
+        raise InputError(for_command_line(error)) from None
+
+
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for ObsPy
 def _info(options: argparse.Namespace) -> int:
-    from rockfrag.records.read import read_motion
     from rockfrag.report.record_info import (
         READ,
         UNREADABLE,
@@ -95,20 +118,20 @@ def _info(options: argparse.Namespace) -> int:
         draw_record,
     )
 
-    table = describe_files(options.files, options.unit, options.dt)
+    table = describe_files(options.files, options.unit, options.dt, options.force)
     _print_info(table, options.format)
     for error in table.loc[table["status"] != READ, "error"]:
-        print(error, file=sys.stderr)
+        print(for_command_line(error), file=sys.stderr)
     if options.picture:
         if len(options.files) != 1:
             raise InputError("--picture draws one record; name one FILE.")
-        motion = read_motion(options.files[0], options.unit, options.channel, options.dt)
+        motion = _read(options.files[0], options)
         draw_record(motion, options.picture)
         print(f"drawn in {options.picture}", file=sys.stderr)
     if options.pictures:
-        drawn = draw_files(options.files, options.pictures, options.unit, options.dt)
+        drawn = draw_files(options.files, options.pictures, options.unit, options.dt, options.force)
         print(f"{len(drawn)} pictures drawn in {options.pictures}", file=sys.stderr)
-    named = table["file"].isin([str(Path(file)) for file in options.files])
+    named = table["file"].isin([printable(str(Path(file))) for file in options.files])
     bad = (table["status"] == UNREADABLE) | ((table["status"] != READ) & named)
     return int(bad.any())
 
@@ -133,7 +156,10 @@ def _catalogue(options: argparse.Namespace) -> int:
     from rockfrag.records.make_catalogue import make_catalogue
 
     folder = Path(options.output).parent if options.output else Path()
-    draft = make_catalogue(options.paths, options.unit, options.dt, folder)
+    try:
+        draft = make_catalogue(options.paths, options.unit, options.dt, folder)
+    except InputError as error:
+        raise InputError(for_command_line(error, force=False)) from None
     used = [column for column in draft.table if (draft.table[column] != "").any()]
     text = csv_text(draft.table[used])
     if options.output:
@@ -141,7 +167,7 @@ def _catalogue(options: argparse.Namespace) -> int:
         print(f"{len(draft.table)} motions in {options.output}", file=sys.stderr)
     else:
         print(text, end="")
-    for line in [*draft.warnings, *draft.errors]:
+    for line in [*draft.summary(), *(for_command_line(e, force=False) for e in draft.errors)]:
         print(line, file=sys.stderr)
     return int(bool(draft.errors))
 
@@ -170,7 +196,6 @@ def _fetch(options: argparse.Namespace) -> int:
 
 
 def _write(options: argparse.Namespace) -> int:
-    from rockfrag.records.read import read_motion
     from rockfrag.records.write import motions_of_study, write_motion, write_motions
 
     if options.source.endswith(".parquet"):
@@ -179,6 +204,6 @@ def _write(options: argparse.Namespace) -> int:
         for path in write_motions(motions, options.target, form, options.in_unit):
             print(path)
         return 0
-    motion = read_motion(options.source, options.unit, options.channel, options.dt)
+    motion = _read(options.source, options)
     print(write_motion(motion, options.target, options.format, options.in_unit))
     return 0

@@ -3,6 +3,7 @@
 import csv
 import math
 import os
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
@@ -97,6 +98,7 @@ def read_rows(
     *,
     quantities: Sequence[str] = (),
     least: int = 1,
+    faults: list[str] | None = None,
 ) -> list[Row]:
     """Read a CSV file with a header line; lines that start with ``#`` are comments.
 
@@ -111,6 +113,9 @@ def read_rows(
         ``width`` with the unit in each cell.
     least
         Least number of rows.
+    faults
+        List to which a sentence is added for every row with too few or too many cells, which is then left out;
+        None refuses the table at the first one.
 
     Raises
     ------
@@ -141,12 +146,25 @@ def read_rows(
     rows = []
     for line, cells in body:
         if len(cells) != len(header):
-            raise InputError(
+            fault = (
                 f"{path}, line {line}: expected {len(header)} cells as in the header, found "
                 f"{len(cells)}; a text that holds the separator needs double quotes."
             )
+            if faults is None:
+                raise InputError(fault)
+            faults.append(fault)
+            continue
         rows.append(Row(str(path), line, dict(zip(names, cells, strict=True)), titles))
     return rows
+
+
+_DECIMAL_COMMA = re.compile(r"\s*([-+]?\d+),(\d+(?:[eE][-+]?\d+)?\s*[^\d,]*\d?)\s*")
+
+
+def _with_point(cell: str) -> str:
+    """A cell of a table that needs no commas: where a number has one, it is that of the decimals."""
+    found = _DECIMAL_COMMA.fullmatch(cell)
+    return f"{found[1]}.{found[2].strip()}" if found else cell.strip()
 
 
 def read_cells(path: str | os.PathLike[str]) -> list[tuple[int, list[str]]]:
@@ -183,9 +201,11 @@ def cells_of(text: str, path: str | os.PathLike[str]) -> list[tuple[int, list[st
     if not numbered:
         return []
     delimiter = max(DELIMITERS, key=numbered[0][1].count)
+    # whoever separates cells by semicolons does so because numbers there have commas
+    point = _with_point if delimiter == ";" else str.strip
     try:
         return [
-            (number, [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))])
+            (number, [point(cell) for cell in next(csv.reader([line], delimiter=delimiter))])
             for number, line in numbered
         ]
     except csv.Error as error:

@@ -54,6 +54,17 @@ DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
 A g beside an acceleration is that of gravity; as a unit to convert to it is the gram.
 """
 
+EXAMPLES: Mapping[str, str] = {
+    "length": "a length such as 1.2 m",
+    "mass": "a mass such as 180 kg",
+    "moment of inertia": "a moment of inertia such as 25 kg m2",
+    "acceleration": "an acceleration such as 0.25 g",
+    "velocity": "a velocity such as 20 cm/s",
+    "time": "a time such as 0.3 s",
+}
+"""What a message names as an example of each dimension: a size that people meet."""
+
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+(?!\d*,)")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 
 
@@ -94,7 +105,12 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     """
     dimension = dimension_of(to)
     units = DIMENSIONS[dimension]
-    expected = f"expected a {dimension} such as 35 {next(iter(units))}"
+    expected = f"expected {EXAMPLES[dimension]}"
+    if isinstance(given, str) and _DECIMAL_COMMA.match(given):
+        raise InputError(
+            f"{expected}, found {given!r:.60}; write decimals with a point, as "
+            f"{given.strip().replace(',', '.', 1)!r:.60}."
+        )
     number = _NUMBER.fullmatch(given) if isinstance(given, str) else None
     if isinstance(given, int | float) and not isinstance(given, bool):
         # a whole number may be larger than any float
@@ -109,7 +125,7 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     if found is None:
         raise InputError(f"{expected}, found {given!r:.60} without a unit.")
     if found not in units:
-        known = ", ".join(one.replace("_", " ") for one in units)
+        known = ", ".join(_as_written(one) for one in units)
         raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
     return convert(value, found, to)
 
@@ -118,6 +134,11 @@ def _as_in_names(written: str) -> str:
     """``kg m²``, ``kg·m^2`` and ``kg*m2`` are ``kg_m2``, ``cm/s²`` is ``cm_s2``."""
     plain = written.replace("²", "2").replace("^", "")
     return "_".join(re.split(r"[\s·*_/]+", plain.strip()))
+
+
+def _as_written(unit: str) -> str:
+    """A unit as people write it: ``m_s2`` is m/s²."""
+    return re.sub(r"_s(2?)$", r"/s\1", unit).replace("_", " ").replace("2", "²")
 
 
 def other_names(name: str) -> dict[str, str | None]:

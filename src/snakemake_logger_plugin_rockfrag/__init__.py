@@ -6,13 +6,13 @@ Snakemake finds this package by its name: ``snakemake --logger rockfrag``.
 import logging
 import sys
 import time
+from collections import Counter
 from pathlib import Path
-from typing import Any
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from rockfrag.stages.log import last_finding, last_seconds, says_why
+from rockfrag.stages.log import KILLED, last_finding, last_seconds, says_why
 
 __all__ = ["LogHandler"]
 
@@ -20,123 +20,80 @@ __all__ = ["LogHandler"]
 class LogHandler(LogHandlerBase):
     """Prints what people want to know of Snakemake's messages, and leaves out the rest."""
 
+    # it replaces Snakemake's own lines, leaves its log file alone, and chooses and words by itself
+    writes_to_stream = True
+    writes_to_file = False
+    has_filter = True
+    has_formatter = True
+    needs_rulegraph = False
+
     def __post_init__(self) -> None:
         """Start with nothing known."""
-        super().__post_init__()
+        # with Snakemake 9.0 nobody else does
+        logging.Handler.__init__(self)
         self.start = time.monotonic()
-        self.report = ""
+        self.report = Path()
         self.failed = False
-        self.total = 0
-        self.done = 0
-        self.running: dict[int, tuple[str, str]] = {}
-        self.begun: dict[int, float] = {}
-        self.waiting: dict[str, int] = {}
-        self.expected: dict[str, float] = {}
-        self.expected_done = 0.0
-
-    @property
-    def writes_to_stream(self) -> bool:
-        """Replaces Snakemake's own lines."""
-        return True
-
-    @property
-    def writes_to_file(self) -> bool:
-        """Leaves Snakemake's log file alone."""
-        return False
-
-    @property
-    def has_filter(self) -> bool:
-        """Chooses by itself what to print."""
-        return True
-
-    @property
-    def has_formatter(self) -> bool:
-        """Words its lines itself."""
-        return True
-
-    @property
-    def needs_rulegraph(self) -> bool:
-        """Draws no graph."""
-        return False
+        self.running: dict[int, tuple[str, Path, float]] = {}
+        self.waiting: Counter[str] = Counter()
+        self.done: Counter[str] = Counter()
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print a line about what happened, if it concerns people."""
-        event = getattr(record, "event", None)
+        event, about = getattr(record, "event", None), record.__dict__
         if event == LogEvent.RUN_INFO:
-            self._plan(record.stats)  # type: ignore[attr-defined]
+            rules = {rule: n for rule, n in about["stats"].items() if rule not in ("all", "total")}
+            self.waiting = Counter(rules)
         elif event == LogEvent.JOB_INFO:
-            self._begin(record.__dict__)
+            log = Path(about["log"][0] if about["log"] else "")
+            self.running[about["jobid"]] = about["rule_name"], log, time.time()
         elif event == LogEvent.JOB_FINISHED:
-            self._finish(int(record.job_id))  # type: ignore[attr-defined]
+            self._finish(int(about["job_id"]))
         elif event == LogEvent.JOB_ERROR:
-            self._fail(int(record.jobid))  # type: ignore[attr-defined]
-        elif str(record.msg).startswith("RuleException"):
-            self.failed = True
-        elif hasattr(record, "report"):
-            self.report = str(record.report)
-            self._remember()
+            self._fail(int(about["jobid"]))
+        elif "report" in about:
+            self.report = Path(about["report"])
         elif str(record.msg).startswith("Nothing to be done"):
             _say(f"Nothing to do; the report is {self.report}")
+        elif str(record.msg).startswith("RuleException"):
+            self.failed = True
         elif record.levelno >= logging.ERROR and not self.failed:
-            _say(str(record.getMessage()).strip())
-
-    def _remember(self) -> None:
-        """Take from the logs of an earlier run how long each stage took."""
-        for log in (Path(self.report).parent / "logs").glob("*.log"):
-            seconds = last_seconds(log)
-            if seconds is not None:
-                self.expected[log.stem] = seconds
-
-    def _plan(self, stats: dict[str, int]) -> None:
-        self.waiting = {rule: n for rule, n in stats.items() if rule not in ("all", "total")}
-        self.total = sum(self.waiting.values())
-
-    def _begin(self, job: dict[str, Any]) -> None:
-        log = job["log"][0] if job["log"] else ""
-        self.running[job["jobid"]] = (job["rule_name"], log)
-        self.begun[job["jobid"]] = time.time()
+            _say(record.getMessage().strip())
 
     def _fail(self, job: int) -> None:
         """Say that a job died, unless it has said itself what is wrong and where its log is."""
         self.failed = True
-        rule, log = self.running.pop(job, ("a job", ""))
-        if not says_why(Path(log), self.begun.get(job, 0.0)):
-            _say(
-                f"{rule} failed: it was killed or ran out of memory; run the study again, with fewer "
-                f"cores if it was memory (log: {log})"
-            )
+        rule, log, begun = self.running.pop(job, ("a job", Path(), 0.0))
+        if not says_why(log, begun):
+            _say(f"{rule} failed: it {KILLED} (log: {log})")
 
     def _finish(self, job: int) -> None:
-        rule, log = self.running.pop(job, ("all", ""))
-        if rule == "all":
-            if not self.failed:
-                _say(f"The report is {self.report} ({_duration(time.monotonic() - self.start)})")
-            return
-        self.done += 1
-        self.expected_done += self._expected(rule)
+        rule, log, _ = self.running.pop(job, ("all", Path(), 0.0))
+        if self.waiting[rule]:
+            left = self._left(rule)
+            number = f"[{self.done.total()}/{self.done.total() + self.waiting.total()}]"
+            took = _duration(last_seconds(log) or 0.0)
+            _say(f"{number} {rule}: {last_finding(log)} ({took}{left})")
+        elif not self.failed:
+            _say(f"The report is {self.report} ({_duration(time.monotonic() - self.start)})")
+
+    def _left(self, rule: str) -> str:
+        """Count a rule's job as done, and say what the rest takes if it goes as in an earlier run."""
         self.waiting[rule] -= 1
-        left = self._left()
-        end = f", about {_duration(left)} left" if left else ""
-        took = last_seconds(Path(log)) or 0.0
-        found = last_finding(Path(log))
-        _say(f"[{self.done}/{self.total}] {rule}: {found} ({_duration(took)}{end})")
-
-    def _expected(self, rule: str) -> float:
-        """Seconds that a stage took before, or the mean of those that are known."""
-        known = list(self.expected.values())
-        return self.expected.get(rule, sum(known) / len(known) if known else 1.0)
-
-    def _left(self) -> float:
-        """Seconds that the run will still take, if the rest goes as what is done."""
-        rest = sum(count * self._expected(rule) for rule, count in self.waiting.items())
-        elapsed = time.monotonic() - self.start
-        return rest * elapsed / self.expected_done if self.expected_done else 0.0
+        self.done[rule] += 1
+        done, rest = (
+            sum(
+                n * (last_seconds(self.report.parent / "logs" / f"{name}.log") or 1.0)
+                for name, n in rules.items()
+            )
+            for rules in (self.done, self.waiting)
+        )
+        seconds = rest / done * (time.monotonic() - self.start)
+        return f", about {_duration(seconds)} left" if seconds else ""
 
 
 def _duration(seconds: float) -> str:
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min"
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
 def _say(line: str) -> None:

@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from rockfrag.assess.inventory import read_inventory
+from rockfrag.assess.inventory import assess_inventory
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 
@@ -44,4 +44,4 @@ def test_a_wrong_row_is_named(text, words, tmp_path):
     path = tmp_path / "gallery.csv"
     path.write_text(text)
     with pytest.raises(InputError, match=words):
-        read_inventory(path, {})
+        assess_inventory(path)

@@ -1,6 +1,5 @@
 """A campaign as a study: from its configuration to the page; and the granite rock, where its data are at hand."""
 
-import logging
 import re
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,10 @@ import pytest
 import yaml
 
 from rockfrag.errors import InputError
-from rockfrag.guests import study_stages
-from rockfrag.stages.stage import Job
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
 
+from ..stages_in_process import run_stages
 from .conftest import BLOCK, DT, Laboratory
 
 ROOT = Path(__file__).parents[2]
@@ -76,10 +74,7 @@ def run(path: Path, folder: Path) -> dict[str, pd.DataFrame]:
     """Run all stages of a study in this process; return its tables."""
     study = load_any(path)
     assert isinstance(study, CampaignStudy)
-    for stage in study_stages(study):
-        job = Job(study, stage, folder, 1, logging.getLogger("test"))
-        for name, table in stage.run(job):
-            job.write(name, table)
+    run_stages(study, folder)
     return {one.stem: pd.read_parquet(one) for one in folder.glob("*.parquet")}
 
 

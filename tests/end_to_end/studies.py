@@ -1,6 +1,5 @@
 """Small studies of things that nobody in this project has in mind, from configuration to report."""
 
-import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,9 +8,9 @@ from typing import Any
 import numpy as np
 import yaml
 
-from rockfrag.guests import study_stages
-from rockfrag.stages.stage import Job
 from rockfrag.study.loading import load_study
+
+from .. import stages_in_process
 
 CATALOGUE = "name,event,date,station,component,magnitude,distance_km,source,file,vertical,sha256,unit,licence\n"
 STEP, SAMPLES = 0.02, 250
@@ -119,10 +118,5 @@ def run(study: Foreign, folder: Path) -> Path:
 
 def run_stages(path: Path) -> Path:
     """Run all stages of a configuration in this process, and return the folder of its results."""
-    checked = load_study(path)
-    stages, results = study_stages(checked), path.parent / "results" / checked.name
-    for stage in stages:
-        job = Job(checked, stage, results, 1, logging.getLogger("end to end"))
-        for name, value in stage.run(job):
-            job.write(name, value)
-    return results
+    study = load_study(path)
+    return stages_in_process.run_stages(study, path.parent / "results" / study.name)

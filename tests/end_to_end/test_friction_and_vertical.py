@@ -12,7 +12,7 @@ from rockfrag.records.motion import read_motion_set
 from rockfrag.report.part import Results
 from rockfrag.rocking import Block, simulate
 from rockfrag.stages import fragility
-from rockfrag.stages.stage import Job
+from rockfrag.stages.job import Job
 from rockfrag.study.loading import load_study
 from rockfrag.units import GRAVITY
 
@@ -80,10 +80,8 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(
     assert set(states["state"]) == {"slides", "overturned"}
     # verdicts that are counted give the same curves as verdicts that are rows
     monkeypatch.setattr(rockfrag.study.study, "MOST_ROWS", 10)
-    job = Job(
-        load_study(tmp_path / "study.yaml"), fragility.STAGE, results, 1, logging.getLogger("test")
-    )
-    counted = dict(fragility.STAGE.run(job))["fragility_floors"]
+    job = Job(load_study(tmp_path / "study.yaml"), results, 1, logging.getLogger("test"))
+    counted = dict(fragility.run(job))["fragility_floors"]
     keys = ["configuration", "floor", "measure", "state", "n_motions"]
     pd.testing.assert_frame_equal(counted[keys], states[keys], check_dtype=False)
     assert states["theta"].notna().any()

@@ -8,6 +8,8 @@ import statsmodels.api as sm
 from rockfrag.errors import InputError
 from rockfrag.fragility.vector import fit_vector
 from rockfrag.fragility.vector_checks import check_vector, monotone_probability
+from rockfrag.fragility.vector_tables import vector_tables
+from rockfrag.report.figures.two_measures import two_measures_figure
 
 MEASURES = ("pga_g", "pgv_over_pga_s")
 VELOCITY = 0.6
@@ -139,6 +141,34 @@ def test_shakebot_tests_tell_velocity_from_acceleration(shared):
     fit = fit_vector(table, MEASURES, earthquake=None)
     assert fit.n == 83 and fit.n_overturned == 46
     assert min(fit.surface.coefficients[1:3]) > 0
+
+
+def test_tables_hold_the_fit_its_contours_and_its_cells_and_a_figure_is_drawn_of_them():
+    table = laboratory(np.random.default_rng(10), 12)
+    agreeing = table.assign(overturned=0)
+    found = vector_tables({"T1": table, "T2": agreeing}, (MEASURES,))
+    fitted, other = found.fits.to_dict("records")
+    fit = fit_vector(table, MEASURES, source="T1")
+    assert (fitted["c0"], fitted["c1"], fitted["c2"]) == fit.surface.coefficients[:3]
+    assert other["method"] == "none" and "all 360 tests" in other["warnings"]
+    middle = found.contours[found.contours["probability"] == 0.5]
+    p = fit.probability(middle["value"], middle["at_second"])
+    assert p == pytest.approx(0.5)
+    figure = two_measures_figure(found.contours, found.cells)
+    axes = figure.axes[0]
+    assert axes.get_xlabel() == "PGA [g]" and axes.get_ylabel() == "PGV/PGA [s]"
+
+
+def test_aic_of_the_granite_rock_is_the_published_one(shared):
+    table = pd.read_csv(shared / "measured" / "granite_rock_1.csv")
+    table["pgv_cm_s"] = table["pga_g"] * table["pgv_over_pga_s"] * 980.665
+    fit = fit_vector(table, ("pga_g", "pgv_cm_s"), earthquake="record")
+    logs = sm.add_constant(np.log(table[["pga_g", "pgv_cm_s"]]))
+    family = sm.families.Binomial(sm.families.links.Probit())
+    model = sm.GLM(table["overturned"], logs, family=family).fit(tol=1e-13)
+    plain = fit.surface.aic if not fit.interaction.kept else None
+    assert model.aic == pytest.approx(309.4, abs=0.05)
+    assert plain is None or plain == pytest.approx(model.aic, abs=1e-6)
 
 
 @pytest.mark.slow

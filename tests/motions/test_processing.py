@@ -287,6 +287,55 @@ def middle_slice(samples: np.ndarray) -> slice:
     return slice(third, 2 * third)
 
 
+@pytest.mark.parametrize("dt", [0.005, 0.004, 0.02])
+def test_resampling_does_not_ring_where_a_motion_does_not_begin_or_end_at_zero(dt):
+    constant = m.resample(Motion(np.ones(400), 0.01), dt)
+    np.testing.assert_allclose(constant.acceleration, 1.0, atol=1e-3)
+    assert constant.time[-1] <= 3.99 + 1e-12
+    line = m.resample(Motion(np.linspace(0.5, 2.0, 401), 0.01), dt)
+    np.testing.assert_allclose(line.acceleration, 0.5 + 1.5 * line.time / 4, atol=2e-3)
+
+
+def test_steps_that_change_the_peak_say_so_and_can_be_taken_again(record):
+    steps = [
+        {"step": "highpass", "corner_hz": 1.0},
+        {"step": "lowpass", "corner_hz": 20.0, "causal": True},
+        {"step": "resample", "dt_s": 0.004},
+        {"step": "demean"},
+    ]
+    once = m.process(record, steps)
+    before = record.pga
+    for entry in once.provenance[1:4]:
+        assert entry["peak_before_m_s2"] == before
+        assert entry["peak_after_m_s2"] != before
+        before = entry["peak_after_m_s2"]
+    again = m.process(record, once.provenance[1:])
+    np.testing.assert_array_equal(once.acceleration, again.acceleration)
+
+
+def test_a_filter_without_pads_says_what_it_leaves_at_the_ends():
+    offset = Motion(np.ones(2000), 0.01)
+    ends = m.highpass(offset, 0.5).provenance[-1]["ends_m_s2"]
+    assert max(map(abs, ends)) > 0.1
+    padded = m.highpass(m.pad(offset, 30, 30), 0.5).provenance[-1]["ends_m_s2"]
+    assert max(map(abs, padded)) < 1e-6
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_a_causal_filter_is_the_butterworth_filter_itself(order):
+    """Nothing before the motion begins, half the power at the corner, and SciPy's filter to the digit."""
+    impulse = np.zeros(4000)
+    impulse[1000] = 1.0
+    filtered = m.lowpass(Motion(impulse, 0.01), 5.0, order, causal=True).acceleration
+    assert np.abs(filtered[:1000]).max() == 0
+    gain = np.abs(np.fft.rfft(filtered))[np.argmin(np.abs(np.fft.rfftfreq(4000, 0.01) - 5.0))]
+    assert gain == pytest.approx(math.sqrt(0.5), rel=1e-3)
+    sections = butter(order, 5.0, "lowpass", fs=100, output="sos")
+    np.testing.assert_allclose(filtered, sosfilt(sections, impulse), atol=1e-12)
+    with pytest.raises(InputError, match="causal must be true or false"):
+        m.bandpass(Motion(impulse, 0.01), 1.0, 5.0, causal="yes")
+
+
 def test_resampling_does_not_alias():
     # 40 Hz would appear as 10 Hz at 50 samples a second
     assert np.abs(middle(m.resample(tone(40.0), 0.02))).max() < 0.01

@@ -1,6 +1,7 @@
 """Two horizontal components seen from all directions."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -170,3 +171,39 @@ class TestCommonTime:
         apart = components(starts=("2014-08-24T10:00:00", "2014-08-24T11:00:00"))
         with pytest.raises(InputError, match="no time in common"):
             common_time(apart)
+
+    def test_horizontals_are_not_moved_for_a_verticals_time_step(self):
+        """A vertical at 0.003 s, half a sample late, leaves horizontals of 0.005 s as they are."""
+        random = np.random.default_rng(5)
+        start = "2014-08-24T10:00:00"
+        first, second = (
+            Motion(
+                random.standard_normal(400), 0.005, name, {"start_time": start, "component": name}
+            )
+            for name in ("NS", "EW")
+        )
+        about = {"start_time": "2014-08-24T10:00:00.0015", "component": "UP"}
+        vertical = Motion(random.standard_normal(900), 0.003, "v", about)
+        one, other, upright = common_time([first, second, vertical])
+        np.testing.assert_array_equal(one.acceleration, first.acceleration[1:])
+        np.testing.assert_array_equal(other.acceleration, second.acceleration[1:])
+        assert (one.dt, upright.dt, upright.acceleration.size) == (0.005, 0.005, 399)
+        named = [
+            replace(m, metadata={"start_time": m.metadata["start_time"]}) for m in (first, vertical)
+        ]
+        assert common_time(named, verticals=(1,))[0].dt == 0.005
+        assert common_time(named)[0].dt == 0.003
+
+    def test_a_peak_that_goes_stands_in_the_provenance_with_what_is_left(self):
+        """The peak of the longer component lies behind the end of the shorter."""
+        samples = np.full(400, 0.17)
+        samples[350] = 1.0
+        long, short = Motion(samples, 0.01, "long"), Motion(np.ones(300), 0.01, "short")
+        step = common_time([long, short])[0].provenance[-1]
+        assert (step["peak_before_m_s2"], step["peak_after_m_s2"]) == (1.0, 0.17)
+        assert step["left_out_at_end_s"] == pytest.approx(1.0)
+        late = Motion(np.ones(300), 0.01, "late", {"start_time": "2014-08-24T10:00:00.005"})
+        spike = Motion(samples, 0.01, "spike", {"start_time": "2014-08-24T10:00:00"})
+        step = common_time([late, spike])[1].provenance[-1]
+        assert step["interpolated"]
+        assert step["peak_after_m_s2"] < step["peak_before_m_s2"]

@@ -686,7 +686,7 @@ def usc_volume_2(folder: Path) -> Built:
         "BIG TUJUNGA STATION, ANGELES NATIONAL FOREST, CA",
         "COMP N08W",
         f"  {N}  INSTRUMENT AND BASELINE CORRECTED DATA",
-        "PEAK ACCELERATION =  -242.39450  CMS/SEC/SEC AT    4.580   SEC.",
+        f"PEAK ACCELERATION =  {np.abs(values).max():.5f}  CMS/SEC/SEC AT    4.580   SEC.",
     ]
     text = "\n".join(words) + "\n" + rows(np.zeros(100), 16, lambda value: f"{int(value):5d}")
     text += rows(np.zeros(100), 8, fixed(10, 3))
@@ -720,7 +720,7 @@ def columns(folder: Path) -> Built:
     lines = ["time,acc_NS(gal),acc_EW(gal),acc_UD(gal)"]
     lines += [",".join([f"{i * 0.01:.2f}", *map(repr, values[:, i].tolist())]) for i in range(N)]
     path.write_text("\n".join(lines) + "\n")
-    return Built(path, "COLUMNS", values, 0.01, "cm/s2", components=("NS", "EW", "UD"))
+    return Built(path, "PLAINTEXT", values, 0.01, "cm/s2", components=("NS", "EW", "UD"))
 
 
 def columns_of_quantities(folder: Path) -> Built:
@@ -729,13 +729,13 @@ def columns_of_quantities(folder: Path) -> Built:
     lines = ["\ufeffTime [s];Acceleration [g];Velocity [m/s];Displacement [m]"]
     lines += [f"{i * 0.01:.2f};{v!r};{2 * v:.6f};0.5" for i, v in enumerate(values.tolist())]
     path.write_text("\n".join([lines[0], *(line.replace(".", ",") for line in lines[1:])]))
-    return Built(path, "COLUMNS", values[None, :], 0.01, "g")
+    return Built(path, "PLAINTEXT", values[None, :], 0.01, "g")
 
 
 def rows_of_numbers(folder: Path) -> Built:
     path, values = folder / "ARL360.g3", wave(58, 0.3, 5)
     path.write_text(rows(values, 5, fortran_e(15, 7)) + " *** End data ***\n")
-    return Built(path, "ROWS", values[None, :], 0.02, "", tolerance=1e-7, stated_dt=False)
+    return Built(path, "PLAINTEXT", values[None, :], 0.02, "", tolerance=1e-7, stated_dt=False)
 
 
 def opensees(folder: Path) -> Built:
@@ -746,6 +746,132 @@ def opensees(folder: Path) -> Built:
         "-factor 2.0\npattern UniformExcitation 1 1 -accel 7\n"
     )
     return Built(path, "OPENSEES", 2 * values[None, :], 0.02, "m/s2", components=("7",))
+
+
+def esm_tadas(folder: Path) -> Built:
+    """As AFAD's TADAS delivers: a first line without a key."""
+    built = esm_turkish(folder)
+    path = folder / "20230206011732_0118_ap_AAD_Acc_E.asc"
+    head = (
+        "AAD_Filtered_TADAS_FILE\nAAD_FILTER_TYPE: BUTTERWORTH\nAAD_LOW_CUT_FREQUENCY_HZ: 0.025\n"
+    )
+    path.write_text(head + built.path.read_text(encoding="utf-8"), encoding="utf-8")
+    built.path.unlink()
+    return replace(built, path=path)
+
+
+def cwa_1999(folder: Path) -> Built:
+    """As the CWB wrote the Chi-Chi earthquake: from the station's code on, in UTC."""
+    built = cwa(folder)
+    path = folder / "cx921.txt"
+    text = built.path.read_text()
+    text = text[text.index("#StationCode") :].replace("#StationName: Chulu\n", "")
+    path.write_text(text.replace("(GMT+08): 2018/02/06-23:50:29", ": 1999/09/20-17:47:04"))
+    built.path.unlink()
+    return replace(built, path=path, start_time="1999-09-20T17:47:04.000000Z")
+
+
+def unam_senses(folder: Path) -> Built:
+    """Orientations with their sense behind them, in another order of channels."""
+    built = unam(folder)
+    path = folder / "RAC_04042010222544.dat"
+    text = built.path.read_text(encoding="latin-1")
+    path.write_text(text.replace(": /V/N90E/N00E", ": /N90E;/N00E;/V;+"), encoding="latin-1")
+    built.path.unlink()
+    return replace(built, path=path, components=("N90E", "N00E", "V"))
+
+
+def smc_surplus(folder: Path) -> Built:
+    """A line of scattered points below the last pair that the header counts, which fills no whole line."""
+    built = smc_uneven(folder)
+    path = folder / "surplus.smc"
+    path.write_bytes(built.path.read_bytes() + b" 3.0000E-1 1.0000E+1 4.0000E-1 2.0000E+1\r\n")
+    built.path.unlink()
+    return replace(built, path=path)
+
+
+def eerl_volume_2(folder: Path) -> Built:
+    """Caltech's own volume 2: count, interval and unit in words alone, three sections without titles."""
+    path, values = folder / "iia001.v2", wave(60, 200.0, 3)
+    words = [
+        "CORRECTED ACCELEROGRAM IIA001    40.001.0",
+        "COMP S00E   FILE   1  CORRESPONDING TO",
+        "FILE   1 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I-A, EERL 70-20",
+        "SOME VALLEY EARTHQUAKE",
+        "MAY 18, 1940 - 2037 PST",
+        "STATION NO. 117   32 47 43N, 115 32 55W",
+        "SITE OF THE STATION",
+        "COMP S00E",
+        f"  {N}  INSTRUMENT AND BASELINE CORRECTED DATA",
+        "AT EQUALLY-SPACED INTERVALS OF    .020  SEC.",
+        f"PEAK ACCELERATION =  {np.abs(values).max():.5f}  CMS/SEC/SEC AT    2.120   SEC.",
+    ]
+    text = "\n".join(words) + "\n" + rows(np.zeros(100), 16, lambda value: f"{int(value):5d}")
+    text += rows(np.zeros(100), 8, fixed(10, 3))
+    text += "".join(rows(factor * values, 8, fixed(10, 3)) for factor in (1.0, 0.1, 0.01))
+    path.write_text(text)
+    return Built(path, "USC2", values[None, :], 0.02, "cm/s2", "117", None, ("S00E",), 1e-9)
+
+
+def plain_milliseconds(folder: Path) -> Built:
+    path, values = folder / "table.csv", wave(61, 0.3, 5)
+    body = "".join(f"{i * 0.5:g},{v!r}\n" for i, v in enumerate(values.tolist()))
+    path.write_text("Time (ms),Acceleration (g)\n" + body + ",\n" * 9)
+    return Built(path, "PLAINTEXT", values[None, :], 0.0005, "g")
+
+
+def plain_count_lines(folder: Path) -> Built:
+    path, values = folder / "gmr.txt", wave(62, 0.3, 5)
+    path.write_text(f"{N}\n0.005\n" + "".join(f"{v:.6e}\n" for v in values))
+    return Built(path, "PLAINTEXT", values[None, :], 0.005, "")
+
+
+def plain_in_words(folder: Path) -> Built:
+    """SIGMA's header and Fortran's fields that touch."""
+    path, values = folder / "16833_H1.cor.acc", wave(63, 3.0, 5)
+    text = (
+        "Orientation                   : NS\n"
+        "Filter Cut-off Frequency (Hz) : 0.100 - 50.000\n"
+        "Time Increment (s)            : 0.005\n"
+        f"Number of Data                : {N}\n"
+        "PGA (m/s/s)                   : 5.0693293E+00\n"
+        "Accel"
+        "aration time series in m/s/s\n"
+    )
+    path.write_text(text + rows(values, 5, lambda v: f"{v:14.7E}"))
+    return Built(path, "PLAINTEXT", values[None, :], 0.005, "m/s2", components=("NS",))
+
+
+def plain_shake(folder: Path) -> Built:
+    path, values = folder / "elcentro.ACC", wave(64, 0.3, 5)
+    text = f'"El Centro"\n"Total No. of Points :",{N},"@ DT =",.02\n'
+    path.write_text(text + rows(values, 8, fixed(9, 5)))
+    return Built(path, "PLAINTEXT", values[None, :], 0.02, "")
+
+
+def plain_emod3d(folder: Path) -> Built:
+    path, values = folder / "CACS.000", wave(65, 0.3, 5)
+    text = f"CACS 000 title\n{N} 5.0e-03 0 0 -1.0 0.0 0.0 0.0\n"
+    path.write_text(text + rows(values, 6, lambda v: f"{v:13.5e}"))
+    return Built(path, "PLAINTEXT", values[None, :], 0.005, "")
+
+
+def plain_components(folder: Path) -> Built:
+    path = folder / "PRF0.txt"
+    values = np.array([wave(seed, 30.0, 6) for seed in (66, 67, 68)])
+    head = "station: PRF0\nsampling frequency: 100.0 Hz\nunits: cm/s^2\ncomponents: E N Z\n\n"
+    path.write_text(
+        head + "".join(" ".join(f"{v:.6f}" for v in values[:, i]) + "\n" for i in range(N))
+    )
+    names = ("E", "N", "Z")
+    return Built(path, "PLAINTEXT", values, 0.01, "cm/s2", "PRF0", components=names)
+
+
+def plain_rows_with_commas(folder: Path) -> Built:
+    path, values = folder / "A10000.csv", wave(69, 0.3, 5)
+    words = [f"{v:.5E}" for v in values]
+    path.write_text("".join(",".join(words[i : i + 8]) + ",\n" for i in range(0, N, 8)))
+    return Built(path, "PLAINTEXT", values[None, :], 0.01, "", stated_dt=False)
 
 
 BUILDERS: dict[str, Callable[[Path], Built]] = {
@@ -788,6 +914,18 @@ BUILDERS: dict[str, Callable[[Path], Built]] = {
         columns_of_quantities,
         rows_of_numbers,
         opensees,
+        esm_tadas,
+        cwa_1999,
+        unam_senses,
+        smc_surplus,
+        eerl_volume_2,
+        plain_milliseconds,
+        plain_count_lines,
+        plain_in_words,
+        plain_shake,
+        plain_emod3d,
+        plain_components,
+        plain_rows_with_commas,
     )
 }
 

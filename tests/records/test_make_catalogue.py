@@ -1,5 +1,7 @@
 """A catalogue finds which components are of one record, and says what it is not sure of."""
 
+import os
+import re
 import zipfile
 
 import numpy as np
@@ -7,8 +9,9 @@ import pytest
 
 from rockfrag.cli import main
 from rockfrag.errors import InputError
-from rockfrag.records.catalogue import load_motions, read_catalogue
+from rockfrag.records.catalogue import load_motions, read_catalogue, repeated_motions
 from rockfrag.records.make_catalogue import make_catalogue
+from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
 from rockfrag.records.peer_search import read_search_results
 
 from .built_records import peer_download, wave
@@ -111,8 +114,133 @@ def test_unreadable_files_copies_and_unstated_units_are_said(tmp_path, builders,
     assert main(["catalogue", str(tmp_path)]) == 1
     told = capsys.readouterr()
     assert told.out.splitlines()[0].startswith("name,event")
-    assert "peer.AT2: the same bytes as" in told.err
+    assert "peer.AT2: the same record as" in told.err
     assert "cut.AT2, line 5: the header promises 43 samples" in told.err
     assert "plain.txt: the file does not state its unit" in told.err
     with pytest.raises(InputError, match="no horizontal component"):
         make_catalogue([tmp_path / "plain.txt"])
+
+
+def test_the_vertical_of_a_unam_file_is_no_horizontal(tmp_path, builders):
+    path = builders["unam_senses"](tmp_path).path
+    draft = make_catalogue([path], folder=tmp_path)
+    assert draft.table["component"].tolist() == ["N90E", "N00E"]
+    assert [file.rpartition("#")[2] for file in draft.table["vertical"]] == ["V", "V"]
+    assert is_vertical("V;+")
+    assert azimuth_of("N90E;") == 90
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        ("H-E10050", "H-E10320"),
+        ("H-E04140", "H-E04230"),
+        ("C08050", "C08320"),
+        ("CLW-LN", "CLW-TR"),
+    ],
+)
+def test_pairs_of_peers_arrays_are_found(tmp_path, pair):
+    for seed, name in enumerate(pair):
+        write(tmp_path / f"RSN173_IMPVALL.H_{name}.txt", seed)
+    stem = pair[0][:-3].rstrip("-")
+    write(tmp_path / f"RSN173_IMPVALL.H_{stem}-UP.txt", 2)
+    draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
+    one, other = (f"RSN173_IMPVALL.H_{name}.txt" for name in pair)
+    assert partners(draft) == {one: other, other: one}
+    assert set(draft.table["vertical"]) == {f"RSN173_IMPVALL.H_{stem}-UP.txt"}
+
+
+def test_a_record_beside_its_archives_is_there_once(tmp_path):
+    """Whoever unpacks beside the archive does not count every record twice."""
+    for seed, name in enumerate(("A-CLS000", "A-CLS090")):
+        write(tmp_path / f"{name}.txt", seed)
+    for packed in ("inner.zip", "other.zip"):
+        with zipfile.ZipFile(tmp_path / packed, "w") as archive:
+            for name in ("A-CLS000", "A-CLS090"):
+                archive.write(tmp_path / f"{name}.txt", f"{name}.txt")
+    draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
+    assert partners(draft) == {"A-CLS000.txt": "A-CLS090.txt", "A-CLS090.txt": "A-CLS000.txt"}
+    assert "inner.zip#A-CLS000.txt: the same record as A-CLS000.txt; left out" in draft.warnings
+    (tmp_path / "A-CLS000.txt").unlink()
+    draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
+    # a pair is worth more than one of its components by itself
+    assert draft.table["file"].tolist() == ["inner.zip#A-CLS000.txt", "inner.zip#A-CLS090.txt"]
+
+
+def test_one_day_with_two_names_of_an_earthquake_is_said(tmp_path, builders):
+    text = builders["at2_peer"](tmp_path).path.read_text()
+    (tmp_path / "other.AT2").write_text(
+        text.replace("LOMA PRIETA 10/18/89 00:05", "Loma Prieta, 10/18/1989").replace(".1", ".2")
+    )
+    draft = make_catalogue([tmp_path], folder=tmp_path)
+    (line,) = [line for line in draft.warnings if "on the same day (1989-10-18)" in line]
+    assert "'Loma Prieta, 10/18/1989'" in line
+    assert "'LOMA PRIETA 10/18/89 00:05'" in line
+
+
+def test_its_own_output_is_no_record(tmp_path, capsys):
+    for seed, name in enumerate(("A-CLS000", "A-CLS090")):
+        write(tmp_path / f"{name}.txt", seed)
+    for _ in range(2):
+        output = tmp_path / "cat.csv"
+        asked = ["catalogue", str(tmp_path), "--unit", "g", "--output", str(output)]
+        assert main(asked) == 0
+        assert "cat.csv:" not in capsys.readouterr().err
+    assert main(["info", str(tmp_path), "--unit", "g"]) == 0
+
+
+def test_many_warnings_are_told_by_kind_with_one_example(tmp_path, capsys):
+    for seed in range(40):
+        write(tmp_path / f"lone{seed}x.txt", seed)
+    assert main(["catalogue", str(tmp_path), "--unit", "g"]) == 0
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) < 10
+    assert any(
+        re.match(r"40 times: its other horizontal.*the first is .*lone0x\.txt", x) for x in told
+    )
+
+
+def test_messages_name_the_options_of_the_command_line(tmp_path, capsys, builders):
+    builders["at2_peer"](tmp_path)
+    write(tmp_path / "a.txt", 1)
+    (tmp_path / "b.txt").write_text("0.1\n0.2\n0.3\n0.1\n")
+    main(["catalogue", str(tmp_path)])
+    told = capsys.readouterr().err
+    assert "give --unit (g, m/s2" in told
+    assert "give it with --dt (in seconds)" in told
+    assert main(["info", str(tmp_path / "a.txt")]) == 1
+    assert "give --unit" in capsys.readouterr().err
+    (tmp_path / "motions.csv").write_text("name,event,file\nA,E,a.txt\n")
+    with pytest.raises(InputError, match=r"give the column unit \(g, m/s2"):
+        load_motions(tmp_path / "motions.csv")
+
+
+def test_names_that_no_table_shows_are_replaced_or_refused(tmp_path, capsys):
+    """A stranger's archive does not write to the terminal, nor line feeds into a catalogue."""
+    write(tmp_path / "a.txt", 1)
+    with zipfile.ZipFile(tmp_path / "h.zip", "w") as archive:
+        archive.write(tmp_path / "a.txt", "\x1b[31mred\nline.txt")
+    (tmp_path / "a.txt").unlink()
+    output = tmp_path / "cat.csv"
+    assert main(["info", str(tmp_path / "h.zip"), "--unit", "g"]) == 0
+    assert main(["catalogue", str(tmp_path), "--unit", "g", "--output", str(output)]) == 0
+    told = capsys.readouterr()
+    assert "\x1b" not in told.out + told.err + output.read_text(encoding="utf-8")
+    assert len(read_catalogue(output)) == 1
+    assert load_motions(output)[0].acceleration.size == 43
+    strange = os.fsencode(tmp_path) + b"/r\xff.txt"
+    with open(strange, "wb") as file:
+        file.write(b"0 0.1\n0.01 0.2\n0.02 0.1\n0.03 0\n")
+    assert main(["info", os.fsdecode(strange), "--unit", "g"]) == 0
+    assert main(["info", str(tmp_path), "--unit", "g"]) == 0
+    assert main(["catalogue", str(tmp_path), "--unit", "g"]) == 1
+    assert "rename the file" in capsys.readouterr().err
+
+
+def test_rows_of_a_catalogue_are_numbered_as_lines_and_repeats_are_named(tmp_path):
+    write(tmp_path / "a.txt", 1)
+    path = tmp_path / "motions.csv"
+    path.write_text("name,event,file,unit\n\nA,E,a.txt,g\n\nB,E,none.txt,g\nC,E,a.txt,g\n")
+    with pytest.raises(InputError, match=r"line 5: .*none\.txt"):
+        load_motions(path)
+    assert repeated_motions(read_catalogue(path)) == ["motion C is the same as A: a.txt"]

@@ -20,8 +20,8 @@ def two_columns(path, times, values):
 
 @pytest.fixture
 def bare(tmp_path):
-    """Two columns without any header, peak 3.5 about a zero mean."""
-    values = [0.0, 3.5, -3.5, 1.0, -1.0, 0.0]
+    """Two columns without any header, peak 2.5 about a zero mean."""
+    values = [0.0, 2.5, -2.5, 1.0, -1.0, 0.0]
     return two_columns(tmp_path / "bare.txt", np.arange(6) * 0.01, values)
 
 
@@ -29,18 +29,18 @@ def test_an_unstated_unit_is_asked_for_with_the_peak_of_each_candidate(bare):
     with pytest.raises(InputError) as caught:
         read_motion(bare)
     for words in (
-        "3.5 g if g",
-        "0.357 g if m/s2",
-        "0.00357 g if cm/s2",
-        "0.00357 g if gal",
-        "0.000357 g if mm/s2",
+        "2.5 g if g",
+        "0.255 g if m/s2",
+        "0.00255 g if cm/s2",
+        "0.00255 g if gal",
+        "0.000255 g if mm/s2",
     ):
         assert words in str(caught.value)
 
 
 @pytest.mark.parametrize(
     ("unit", "peak"),
-    [("g", 34.335), ("m/s2", 3.5), ("cm/s2", 0.035), ("gal", 0.035), ("mm/s2", 0.0035)],
+    [("g", 24.525), ("m/s2", 2.5), ("cm/s2", 0.025), ("gal", 0.025), ("mm/s2", 0.0025)],
 )
 def test_a_named_unit_is_used(bare, unit, peak):
     motion = read_motion(bare, unit=unit)

@@ -19,9 +19,9 @@ SAMPLES = [
     ("usc/017m30bt.s0a", None, "USC2", 1887, 0.02, "cm/s2", {"N08W": 242.395}),
     ("usc/274o42pv.s0a", None, "USC2", 573, 0.02, "cm/s2", {"S58W": 6.869}),
     ("agram/usaca40.044", None, "AGRAM", 5983, 0.005, "cm/s2", {"090": 514.03}),
-    ("columns/test_motion_avd.csv", None, "COLUMNS", 4684, 0.01, "g", {None: 0.143730887}),
-    ("columns/sample_acc_3ch.csv", None, "COLUMNS", 3000, 0.01, "cm/s2", {"NS": 39.18634639, "EW": 33.45245702, "UD": 14.98976973}),
-    ("columns/ARL360.g3", 0.02, "ROWS", 2000, 0.02, "", {None: 0.3080574}),
+    ("columns/test_motion_avd.csv", None, "PLAINTEXT", 4684, 0.01, "g", {None: 0.143730887}),
+    ("columns/sample_acc_3ch.csv", None, "PLAINTEXT", 3000, 0.01, "cm/s2", {"NS": 39.18634639, "EW": 33.45245702, "UD": 14.98976973}),
+    ("columns/ARL360.g3", 0.02, "PLAINTEXT", 2000, 0.02, "", {None: 0.3080574}),
     ("columns/elCentro.at2", None, "AT2", 1559, 0.02, "g", {None: 0.31882}),
     ("at2/RSN10590_ComalTX11-10-20_IU.CCM.BH1.00.AT2", None, "AT2", 15306, 0.05, "g", {"BH100": 2.585321e-06}),
 ]

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pandas as pd
-from filelock import FileLock
 
 from rockfrag.files import write_text
+from rockfrag.lock import locked
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
@@ -25,7 +25,7 @@ def document(file: str, name: str, table: pd.DataFrame, digits: int = 3) -> None
     path = DOCS / file
     head, tail = f"<!-- {name} -->", f"<!-- end of {name} -->"
     # tests that run side by side write tables into the same document
-    with FileLock(DOCS / f".{file}.lock"):
+    with locked(DOCS / f".{file}.lock", patience_s=60):
         before, _, rest = path.read_text(encoding="utf-8").partition(head)
         _, found, after = rest.partition(tail)
         assert found, f"{file} has no place for the table {name}"

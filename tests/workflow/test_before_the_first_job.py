@@ -21,8 +21,8 @@ from rockfrag.study.loading import load_any, load_study
 from rockfrag.yaml_file import read_yaml
 
 from .conftest import study_content, write_study
-from .test_measured_table import write_example, write_synthetic
-from .test_run import ROOT, snakemake
+from .measured_example import write_example, write_synthetic
+from .running import ROOT, snakemake
 
 
 def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
@@ -91,6 +91,10 @@ def test_a_building_or_shaker_that_is_no_text_is_refused(
             "fragility.measures[0]: expected one",
         ),
         ({"fragility": {"measures": ["d5_95_s"], "confidence": 0.9}}, "found d5_95_s"),
+        (
+            {"fragility": {"measures": ["pga_g", ["pga_g"]], "confidence": 0.9}},
+            "expected a pair of intensity measures",
+        ),
         ({"compare_with": "someone"}, "compare_with"),
     ],
 )
@@ -104,8 +108,10 @@ def test_every_measure_that_a_study_may_ask_for_is_measured_and_grows_with_the_a
     items = read_schema("study")["properties"]["fragility"]["properties"]["measures"]["items"]
     wave = Motion([0.0, 1.0, -1.0, 0.5] * 200, 0.01, "wave")
     measured = list(measure_motion(wave))
-    assert set(items["enum"]) <= set(measured)
-    assert all(scale_power(name) > 0 for name in items["enum"])
+    pair, single = items["oneOf"]
+    assert set(single["enum"]) | set(pair["items"]["enum"]) <= set(measured)
+    assert all(scale_power(name) > 0 for name in single["enum"])
+    assert all(scale_power(name) >= 0 for name in pair["items"]["enum"])
 
 
 def test_null_is_the_same_as_no_building(study_folder: Path):
@@ -283,7 +289,14 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
     )
     done = subprocess.run(
         [
-            *(sys.executable, "-c", program, "--snakefile", str(ROOT / "Snakefile"), "--dry-run"),
+            *(
+                sys.executable,
+                "-c",
+                program,
+                "--snakefile",
+                str(ROOT / "workflow" / "Snakefile"),
+                "--dry-run",
+            ),
             *("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml")),
         ],
         capture_output=True,

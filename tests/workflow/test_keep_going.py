@@ -6,13 +6,12 @@ import pandas as pd
 import pytest
 
 from rockfrag.cli import main
-from rockfrag.guests import study_stages
 from rockfrag.processes import in_processes
-from rockfrag.stages.running import run_stage
 from rockfrag.study.loading import load_study
 
+from ..stages_in_process import run_stages, stages_of
 from .conftest import study_content, write_study
-from .test_run import snakemake
+from .running import snakemake
 
 
 @pytest.fixture
@@ -55,10 +54,7 @@ def test_the_study_goes_on_and_says_what_is_missing(damaged: Path, monkeypatch: 
     assert done.returncode == 0, done.stderr[-3000:]
     monkeypatch.chdir(damaged)
     study = load_study(path)
-    stages = study_stages(study)
-    for stage in stages[1:]:
-        run_stage(stage.name, stages, study, 1, f"{stage.name}.log")
-    results = damaged / "results" / "tiny"
+    results = run_stages(study, damaged / "results" / "tiny", stages_of(study)[1:])
     left_out = pd.read_csv(results / "left_out.csv")
     assert list(left_out["motion"]) == [
         *("motion 1", "motion 2", "motion 3"),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from .test_run import ROOT, run_locally_and_with
+from .running import ROOT, run_locally_and_with
 
 SUBMIT = """#!/bin/sh
 # a queue of one node: starts the job's script beside this, and prints the job's number

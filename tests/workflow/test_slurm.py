@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from .test_run import ROOT, run_locally_and_with
+from .running import ROOT, run_locally_and_with
 
 CONF = Path("/etc/slurm/slurm.conf")
 """Where jobs look for the configuration: the executor takes SLURM's variables from their environment."""

@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from rockfrag.cli import main
-from rockfrag.guests import study_stages
-from rockfrag.stages.running import run_stage
+from rockfrag.stages import motions
 from rockfrag.study.loading import load_any
 
+from ..stages_in_process import run_stages
 from .conftest import CONFIGURATIONS, SPECIMENS, study_content, write_record
 
 
@@ -58,8 +58,7 @@ def run_motions(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> pd.DataFra
     """Run the stage of the motions as ``make run`` does, and return its table of measures."""
     monkeypatch.chdir(study_file.parent)
     study = load_any(study_file.name)
-    run_stage("motions", study_stages(study), study, 1, "log.txt")
-    return pd.read_csv("results/tiny/measures.csv")
+    return pd.read_csv(run_stages(study, Path("results"), [motions.run]) / "measures.csv")
 
 
 def test_44_text_files_become_a_study(tmp_path, study_file, monkeypatch, capsys):
@@ -118,7 +117,7 @@ def test_a_row_may_ask_for_a_direction_of_both_components(tmp_path, study_file, 
 
 @pytest.mark.slow
 def test_both_commands_end_in_a_report(tmp_path, study_file):
-    from .test_run import snakemake
+    from .running import snakemake
 
     folder = peer_download(tmp_path / "download", 20)
     main(["catalogue", str(folder), "--output", str(tmp_path / "motions.csv")])

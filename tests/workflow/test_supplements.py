@@ -11,7 +11,7 @@ from rockfrag.errors import InputError
 from rockfrag.study.loading import load_study
 
 from .conftest import study_content, write_study
-from .test_run import ROOT, snakemake
+from .running import ROOT, snakemake
 
 EXPLANATION = {
     "statue_restitution": [0.9],

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 
 from rockfrag.records.motion import Motion
-from rockfrag.stages.digest import source_digest, source_files
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.stages.sweep import sweep_table
 from rockfrag.study.amplitudes import Amplitudes
@@ -53,16 +52,6 @@ def test_below_its_threshold_a_block_never_moves():
     assert (table.loc[low, "peak_rotation_statue"] == 0).all()
     assert table.loc[~low, "peak_rotation_statue"].iloc[-1] > 0
     assert set(table["overturned_body"]) <= {"", "statue"}
-
-
-def test_the_digest_of_a_stage_is_of_what_it_imports_and_of_nothing_else():
-    rooms = {path.parent.name for path in source_files("rockfrag.stages.sweep")}
-    assert {"rocking", "stages", "study"} <= rooms
-    assert not rooms & {"fragility", "pedestal", "report", "sections", "thesis"}
-    assert "fragility" in {path.parent.name for path in source_files("rockfrag.stages.fragility")}
-    names = {path.name for path in source_files("rockfrag.stages.pedestal")}
-    assert {"schema.json", "mixed.py", "__init__.py"} <= names
-    assert source_digest("rockfrag.stages.sweep") != source_digest("rockfrag.stages.fragility")
 
 
 def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():

@@ -1,4 +1,4 @@
-# The study, its stages and its folder.
+# What the rules share: the study as its configuration says it, the folder of its results, names of files.
 import json
 import os
 import shlex
@@ -8,66 +8,62 @@ from snakemake.logging import logger
 from snakemake.utils import update_config
 
 from rockfrag.errors import InputError
-from rockfrag.guests import study_stages
-from rockfrag.stages.running import prepared
+from rockfrag.stages.digest import package_digest
+from rockfrag.stages.job import memory_mb
+from rockfrag.stages.running import RUN, prepared
 from rockfrag.stages.same_numbers import same_numbers
-from rockfrag.stages.stage import priorities
 from rockfrag.yaml_file import read_yaml
 
 # jobs inherit it: no number depends on what the processor at hand could do beyond others of its kind
 os.environ |= same_numbers(os.environ)
-
+# and they end with this process, however it ends
+os.environ[RUN] = str(os.getpid())
 # Snakemake puts the interpreter's path into shell commands as it is, so spaces in it must be quoted
 sys.executable = shlex.quote(sys.executable)
 
-STUDY_FILE = os.path.relpath(workflow.configfiles[-1])
+STUDY_FILE = os.path.relpath((workflow.configfiles or ["config/config.yaml"])[-1])
 
 try:
-    # read once more, strictly: Snakemake takes the last of two equal keys without a word
-    config.clear()
-    for path in workflow.configfiles:
-        update_config(config, read_yaml(path))
-    update_config(config, workflow.config_settings.config or {})
+    # read once more, strictly: Snakemake takes the last of two equal keys without a word; a workflow that uses
+    # this one as a module hands over what it has read
+    if not workflow.modifier.skip_configfile:
+        config.clear()
+        for path in workflow.configfiles:
+            update_config(config, read_yaml(path))
+        update_config(config, workflow.config_settings.config or {})
     STUDY, FOLDER = prepared(config, STUDY_FILE)
 except InputError as error:
-    # nothing has run yet: one sentence, no traceback, exit status 1
+    # nothing has run yet: one sentence, no traceback
     sys.exit(str(error))
 
+KIND = type(STUDY).__name__
 RESULTS = str(FOLDER)
-STAGES = study_stages(STUDY)
-PRIORITIES = priorities(STAGES, STUDY)
+MEMORY_MB = memory_mb(STUDY)
+# a cluster's profile says how many threads a job may have at most
+CORES = workflow.resource_settings.cores or 64
+
 logger.info(
     f"The report will be {RESULTS}/report.html",
     extra={"report": f"{RESULTS}/report.html"},
 )
 
 
+def table(*names):
+    """Files of tables of results: CSV for people, Parquet for the stages that read them."""
+    return [f"{RESULTS}/{name}{end}" for name in names for end in (".csv", ".parquet")]
+
+
+def read(*names):
+    """Files of tables as the stages behind them read them."""
+    return [f"{RESULTS}/{name}.parquet" for name in names]
+
+
+def settings(*keys):
+    """What a stage depends on beside its files, these keys of the configuration and the package itself."""
+    return {key: config.get(key) for key in keys} | {"package": package_digest()}
+
+
 def captions(figure):
     """What the study's report says of a figure: its chapter and its caption."""
     with open(f"{RESULTS}/figures/captions.json", encoding="utf-8") as file:
         return json.load(file)[figure]
-
-
-def flagged(path):
-    """An output as Snakemake wants it: folders marked, figures and the page put into its report."""
-    if path == "figures/":
-        return report(
-            directory(f"{RESULTS}/figures"),
-            patterns=["{figure}.svg"],
-            category="Figures",
-            subcategory=lambda wildcards: captions(wildcards.figure)["chapter"],
-            labels=lambda wildcards: {"shows": captions(wildcards.figure)["caption"]},
-            caption="../report/figure.rst",
-        )
-    if path == "report.html":
-        return report(
-            f"{RESULTS}/report.html",
-            category="Report",
-            labels={
-                "shows": "The answer, and all chapters with their figures and tables"
-            },
-            caption="../report/report.rst",
-        )
-    if path.endswith("/"):
-        return directory(f"{RESULTS}/{path.rstrip('/')}")
-    return f"{RESULTS}/{path}"

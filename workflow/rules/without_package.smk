@@ -1,8 +1,9 @@
-# Snakemake runs without the package beside it: the whole study is one job in an environment that has it.
+# Snakemake runs without rockfrag beside it: the whole study is one job in an environment that has it.
 RESULTS = f"results/{config['study']}"
 
 
 rule study:
+    """Run the whole study in an environment with rockfrag."""
     output:
         f"{RESULTS}/report.html",
     log:
@@ -12,9 +13,9 @@ rule study:
     threads: workflow.cores or 1
     params:
         snakefile=workflow.main_snakefile,
-        configfile=workflow.configfiles[-1],
-        missing="The package rockfrag is not installed here: run `make run`, or let Snakemake make an"
-        " environment with `snakemake --software-deployment-method conda`.",
+        configfile=(workflow.configfiles or ["config/config.yaml"])[-1],
+        missing="rockfrag is not installed beside Snakemake: install it there (make run does), or let Snakemake"
+        " make an environment with --software-deployment-method conda.",
     shell:
         "python -c 'import rockfrag' 2> {log} || {{ echo '{params.missing}' >&2; exit 1; }}; "
         # the outer run holds the lock of this folder

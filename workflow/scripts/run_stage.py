@@ -1,19 +1,14 @@
-"""Run the stage that a rule is named after."""
+"""Run the stage of a rule: the function that its parameter ``stage`` names."""
 
-import sys
+from rockfrag.stages.running import run_job
 
-from rockfrag.stages.loaded import run_in_copy
-
-job = {
-    "name": snakemake.rule,
-    "config": snakemake.config,
-    "study_file": snakemake.params.study,
-    "threads": snakemake.threads,
-    "log_file": snakemake.log[0],
-}
-status = run_in_copy(job)
-if status is None:
-    from rockfrag.guests import run_job
-
-    run_job(**job)
-sys.exit(status)
+run_job(
+    snakemake.params.stage,
+    snakemake.config,
+    snakemake.params.study,
+    inputs=snakemake.input,
+    outputs=snakemake.output,
+    part=int(snakemake.wildcards.get("part", 0)),
+    threads=snakemake.threads,
+    log_file=snakemake.log[0],
+)

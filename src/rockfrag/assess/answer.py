@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,7 @@ from rockfrag.assess.risk import (
     Target,
     amplitude_target,
     estimate,
+    estimate_rocking,
     risk_target,
     share_target,
 )
@@ -63,12 +64,17 @@ class Assessment:
         The hazard curve that was used; None if none was given.
     arrangements
         Verdicts of each way in which the object can stand, as it stands first.
-    rocking_share
-        Share of the motions at the level that make it rock [-]; NaN without a level.
+    rocking
+        Share of the motions at the level that make it rock; None without a level.
+    rocks_from
+        Least level at which any motion makes it rock, in the measure's unit; infinite where none does.
     share
         Share of the motions at the level that topple it; None without a level.
     probability
         Probability of toppling in the years asked for; None without a hazard.
+    counts
+        Number of motions that reach the level, and of those that make it rock and topple it there; None without a
+        level, and where the level is beyond what any motion may be scaled to.
     amplitudes
         Levels at which a tenth and half of the motions topple it, by share.
     by_arrangement
@@ -95,9 +101,11 @@ class Assessment:
     level: Level | None
     hazard: HazardCurve | None
     arrangements: Mapping[str, Verdicts]
-    rocking_share: float
+    rocking: Estimate | None
+    rocks_from: float
     share: Estimate | None
     probability: Estimate | None
+    counts: tuple[int, int, int] | None
     amplitudes: Mapping[float, Estimate]
     by_arrangement: Mapping[str, float]
     curve: Fragility | None
@@ -160,6 +168,8 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     brief
         Leave out directions and remedies.
     """
+    if request.objects.round:
+        motions = motions.in_worst_direction()
     hazard = _governing(request, motions)
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
@@ -184,7 +194,13 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     if hazard:
         fixed = _of_quantiles(now, hazard)
         probability = estimated(risk_target(hazard, request.years), fixed)
-    share = estimated(share_target(level.value)) if level else None
+    rocking, share = None, None
+    rocks_from = _rocks_from(request, now)
+    if level:
+        exact = _starts_by_statics(request, measure)
+        rocking = estimate_rocking(level.value, now, both_sides, exact=exact)
+        share = _no_more_than(estimated(share_target(level.value)), rocking)
+        rocking = _no_less_than(rocking, share)
     at = level.value if level else None
     return Assessment(
         request=request,
@@ -192,23 +208,23 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         level=level,
         hazard=hazard,
         arrangements=arrangements,
-        rocking_share=_rocking_share(now, level),
+        rocking=rocking,
+        rocks_from=rocks_from,
         share=share,
         probability=probability,
+        counts=_counts(now, level),
         amplitudes={p: estimated(amplitude_target(p)) for p in (0.1, 0.5)},
-        by_arrangement={
-            name: target.back(target.on_scale(one)) for name, one in arrangements.items()
-        },
+        by_arrangement={name: target.value(one) for name, one in arrangements.items()},
         curve=None if brief else fragility_of(now.outcomes()),
         conversion=conversion,
         directions=None
-        if brief
+        if brief or objects.round
         else find_directions(
             objects, motions, make_ladder(motions, measure, asked, FEW_LEVELS), at
         ),
         remedies=() if brief else _remedies(request, motions, ladder, target, now),
-        effects=tuple(one.turned(lambda v: target.back(target.on_scale(v))) for one in moved),
-        rules=() if brief else tuple(check_rules(objects, motions, now)),
+        effects=tuple(one.turned(target.value) for one in moved),
+        rules=() if brief or objects.round else tuple(check_rules(objects, motions, now)),
         sliding_share=math.nan
         if brief or at is None or objects.friction is None
         else share_with_sliding(objects, motions, measure, at),
@@ -251,11 +267,44 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
     return Level(hazard.measure, hazard.level(1 / 475)) if hazard else None
 
 
-def _rocking_share(now: Verdicts, level: Level | None) -> float:
+def _starts_by_statics(request: Request, measure: Measure) -> bool:
+    """Whether rocking starts where the measure passes a number: a peak acceleration of what it stands on."""
+    return measure == PGA and (request.place.shakes_as_ground or request.records.on_floor)
+
+
+def _rocks_from(request: Request, now: Verdicts) -> float:
+    """Least level that makes the object rock: by statics where it decides, else the least that was tried."""
+    if _starts_by_statics(request, now.ladder.measure):
+        return request.objects.least_uplift
+    rocked = np.flatnonzero(now.shares(rocks=True) > 0)
+    return float(now.ladder.levels[rocked[0]]) if rocked.size else math.inf
+
+
+def _no_more_than(share: Estimate, rocking: Estimate) -> Estimate:
+    """What does not rock cannot topple."""
+    if rocking.value > 0:
+        return share
+    return replace(share, upper=min(share.upper, rocking.upper))
+
+
+def _no_less_than(rocking: Estimate, share: Estimate) -> Estimate:
+    """What topples rocks: limits of rocking are at least those of toppling."""
+    return replace(
+        rocking, lower=max(rocking.lower, share.lower), upper=max(rocking.upper, share.upper)
+    )
+
+
+def _counts(now: Verdicts, level: Level | None) -> tuple[int, int, int] | None:
     if level is None:
-        return math.nan
-    shares = now.shares(rocks=True)
-    return float(np.interp(math.log(level.value), np.log(now.ladder.levels), shares))
+        return None
+    at = int(now.ladder.levels.searchsorted(level.value))
+    if at == now.ladder.levels.size or now.ladder.levels[at] != level.value:
+        return None
+    allowed = now.ladder.allowed[:, at]
+    if not allowed.any():
+        return None
+    rocked, fell = (int(what[allowed, at].sum()) for what in (now.rocked, now.overturned))
+    return int(allowed.sum()), rocked, fell
 
 
 def _moved(

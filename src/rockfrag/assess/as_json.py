@@ -7,7 +7,7 @@ from typing import Any
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.risk import LEVEL, Estimate
-from rockfrag.assess.words import assumptions, doubts, five_lines
+from rockfrag.assess.words import assumptions, does_not_move, doubts, five_lines
 
 
 def as_json(found: Assessment) -> str:
@@ -24,13 +24,18 @@ def as_json(found: Assessment) -> str:
         "rockfrag": __version__,
         "name": request.name,
         "place": request.place.words,
+        "floor": request.place.floor_name,
         "lines": five_lines(found),
         "measure": found.measure.name,
         "unit": found.measure.unit,
         "level": None if found.level is None else found.level.value,
         "years": request.years,
         "interval_level": LEVEL,
-        "share_rocking": found.rocking_share,
+        "rocks_from": found.rocks_from,
+        "does_not_move": does_not_move(found),
+        "share_rocking": _estimate(found.rocking),
+        "counts": found.counts
+        and dict(zip(("motions", "rock", "topple"), found.counts, strict=True)),
         "share_toppling_with_sliding": found.sliding_share,
         "share_toppling": _estimate(found.share),
         "probability": _estimate(found.probability),

@@ -11,7 +11,43 @@ from typing import Any
 from rockfrag.errors import InputError
 
 _INVENTORY = ".csv"
-_KEYS = ("width", "height", "depth", "mass", "cg_height", "pga", "pgv")
+_KEYS = (
+    "width",
+    "height",
+    "depth",
+    "mass",
+    "cg_height",
+    "cg_offset",
+    "pga",
+    "pgv",
+    "return_period",
+)
+_METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+
+
+class _Once(argparse.Action):
+    """An option that is given at most once: of two the first would be dropped without a word."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        """Keep the value, or end with a sentence where there is one already."""
+        if getattr(namespace, self.dest, None) not in (None, self.default):
+            raise InputError(f"{option_string} is given twice; {_ADVICE.get(self.dest, _ONE)}")
+        setattr(namespace, self.dest, values)
+
+
+_ONE = "give it once."
+_ADVICE = {
+    "pedestal": "one block under the object is simulated. Where two are fixed to each other, or so broad and "
+    "low that "
+    "they cannot part, give them as one block with the width of the lower base and the height of both; otherwise "
+    "assess the upper two parts and, as one object, what stands on the lowest."
+}
 
 
 def add_assess_commands(commands: Any) -> None:
@@ -19,6 +55,8 @@ def add_assess_commands(commands: Any) -> None:
     parser = commands.add_parser(
         "assess",
         help="say whether one object topples, how probably, and what helps",
+        # the whole list of options would bury what was wrong with one of them
+        usage="rockfrag assess [FILE] [--width SIZE --height SIZE …]; rockfrag assess --help lists all options",
         description="One object at one place. Lengths and masses are written with their unit: 35cm, 180kg. "
         "All but width and height has a default, which is stated.",
     )
@@ -27,52 +65,9 @@ def add_assess_commands(commands: Any) -> None:
         nargs="?",
         help="statue.yaml that says all this, or inventory.csv with an object a row",
     )
-    about = parser.add_argument_group("the object")
-    about.add_argument("--name", help="what it is called")
-    for name, words in (
-        ("width", "of the base"),
-        ("height", "of the whole"),
-        ("depth", "of the base, as the width if not given"),
-        ("mass", "of stone if not given"),
-        ("cg-height", "of the centre of gravity, half the height if not given"),
-    ):
-        about.add_argument(f"--{name}", metavar="SIZE" if name != "mass" else "MASS", help=words)
-    about.add_argument(
-        "--mesh", metavar="FILE", help="closed mesh of it (OBJ, PLY, STL; z up) instead"
-    )
-    about.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
-    about.add_argument("--friction", type=float, help="coefficient: it may slide at that level")
-    about.add_argument(
-        "--pedestal",
-        nargs="+",
-        metavar="SIZE",
-        help="width, height and, if known, mass of the block it stands on",
-    )
-    place = parser.add_argument_group("the place")
-    place.add_argument(
-        "--floor", metavar="LEVEL/STOREYS", help="such as 2/4; the ground if not given"
-    )
-    place.add_argument("--building", metavar="FILE", help="YAML file with the building")
-    place.add_argument("--pga", metavar="ACCELERATION", help="of the ground: 0.25g")
-    place.add_argument("--pgv", metavar="VELOCITY", help="of the ground: 20cm/s")
-    place.add_argument("--sa", nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g")
-    place.add_argument("--return-period", type=float, metavar="YEARS", help="of that level")
-    place.add_argument("--hazard", nargs="+", metavar="FILE", help="hazard curves of the site")
-    place.add_argument("--years", type=float, help="time of the probability, 50 if not given")
-    place.add_argument("--magnitude", type=float, help="of the earthquakes that matter most there")
-    place.add_argument("--distance", type=float, metavar="KM", help="of these earthquakes")
-    motions = parser.add_argument_group("the motions")
-    motions.add_argument(
-        "--record",
-        nargs="+",
-        metavar="PATH",
-        help="own records, folders or catalogues instead of the default set",
-    )
-    motions.add_argument("--on-floor", action="store_true", help="they were recorded on that floor")
-    motions.add_argument("--unit", help="unit of records that do not state theirs: g, m/s2, cm/s2")
-    motions.add_argument(
-        "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
-    )
+    _add_object(parser.add_argument_group("the object"))
+    _add_place(parser.add_argument_group("the place"))
+    _add_motions(parser.add_argument_group("the motions"))
     out = parser.add_argument_group("the answer")
     out.add_argument(
         "--output", metavar="FOLDER", default="assessment", help="where page and JSON are written"
@@ -80,6 +75,11 @@ def add_assess_commands(commands: Any) -> None:
     out.add_argument("--pdf", action="store_true", help="print the page too, by Chromium or Chrome")
     out.add_argument("--json", action="store_true", help="print the answer as JSON")
     out.add_argument("--pages", action="store_true", help="of an inventory: write a page for each")
+    out.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="of an inventory: rank the rows that are right, and list what is wrong with the others",
+    )
     parser.set_defaults(run=_assess)
     rules = commands.add_parser(
         "rules-of-thumb", help="hold engineers' rules against simulations of objects"
@@ -92,16 +92,171 @@ def add_assess_commands(commands: Any) -> None:
     rules.set_defaults(run=_rules)
 
 
+def _add_object(about: Any) -> None:
+    about.add_argument("--name", action=_Once, help="what it is called")
+    for name, words in (
+        ("width", "of the base, or the diameter of a round one"),
+        ("height", "of the whole"),
+        ("depth", "of the base, as the width if not given"),
+        ("mass", "of stone if not given"),
+        ("cg-height", "of the centre of gravity, half the height if not given"),
+        ("cg-offset", "of the centre of gravity from the middle of the base"),
+    ):
+        metavar = "SIZE" if name != "mass" else "MASS"
+        about.add_argument(f"--{name}", action=_Once, metavar=metavar, help=words)
+    about.add_argument("--round", action="store_true", help="the base is round")
+    about.add_argument(
+        "--mesh", action=_Once, metavar="FILE", help="mesh of it (OBJ, PLY, STL, GLB) instead"
+    )
+    about.add_argument("--up", action=_Once, choices="xyz", help="axis of the mesh that points up")
+    about.add_argument(
+        "--hull", action="store_true", help="take the convex hull of a mesh that is not closed"
+    )
+    about.add_argument(
+        "--mesh-unit", action=_Once, choices=list(_METRES), help="unit of the mesh, m if not given"
+    )
+    about.add_argument(
+        "--contact-tolerance",
+        action=_Once,
+        metavar="SIZE",
+        help="height up to which points of the mesh carry, 2mm if not given",
+    )
+    about.add_argument(
+        "--restitution", action=_Once, type=float, help="measured ratio of angular velocities"
+    )
+    about.add_argument(
+        "--friction", action=_Once, type=float, help="coefficient: it may slide at that level"
+    )
+    about.add_argument(
+        "--pedestal",
+        action=_Once,
+        nargs="+",
+        metavar="SIZE",
+        help="width, height and, if known, mass of the block it stands on",
+    )
+
+
+def _add_place(place: Any) -> None:
+    place.add_argument(
+        "--floor",
+        action=_Once,
+        metavar="LEVEL/STOREYS",
+        help="such as 2/4, with 0 for the ground: level 2 is the second floor in Europe, the third in America",
+    )
+    place.add_argument(
+        "--building", action=_Once, metavar="FILE", help="YAML file with the building"
+    )
+    place.add_argument(
+        "--storey-height",
+        action=_Once,
+        nargs="+",
+        metavar="SIZE",
+        help="of every storey, or of each from below; 3.5m if not given",
+    )
+    place.add_argument(
+        "--period", action=_Once, metavar="TIME", help="first period of the building: 0.4s"
+    )
+    place.add_argument(
+        "--material",
+        action=_Once,
+        choices=["masonry", "concrete", "steel"],
+        help="of the building: its period follows from that and its height",
+    )
+    place.add_argument("--pga", action=_Once, metavar="ACCELERATION", help="of the ground: 0.25g")
+    place.add_argument("--pgv", action=_Once, metavar="VELOCITY", help="of the ground: 20cm/s")
+    place.add_argument(
+        "--sa", action=_Once, nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g"
+    )
+    place.add_argument("--return-period", action=_Once, metavar="YEARS", help="of that level")
+    place.add_argument(
+        "--hazard", action=_Once, nargs="+", metavar="FILE", help="hazard curves of the site"
+    )
+    place.add_argument(
+        "--years", action=_Once, type=float, help="time of the probability, 50 if not given"
+    )
+    place.add_argument(
+        "--magnitude", action=_Once, type=float, help="of the earthquakes that matter most there"
+    )
+    place.add_argument(
+        "--distance", action=_Once, type=float, metavar="KM", help="of these earthquakes"
+    )
+
+
+def _add_motions(motions: Any) -> None:
+    motions.add_argument(
+        "--record",
+        action=_Once,
+        nargs="+",
+        metavar="PATH",
+        help="own records, folders or catalogues instead of the default set",
+    )
+    motions.add_argument("--on-floor", action="store_true", help="they were recorded on that floor")
+    motions.add_argument(
+        "--unit", action=_Once, help="unit of records that do not state theirs: g, m/s2, cm/s2"
+    )
+    motions.add_argument(
+        "--dt",
+        action=_Once,
+        type=float,
+        metavar="S",
+        help="sampling interval of records without one",
+    )
+    motions.add_argument(
+        "--records", metavar="FOLDER", default="resources/records", help="folder of fetched records"
+    )
+
+
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _assess(options: argparse.Namespace) -> int:
-    if options.file and Path(options.file).suffix.lower() == _INVENTORY:
-        return _inventory(options)
+    from rockfrag.assess.inventory import FaultyRows
+    from rockfrag.assess.surface import on_command_line
+
+    given = _settings(options)
+    _refuse_unused(options)
+    try:
+        if _is_inventory(options):
+            return _inventory(options, given)
+        return _one(options, given)
+    except FaultyRows as error:
+        for fault in error.faults:
+            print(on_command_line(fault, given), file=sys.stderr)
+        print("nothing was assessed; --keep-going ranks the rows that are right.", file=sys.stderr)
+        return 2
+    except InputError as error:
+        # a message about a file names its keys, one about an option the option
+        words = on_command_line(str(error), given if options.file else None)
+        raise InputError(words) from error
+
+
+def _is_inventory(options: argparse.Namespace) -> bool:
+    return bool(options.file) and Path(options.file).suffix.lower() == _INVENTORY
+
+
+def _refuse_unused(options: argparse.Namespace) -> None:
+    """Refuse options that would have no effect."""
+    without = [
+        (bool(options.record), "--record", ("on_floor", "unit", "dt")),
+        (bool(options.mesh), "--mesh", ("up", "hull", "mesh_unit", "contact_tolerance")),
+        (_is_inventory(options), "an inventory, a .csv file", ("pages", "keep_going")),
+        (not _is_inventory(options), "one object, not an inventory", ("pdf", "json")),
+    ]
+    for there, needed, names in without:
+        for name in names:
+            if getattr(options, name) not in (None, False) and not there:
+                raise InputError(f"--{name.replace('_', '-')} needs {needed}; leave it out.")
+    if options.building and (options.storey_height or options.period or options.material):
+        raise InputError(
+            "--building: the file says all of the building; leave out --storey-height, --period and --material."
+        )
+
+
+def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     from rockfrag.assess.answer import assess
     from rockfrag.assess.as_json import as_json
     from rockfrag.assess.page import write_answer
     from rockfrag.assess.words import doubts, five_lines
 
-    found = assess(_request(options), options.records)
+    found = assess(_request(options, given), options.records)
     for doubt in doubts(found):
         print(f"warning: {doubt}", file=sys.stderr)
     place = write_answer(found, options.output)
@@ -125,18 +280,19 @@ def _fitted(line: str) -> str:
     return textwrap.fill(line, width, subsequent_indent="    ")
 
 
-def _request(options: argparse.Namespace) -> Any:
+def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
     from rockfrag.assess.request import make_request
     from rockfrag.yaml_file import read_yaml
 
     settings = read_yaml(options.file) if options.file else {}
     folder = Path(options.file).parent if options.file else Path()
-    given = _settings(options)
     if options.file:
         for key in ("mesh", "building", "hazard", "records"):
             if key in given:
                 raise InputError(
-                    f"--{key}: give it in {options.file}, from whose folder paths are read."
+                    f"key {key}: give it in {options.file}, which says the rest of it and from whose folder "
+                    "paths are "
+                    "read."
                 )
     return make_request(settings | given, options.file or "rockfrag assess", folder)
 
@@ -146,14 +302,14 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     plain = {key: getattr(options, key) for key in _KEYS}
     plain |= {
         "name": options.name,
+        "round": options.round or None,
         "restitution": options.restitution,
         "friction": options.friction,
-        "mesh": {"file": options.mesh} if options.mesh else None,
+        "mesh": _mesh(options),
         "pedestal": _pedestal(options.pedestal),
         "floor": options.floor,
-        "building": options.building,
+        "building": options.building or _building(options),
         "sa": options.sa,
-        "return_period_years": options.return_period,
         "hazard": options.hazard,
         "years": options.years,
         "magnitude": options.magnitude,
@@ -164,8 +320,41 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
             "paths": options.record,
             "recorded_on": "floor" if options.on_floor else "ground",
             **({"unit": options.unit} if options.unit else {}),
+            **({"dt_s": options.dt} if options.dt is not None else {}),
         }
     return {key: value for key, value in plain.items() if value is not None}
+
+
+def _mesh(options: argparse.Namespace) -> dict[str, Any] | None:
+    if options.mesh is None:
+        return None
+    known = {
+        "file": options.mesh,
+        "up": options.up,
+        "hull": options.hull or None,
+        "metres_per_unit": _METRES[options.mesh_unit] if options.mesh_unit else None,
+        "contact_tolerance": options.contact_tolerance,
+    }
+    return {key: value for key, value in known.items() if value is not None}
+
+
+def _building(options: argparse.Namespace) -> dict[str, Any] | None:
+    from rockfrag.units import quantity
+
+    known: dict[str, Any] = {}
+    if options.storey_height:
+        one = len(options.storey_height) == 1
+        known["storey_height" if one else "storey_heights"] = (
+            options.storey_height[0] if one else options.storey_height
+        )
+    if options.period:
+        try:
+            known["first_period_s"] = quantity(options.period, "s", None)
+        except InputError as error:
+            raise InputError(f"--period: {error}") from None
+    if options.material:
+        known["material"] = options.material
+    return known or None
 
 
 def _pedestal(given: Sequence[str] | None) -> dict[str, str] | None:
@@ -179,14 +368,15 @@ def _pedestal(given: Sequence[str] | None) -> dict[str, str] | None:
     return dict(zip(("width", "height", "mass"), given, strict=False))
 
 
-def _inventory(options: argparse.Namespace) -> int:
+def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     from rockfrag.assess.inventory import assess_inventory, inventory_lines, write_inventory
 
-    shared = _settings(options)
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:
         raise InputError(f"--{unfit[0]}: is of one object; put it into {options.file}.")
-    found = assess_inventory(options.file, shared, options.records)
+    found = assess_inventory(options.file, shared, options.records, keep_going=options.keep_going)
+    for fault in found.faults:
+        print(f"warning: left out: {fault}", file=sys.stderr)
     print("\n".join(inventory_lines(found)))
     place = write_inventory(found, options.output, pages=options.pages)
     print(f"{place}", file=sys.stderr)

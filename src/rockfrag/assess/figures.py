@@ -19,6 +19,11 @@ def shares_figure(found: Assessment) -> Figure:
         ends = []
         for colour, (name, verdicts) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
             levels, shares = verdicts.ladder.levels, verdicts.shares()
+            if verdicts is found.verdicts:
+                low, high = verdicts.band()
+                axes.fill_between(
+                    levels, 100 * low, 100 * high, color=colour, alpha=0.18, linewidth=0
+                )
             axes.plot(levels, 100 * shares, color=colour, label=name)
             shown = levels[(shares > 0) & (shares < _REACHED)]
             ends += [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]

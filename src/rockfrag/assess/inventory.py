@@ -1,6 +1,8 @@
 """A gallery: many objects, one line each, the one most at risk first."""
 
+import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,14 +14,19 @@ from rockfrag.assess.answer import RECORDS, Assessment, assess_with
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import Request, make_request
-from rockfrag.assess.words import estimate_words
+from rockfrag.assess.scale import SCALE_WORDS, step_of
+from rockfrag.assess.words import does_not_move, estimate_words
 from rockfrag.errors import InputError
-from rockfrag.files import distinct_file_names, write_table
+from rockfrag.files import check_name, file_name, write_table
+from rockfrag.report.wording import counted
 from rockfrag.tabular import Row, read_rows
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
 PEDESTAL = ("pedestal_width_m", "pedestal_height_m", "pedestal_depth_m", "pedestal_mass_kg")
-OTHERS = ("floor", "restitution")
+OTHERS = ("floor", "restitution", "round")
+YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
+"""What a cell may say to whether a base is round."""
+
 MOST_OBJECTS = 10_000
 """Rows of an inventory."""
 
@@ -34,16 +41,36 @@ class Inventory:
         Assessments, the one most at risk first.
     motions
         The motions on the ground that they share.
+    faults
+        What is wrong with the rows that were left out, a sentence each.
     """
 
     found: Sequence[Assessment]
     motions: MotionSet
+    faults: Sequence[str] = ()
+
+
+class FaultyRows(InputError):
+    """Rows of an inventory that cannot be used, all of them.
+
+    Parameters
+    ----------
+    faults
+        What is wrong with each, a sentence.
+    """
+
+    def __init__(self, faults: Sequence[str]) -> None:
+        more = f" ({len(faults)} rows are wrong in all)" if len(faults) > 1 else ""
+        super().__init__(f"{faults[0].rstrip('.')}{more}.")
+        self.faults = tuple(faults)
 
 
 def assess_inventory(
     path: str | os.PathLike[str],
     shared: Mapping[str, Any] | None = None,
     records: str | Path = RECORDS,
+    *,
+    keep_going: bool = False,
 ) -> Inventory:
     """Assess every object of a table.
 
@@ -52,18 +79,24 @@ def assess_inventory(
     path
         CSV with ``name``, ``width``, ``height`` and, where known, ``depth``, ``mass``, ``cg_height``,
         ``pedestal_width``, ``pedestal_height``, ``pedestal_depth``, ``pedestal_mass``, ``floor`` and
-        ``restitution``; units stand in the titles or in the cells.
+        ``restitution`` and ``round``; units stand in the titles or in the cells.
     shared
         What holds for all, with the keys of ``statue.yaml``, such as the hazard.
     records
         Folder of fetched records.
+    keep_going
+        Rank the rows that can be used, and name the others.
 
     Raises
     ------
+    FaultyRows
+        If rows cannot be used; with ``keep_going`` only if none can.
     InputError
-        If the table or an object cannot be used; the message names the line.
+        If the table cannot be used.
     """
-    requests = read_inventory(path, shared or {})
+    requests, faults = read_inventory(path, shared or {})
+    if faults and not (keep_going and requests):
+        raise FaultyRows(faults)
     motions: MotionSet | None = None
     found = []
     for request in requests:
@@ -72,11 +105,13 @@ def assess_inventory(
         found.append(assess_with(request, motions.at(request.place), brief=True))
     assert motions is not None  # a table has a row
     found.sort(key=_risk, reverse=True)
-    return Inventory(found, motions)
+    return Inventory(found, motions, faults)
 
 
-def read_inventory(path: str | os.PathLike[str], shared: Mapping[str, Any]) -> list[Request]:
-    """Read the objects of a table.
+def read_inventory(
+    path: str | os.PathLike[str], shared: Mapping[str, Any]
+) -> tuple[list[Request], list[str]]:
+    """Read the objects of a table: those that can be used, and what is wrong with the others.
 
     Parameters
     ----------
@@ -88,22 +123,54 @@ def read_inventory(path: str | os.PathLike[str], shared: Mapping[str, Any]) -> l
     Raises
     ------
     InputError
-        If the table or an object cannot be used.
+        If the table cannot be used.
     """
+    if "friction" in shared:
+        raise InputError(
+            "key friction: sliding takes some hundred times as long; assess the object alone."
+        )
     needed = ["name", *SIZES[:2]]
-    rows = read_rows(path, needed, [*SIZES[2:], *PEDESTAL, *OTHERS], quantities=(*SIZES, *PEDESTAL))
+    faults: list[str] = []
+    rows = read_rows(
+        path,
+        needed,
+        [*SIZES[2:], *PEDESTAL, *OTHERS],
+        quantities=(*SIZES, *PEDESTAL),
+        faults=faults,
+    )
     if len(rows) > MOST_OBJECTS:
         raise InputError(f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed.")
-    distinct_file_names([row.text("name") for row in rows])
-    names = [row.text("name") for row in rows]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise InputError(f"{path}: object {twice!r} is there twice; give each its own name.")
-    return [_request(row, shared) for row in rows]
+    requests: list[Request] = []
+    taken: dict[str, str] = {}
+    for row in rows:
+        try:
+            name = _own_name(row, taken)
+            requests.append(_request(row, name, shared))
+        except InputError as error:
+            faults.append(str(error))
+    return requests, faults
 
 
-def _request(row: Row, shared: Mapping[str, Any]) -> Request:
-    own: dict[str, Any] = {"name": row.text("name")}
+def _own_name(row: Row, taken: dict[str, str]) -> str:
+    """The name of a row's object, which no row above bears and which gives a file name of its own."""
+    name = row.text("name")
+    try:
+        check_name(name)
+    except InputError as error:
+        raise row.error("name", str(error)) from None
+    # where case is ignored too
+    place = file_name(name).casefold()
+    if place in taken:
+        same = (
+            "is there twice" if taken[place] == name else f"and {taken[place]!r} give one file name"
+        )
+        raise row.error("name", f"object {name!r} {same}; give each its own name")
+    taken[place] = name
+    return name
+
+
+def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
+    own: dict[str, Any] = {"name": name}
     own |= {key: row.positive_quantity(key) for key in SIZES if row.has(key)}
     pedestal = {
         key.removeprefix("pedestal_"): row.positive_quantity(key)
@@ -116,7 +183,27 @@ def _request(row: Row, shared: Mapping[str, Any]) -> Request:
         own["floor"] = row.text("floor")
     if row.has("restitution"):
         own["restitution"] = row.positive("restitution")
-    return make_request({**shared, **own}, f"{row.path}, line {row.line}")
+    if row.has("round"):
+        own["round"] = _yes(row, "round")
+    where = f"{row.path}, line {row.line}"
+    try:
+        return make_request({**shared, **own}, where)
+    except InputError as error:
+        raise InputError(_in_columns(str(error), own)) from None
+
+
+def _in_columns(words: str, own: Mapping[str, Any]) -> str:
+    """Name columns instead of keys, of what stands in the row."""
+    for key in own:
+        words = re.sub(rf"\bkey {key}\b", f"column {key}", words)
+    return words.replace("column pedestal.", "column pedestal_")
+
+
+def _yes(row: Row, column: str) -> bool:
+    said = row.text(column).lower()
+    if said not in YES + NO:
+        raise row.error(column, f"expected yes or no, found {said[:40]!r}")
+    return said in YES
 
 
 def _risk(found: Assessment) -> tuple[float, float, float]:
@@ -137,6 +224,8 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
             f"{found.measure.column}_tenth": found.amplitudes[0.1].value,
             f"{found.measure.column}_half": found.amplitudes[0.5].value,
         }
+        if found.rocking is not None:
+            row["share_rocking"] = found.rocking.value
         rows.append(row)
     return pd.DataFrame(rows)
 
@@ -145,21 +234,39 @@ def inventory_lines(inventory: Inventory) -> list[str]:
     """One line an object, the one most at risk first."""
     first = inventory.found[0]
     longest = max(len(found.request.name) for found in inventory.found)
-    head = f"{len(inventory.found)} objects, the one most at risk first"
+    head = f"{counted(len(inventory.found), 'object')}, the one most at risk first"
     if first.probability:
-        head += f": probability of toppling in {first.request.years:g} years"
+        head += (
+            f": probability of toppling in {first.request.years:g} years (90 % interval), and what that is on our "
+            f"scale ({SCALE_WORDS})"
+        )
     elif first.level:
-        head += f": share of the motions that topple it at {first.level.words}"
-    lines = [f"{head} (90 % interval)."]
+        head += f": share of the motions that topple it at {first.level.words} (90 % interval)"
+    if inventory.faults:
+        head += f"; {counted(len(inventory.faults), 'row')} left out"
+    lines = [f"{head}."]
     for i, found in enumerate(inventory.found, start=1):
-        main = found.probability or found.share
-        half = found.amplitudes[0.5].value
-        words = estimate_words(main) if main else ""
+        words = f"{_words(found):<34}"
         lines.append(
-            f"{i:4d}  {found.request.name:<{longest}}  {words:<24} half of the motions topple it at "
-            f"{half:.2g} {found.measure.unit}, {found.request.place.words}"
+            f"{i:4d}  {found.request.name:<{longest}}  {words}  {_half(found)}, {found.request.place.words}"
         )
     return lines
+
+
+def _words(found: Assessment) -> str:
+    if found.probability:
+        step = step_of(found.probability.value, found.request.years)
+        return f"{estimate_words(found.probability)}, {step.name}"
+    if found.share is None:
+        return ""
+    return "does not move" if does_not_move(found) else estimate_words(found.share)
+
+
+def _half(found: Assessment) -> str:
+    half = found.amplitudes[0.5].value
+    if not math.isfinite(half):
+        return "no shaking tried topples it in half of the motions"
+    return f"half of the motions topple it at {half:.2g} {found.measure.unit}"
 
 
 def write_inventory(

@@ -13,6 +13,7 @@ from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
+from rockfrag.motions.rotation import rotate
 from rockfrag.motions.time_base import common_time
 from rockfrag.records.catalogue import load_motion, load_motions
 from rockfrag.records.make_catalogue import make_catalogue
@@ -53,6 +54,9 @@ class MotionSet:
         Motions of floors that were needed before, by :attr:`Place.key`.
     halves
         Those of the thinned set.
+    worst
+        Whether each record comes from its worst direction: both of its components stand for the record, their
+        level is the geometric mean of theirs, and it topples an object if it does from any direction.
     """
 
     ground: tuple[Motion, ...]
@@ -62,6 +66,7 @@ class MotionSet:
     warnings: tuple[str, ...] = ()
     floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
     halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
+    worst: bool = False
 
     @cached_property
     def events(self) -> NDArray[np.object_]:
@@ -71,8 +76,33 @@ class MotionSet:
     def values(self, measure: Measure) -> Floats:
         """Value of each ground motion in a measure, in its unit, shape (n,)."""
         if measure not in self._values:
-            self._values[measure] = np.array([measure.of(motion) for motion in self.ground])
+            values = np.array([measure.of(motion) for motion in self.ground])
+            for pair in self.pairs if self.worst else ():
+                values[list(pair)] = np.sqrt(values[pair[0]] * values[pair[1]])
+            self._values[measure] = values
         return self._values[measure]
+
+    def in_worst_direction(self) -> "MotionSet":
+        """The same records, each from its worst direction; one without a second component as it is."""
+        words = self.words
+        if self.pairs:
+            words += f", {len(self.pairs)} records each in its worst direction"
+        return replace(self, worst=True, words=words)
+
+    def turned(self, step_deg: int) -> list[tuple[int, list[Motion]]]:
+        """Records at the object's base turned through all directions, each with the place of its first component.
+
+        Parameters
+        ----------
+        step_deg
+            Angle between directions [degrees], over half a turn: a round body falls either way alike.
+        """
+        found = []
+        for pair in self.pairs:
+            one, other = common_pair(self, pair)
+            found.append((pair[0], [rotate(one, other, a) for a in range(0, 180, step_deg)]))
+        paired = {i for pair in self.pairs for i in pair}
+        return found + [(i, [m]) for i, m in enumerate(self.base) if i not in paired]
 
     @cached_property
     def _values(self) -> dict[Measure, Floats]:
@@ -80,9 +110,20 @@ class MotionSet:
 
     def thinned(self) -> "MotionSet":
         """Every second motion, one component of each record of the default set: enough to compare."""
+        if self.worst:
+            return self._fewer_records()
         return replace(
             self, ground=self.ground[::2], base=self.base[::2], pairs=(), floors=self.halves
         )
+
+    def _fewer_records(self) -> "MotionSet":
+        """Every second record of those with two components, and those with one."""
+        paired = {i for pair in self.pairs for i in pair}
+        kept = [i for pair in self.pairs[::2] for i in pair]
+        kept += [i for i in range(len(self.ground)) if i not in paired]
+        ground, base = (tuple(motions[i] for i in kept) for motions in (self.ground, self.base))
+        pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
+        return replace(self, ground=ground, base=base, pairs=pairs, floors=self.halves)
 
     def at(self, place: Place) -> "MotionSet":
         """The same motions on another floor; known floors are not shaken again.
@@ -177,6 +218,12 @@ def _own(records: Records, folder: Path) -> MotionSet:
     warnings: list[str] = []
     for path in records.paths:
         if path.suffix.lower() == ".csv" and _is_catalogue(path):
+            if records.unit is not None or records.dt is not None:
+                raise InputError(
+                    f"key records.{'unit' if records.unit is not None else 'dt'}: {path} is a catalogue, which "
+                    "states units "
+                    "and intervals itself; leave it out."
+                )
             motions += load_motions(path, folder)
             continue
         draft = make_catalogue([path], records.unit, records.dt, Path())

@@ -1,17 +1,19 @@
 """The object and its pedestal as blocks, what was assumed of them, and what is not known to the digit."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
+from rockfrag.rocking.measured_restitution import Measured, largest_restitution
 from rockfrag.system.blocks import Block, Body, Stack
-from rockfrag.system.mesh import read_shape
+from rockfrag.system.mesh import Shape, read_shape
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
@@ -21,6 +23,9 @@ CONTACT_TOLERANCE = 0.002
 
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
+
+ROLLING = 1.0
+"""Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
 
 ALONE, ON_PEDESTAL, JOINED = "on the floor", "on its pedestal", "fixed to its pedestal"
 """Ways in which an object can stand."""
@@ -40,12 +45,17 @@ class Objects:
         Measured ratio of angular velocities at an impact [-]; None conserves momentum.
     friction
         Coefficient of friction of all contacts [-]; None if nothing slides.
+    round
+        Whether the base of the object is round: it then rolls on its rim, loses nothing and falls in the worst
+        direction.
+    livelier
+        Factor on every restitution, measured or not [-]; impacts never gain energy.
     tolerances
         Relative standard deviations of width, height of the centre of gravity, restitution and mass.
     plane
         In words, in which direction it rocks.
     assumed
-        Sentences, one for each thing that was not given.
+        What was not given.
     doubts
         Sentences, one for each thing that looks wrong.
     """
@@ -56,7 +66,9 @@ class Objects:
     friction: float | None
     tolerances: Mapping[str, float]
     plane: str
-    assumed: tuple[str, ...] = ()
+    round: bool = False
+    livelier: float = 1.0
+    assumed: tuple[Assumption, ...] = ()
     doubts: tuple[str, ...] = ()
 
     @property
@@ -72,18 +84,48 @@ class Objects:
         stack = Stack(self.pedestal, self.statue)
         return {ON_PEDESTAL: stack, JOINED: stack.rigidly_joined(), ALONE: self.statue}
 
-    def restitution_of(self, body: Body) -> float | tuple[float, float] | None:
-        """Restitution of a body as the simulations take it: a pair for a stack."""
-        e = self.restitution
-        return (e, e) if e is not None and isinstance(body, Stack) else e
+    @property
+    def least_uplift(self) -> float:
+        """Least peak acceleration of what it stands on at which any contact opens [g]: b/h of a uniform block."""
+        body = self.body
+        arms = [body.common_arm, body.statue_arm] if isinstance(body, Stack) else [body.arm]
+        return min(abs(arm(pole).x) / arm(pole).y for arm in arms for pole in (1, -1))
+
+    def restitution_of(self, body: Body) -> Sequence[Measured] | None:
+        """Restitution of a body as the simulations take it: of a block (right, left), of a stack a pair of them.
+
+        Parameters
+        ----------
+        body
+            An arrangement of the object, with or without changes; no impact of it gains energy.
+        """
+        if self.restitution is None and self.livelier == 1 and not self.round:
+            return None
+        if isinstance(body, Stack):
+            return [
+                self._ratios(body.pedestal, rolls=False),
+                self._ratios(body.contact_statue, self.round),
+            ]
+        # on the floor it stands on its own base, fixed to its pedestal on that of the pedestal
+        return self._ratios(body, self.round and body.height == self.statue.height)
+
+    def _ratios(self, block: Block, rolls: bool) -> tuple[float, float]:
+        right, left = (self._ratio(block, pole, rolls) for pole in (1, -1))
+        return right, left
+
+    def _ratio(self, block: Block, pole: int, rolls: bool) -> float:
+        measured = ROLLING if rolls else self.restitution
+        e = block.momentum_restitution(pole) if measured is None else measured
+        return min(max(e, 0.0) * self.livelier, largest_restitution(block, pole))
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
         moves: dict[str, Callable[[float], Objects]] = {
             "width": partial(_wider, self),
             "cg_height": partial(_higher, self),
-            "restitution": partial(_livelier, self),
         }
+        if not self.round:
+            moves["restitution"] = partial(_livelier, self)
         if self.pedestal is not None:
             moves["mass"] = partial(_heavier, self)
         return moved_to_both_sides(moves, self.tolerances)
@@ -117,14 +159,7 @@ def higher(block: Block, factor: float) -> Block:
 
 
 def _livelier(objects: Objects, factor: float) -> Objects:
-    """Measured restitution, or what the momentum of the statue leaves, times a factor but at most 1."""
-    e = objects.restitution
-    if e is None:
-        e = min(objects.statue.momentum_restitution(pole) for pole in (1, -1))
-        if objects.pedestal is not None:
-            joined = Stack(objects.pedestal, objects.statue).rigidly_joined()
-            e = min(e, joined.momentum_restitution(1))
-    return replace(objects, restitution=min(max(e, 0.0) * factor, 1.0))
+    return replace(objects, livelier=objects.livelier * factor)
 
 
 def _heavier(objects: Objects, factor: float) -> Objects:
@@ -148,8 +183,9 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     InputError
         If they could be of no solid, cannot stand, or a dimension is missing.
     """
-    assumed: list[str] = []
+    assumed: list[Assumption] = []
     doubts: list[str] = []
+    is_round = bool(settings.get("round", False))
     if "mesh" in settings:
         statue, plane = _from_mesh(settings, folder, assumed)
     else:
@@ -160,58 +196,145 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         try:
             Stack(pedestal, statue)
         except InputError as error:
-            raise InputError(f"pedestal: {error}") from None
+            raise InputError(f"key pedestal: {error}") from None
     for block in (statue, pedestal):
         if block is not None and (doubt := size_warning(block.width, block.height)):
             doubts.append(doubt + ".")
-    if "restitution" not in settings:
-        assumed.append(
-            "Impacts lose what conservation of momentum takes (Housner), the restitution was not measured."
-        )
-    tolerances = TOLERANCES | {
-        key: float(value)
-        for key, value in settings.get("tolerances", {}).items()
-        if key in TOLERANCES
-    }
-    return Objects(
+    first = [_of_the_base(is_round, "mesh" in settings)]
+    if not is_round and "restitution" not in settings:
+        first.append(_RESTITUTION)
+    objects = Objects(
         statue=statue,
         pedestal=pedestal,
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),
-        tolerances=tolerances,
+        tolerances=_tolerances(settings),
         plane=plane,
-        assumed=tuple(assumed),
+        round=is_round,
+        assumed=(*first, *assumed),
         doubts=tuple(doubts),
+    )
+    _check_restitution(objects)
+    return objects
+
+
+_RESTITUTION = Assumption(
+    "impacts lose what conservation of momentum takes",
+    "Each impact takes as much energy as conservation of momentum does (Housner 1963); the restitution was not "
+    "measured.",
+    ("restitution",),
+)
+
+
+def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
+    if is_round:
+        return Assumption(
+            "the round base loses no energy and meets its worst direction",
+            "The base is round: it rolls on its rim, which takes no energy. Until bodies are simulated in "
+            "space, it "
+            "rocks in a plane with a restitution of 1, in the worst direction of each record; impacts that "
+            "conserve "
+            "momentum would overstate by a factor of about two the shaking that a round object survives.",
+        )
+    if is_mesh:
+        return Assumption(
+            "it rocks in one plane",
+            "It rocks in the plane in which it balances at the least angle.",
+        )
+    return Assumption(
+        "the base is rectangular",
+        "The base is taken as rectangular; a round one (round) falls at about half the shaking.",
     )
 
 
+def _tolerances(settings: Mapping[str, Any]) -> Mapping[str, float]:
+    given = settings.get("tolerances", {})
+    if "mass" in given and "pedestal" not in settings:
+        raise InputError(
+            "key tolerances.mass: has no effect on an object without a pedestal; leave it out."
+        )
+    if "restitution" in given and settings.get("round"):
+        raise InputError("key tolerances.restitution: a round base loses nothing; leave it out.")
+    return TOLERANCES | {key: float(given[key]) for key in given if key in TOLERANCES}
+
+
+def _check_restitution(objects: Objects) -> None:
+    """Refuse a restitution that goes with nothing else, or with which an impact would gain energy."""
+    e = objects.restitution
+    if objects.friction is not None and (e is not None or objects.round):
+        other = "a round base" if objects.round else "a measured restitution"
+        raise InputError(
+            f"key friction: sliding is not simulated together with {other}; leave one out."
+        )
+    if e is None:
+        return
+    if objects.round:
+        raise InputError(
+            "key restitution: a round base rolls on its rim and is taken to lose nothing; leave it out."
+        )
+    body = objects.body
+    blocks = [body.pedestal, body.contact_statue] if isinstance(body, Stack) else [body]
+    most = min(largest_restitution(block) for block in blocks)
+    if e > most:
+        raise InputError(
+            f"key restitution: with {e:g} an impact of this object would gain energy, as its centre of gravity "
+            f"is not above the middle of its base; give at most {math.floor(1000 * most) / 1000:g}."
+        )
+
+
 def _from_dimensions(
-    settings: Mapping[str, Any], assumed: list[str], doubts: list[str]
+    settings: Mapping[str, Any], assumed: list[Assumption], doubts: list[str]
 ) -> tuple[Block, str]:
     missing = [name for name in ("width", "height") if f"{name}_m" not in settings]
     if missing:
-        raise InputError(f"{missing[0]} is missing; give at least width and height, such as 35 cm.")
+        raise InputError(
+            f"key {missing[0]} is missing; give at least width and height, such as 35 cm and 1.2 m."
+        )
     width, height = float(settings["width_m"]), float(settings["height_m"])
+    is_round = settings.get("round", False)
+    if is_round and settings.get("depth_m", width) != width:
+        raise InputError(
+            "key depth: a round base has one width, its diameter; leave the depth out, or round."
+        )
     depth = float(settings.get("depth_m", width))
     plane = f"across its {100 * width:.4g} cm"
     if depth < width:
         plane = f"across its {100 * depth:.4g} cm, the narrower side"
         width, depth = depth, width
-    elif "depth_m" not in settings:
-        assumed.append(f"Depth {100 * depth:.4g} cm, as its width.")
+    elif "depth_m" not in settings and not is_round:
+        # the mass that follows counts only on a pedestal
+        assumed.append(
+            Assumption(
+                f"its depth is {100 * depth:.4g} cm",
+                f"Its depth is {100 * depth:.4g} cm, as its width.",
+            )
+        )
     mass = settings.get("mass_kg")
     if mass is None:
-        mass = STONE * width * depth * height
-        assumed.append(f"Mass {mass:.3g} kg, a box of {STONE:g} kg/m³.")
+        mass = STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
+        solid = "cylinder" if is_round else "box"
+        assumed.append(
+            Assumption(
+                f"its mass is {mass:.3g} kg",
+                f"Its mass is {mass:.3g} kg, that of a {solid} of stone ({STONE:g} kg/m³).",
+                ("mass",),
+            )
+        )
     check_density(width, height, float(mass))
     if "depth_m" in settings:
         doubts += _density_doubts(float(mass), width * depth * height)
     if "cg_height_m" not in settings:
-        assumed.append("Centre of gravity at half the height.")
+        assumed.append(
+            Assumption(
+                "its centre of gravity is at half the height",
+                "Its centre of gravity is at half the height.",
+                ("cg_height",),
+            )
+        )
     cg_height = settings.get("cg_height_m")
     if cg_height is not None and cg_height >= height:
         raise InputError(
-            f"cg_height: {cg_height:g} m is not below the top, at {height:g} m; check the unit."
+            f"key cg_height: {cg_height:g} m is not below the top, at {height:g} m; check the unit."
         )
     block = Block(
         width=width,
@@ -229,38 +352,86 @@ def _density_doubts(mass: float, volume: float) -> list[str]:
     density = mass / volume
     words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
     if not DENSITIES[0] <= density <= DENSITIES[1]:
-        raise InputError(f"mass: {words}, a density that no solid has; check the units.")
+        raise InputError(f"key mass: {words}, a density that no solid has; check the units.")
     if not COMMON[0] <= density <= COMMON[1]:
         return [f"{words}, which is unusual; check the units."]
     return []
 
 
-def _from_mesh(settings: Mapping[str, Any], folder: Path, assumed: list[str]) -> tuple[Block, str]:
+_FROM_MESH = ("width_m", "height_m", "depth_m", "cg_height_m", "cg_offset_m", "inertia_kg_m2")
+
+
+def _from_mesh(
+    settings: Mapping[str, Any], folder: Path, assumed: list[Assumption]
+) -> tuple[Block, str]:
     """The planar block of a scanned statue, in the direction towards which it leans over at the least angle."""
     mesh = settings["mesh"]
-    needless = [key for key in ("width_m", "height_m", "depth_m", "cg_height_m") if key in settings]
+    needless = [key for key in _FROM_MESH if key in settings]
     if needless:
-        raise InputError(f"{needless[0].rpartition('_')[0]} follows from the mesh; leave it out.")
+        raise InputError(f"key {needless[0]} follows from the mesh; leave it out.")
     mass = settings.get("mass_kg")
     if mass is None:
-        assumed.append(f"Solid stone of {STONE:g} kg/m³.")
-    shape = read_shape(
-        folder / mesh["file"],
-        mass=mass,
-        density=STONE if mass is None else None,
-        metres_per_unit=float(mesh.get("metres_per_unit", 1.0)),
-    )
+        assumed.append(
+            Assumption("it is solid stone", f"It is solid stone of {STONE:g} kg/m³.", ("mass",))
+        )
+    if mesh.get("hull"):
+        assumed.append(
+            Assumption(
+                "its convex hull stands for it",
+                "Its convex hull stands for it, which fills hollows and undercuts; the centre of gravity moves "
+                "with "
+                "them.",
+                ("cg_height",),
+            )
+        )
     tolerance = mesh.get("contact_tolerance_m")
     if tolerance is None:
         tolerance = CONTACT_TOLERANCE
-        assumed.append(f"Points within {1000 * tolerance:g} mm of the lowest carry.")
-    direction, angle = shape.worst_direction(tolerance)
-    block = shape.block(direction, tolerance, float(mesh.get("edge_retreat_m", 0.0)))
+        assumed.append(
+            Assumption(
+                f"points within {1000 * tolerance:g} mm of the lowest one carry",
+                f"Points of the scan within {1000 * tolerance:g} mm of the lowest one carry; the answer depends "
+                "much "
+                "on that where the foot is uneven.",
+                ("width",),
+            )
+        )
+    try:
+        shape = _shape(mesh, folder, mass)
+        direction, angle = shape.worst_direction(tolerance)
+        block = shape.block(direction, tolerance, float(mesh.get("edge_retreat_m", 0.0)))
+    except InputError as error:
+        raise InputError(_in_keys(str(error))) from None
     plane = f"towards {direction:.0f}° of the mesh, where it balances at {math.degrees(angle):.1f}°"
     return block, plane
 
 
-def _pedestal(given: Mapping[str, Any], settings: Mapping[str, Any], assumed: list[str]) -> Block:
+def _shape(mesh: Mapping[str, Any], folder: Path, mass: float | None) -> Shape:
+    return read_shape(
+        folder / mesh["file"],
+        mass=mass,
+        density=STONE if mass is None else None,
+        metres_per_unit=float(mesh.get("metres_per_unit", 1.0)),
+        up=mesh.get("up"),
+        hull=bool(mesh.get("hull", False)),
+    )
+
+
+def _in_keys(words: str) -> str:
+    """Name the keys of a file instead of the parameters of the library."""
+    for parameter, key in (
+        ("hull=True", "key mesh.hull: true"),
+        ("give up='", "give key mesh.up: "),
+        ("metres_per_unit", "key mesh.metres_per_unit"),
+        ("contact_tolerance", "key mesh.contact_tolerance"),
+    ):
+        words = words.replace(parameter, key)
+    return words.replace("'.", ".") if "mesh.up" in words else words
+
+
+def _pedestal(
+    given: Mapping[str, Any], settings: Mapping[str, Any], assumed: list[Assumption]
+) -> Block:
     """The pedestal in the plane in which the statue rocks."""
     width, height = float(given["width_m"]), float(given["height_m"])
     depth = float(given.get("depth_m", width))
@@ -270,9 +441,15 @@ def _pedestal(given: Mapping[str, Any], settings: Mapping[str, Any], assumed: li
     mass = given.get("mass_kg")
     if mass is None:
         mass = STONE * width * depth * height
-        assumed.append(f"Pedestal of {mass:.3g} kg, a box of {STONE:g} kg/m³.")
+        assumed.append(
+            Assumption(
+                f"the pedestal weighs {mass:.3g} kg",
+                f"The pedestal weighs {mass:.3g} kg, as a box of stone ({STONE:g} kg/m³).",
+                ("mass",),
+            )
+        )
     try:
         check_density(width, height, float(mass))
     except InputError as error:
-        raise InputError(f"pedestal: {error}") from None
+        raise InputError(f"key pedestal: {error}") from None
     return Block(width, height, float(mass))

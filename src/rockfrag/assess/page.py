@@ -3,6 +3,7 @@
 import os
 import tempfile
 from collections.abc import Mapping
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,18 +15,24 @@ from rockfrag.assess.answer import Assessment
 from rockfrag.assess.as_json import as_json
 from rockfrag.assess.as_nrml import as_nrml
 from rockfrag.assess.figures import shares_figure, sources_figure
+from rockfrag.assess.glossary import words_used
 from rockfrag.assess.remedies import without_simulation
+from rockfrag.assess.scale import SCALE_WORDS
 from rockfrag.assess.words import (
     NAMES,
     assumptions,
+    at_the_site,
     doubts,
     estimate_words,
-    five_lines,
+    headline,
+    helps,
+    positions,
     remedy_words,
-    safest,
+    risk,
     share_words,
+    sure,
     value_words,
-    verdict,
+    worst_direction,
 )
 from rockfrag.files import file_name, write_text
 from rockfrag.report.live import carried, live_kernel
@@ -35,6 +42,12 @@ from rockfrag.report.study_report import draw
 
 MOTIONS_SHOWN = 15
 """Rows of the table of motions that topple the object first."""
+
+LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)
+"""Motions that may be chosen in the live part, by how many topple the object at less shaking [-]."""
+
+FURTHEST = 3.0
+"""Return periods are given up to so many times what the hazard curve reaches; beyond, its slope is a guess."""
 
 
 def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
@@ -66,8 +79,8 @@ def page_of(found: Assessment) -> str:
     answer, sections = _answer(found), _sections(found)
     specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
     return render(
-        title=verdict(found),
-        lead=f"{found.request.name}, {found.request.place.words}; {found.motions.words}.",
+        title=headline(found),
+        lead=f"{_capital(found.request.name)} {found.request.place.words}, shaken by {found.motions.words}.",
         answer=answer,
         sections=sections,
         pictures=_drawn([*([answer.figure] if answer.figure else []), *specs]),
@@ -77,13 +90,28 @@ def page_of(found: Assessment) -> str:
 
 
 def _live(found: Assessment) -> Markup:
-    """The object under some motions, live: two components, those that topple it first and a middling one."""
+    """The object under some motions, live: that which topples it first, and others by how soon they do.
+
+    The page's kernel rocks on edges, so that a round base has none.
+    """
+    if found.request.objects.round:
+        return Markup("")
     order = np.argsort(found.verdicts.first_levels(), kind="stable")
-    chosen = [found.motions.base[i] for i in (order[0], order[len(order) // 2])]
+    places = dict.fromkeys(int(order[int(part * (order.size - 1))]) for part in LIVE)
+    chosen = [replace(found.motions.base[i], name=_name_of(found, i)) for i in places]
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
         return Markup("")
     return live_kernel(found.request.objects.arrangements, motions)
+
+
+def _name_of(found: Assessment, i: int) -> str:
+    """A motion as a reader knows it: earthquake, station and component."""
+    motion = found.motions.ground[i]
+    event, station = (str(motion.metadata.get(key, "")) for key in ("event", "station"))
+    if not (event and station):
+        return motion.name
+    return f"{event}, {station} ({motion.name})"
 
 
 def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
@@ -92,30 +120,34 @@ def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
 
 
 def _answer(found: Assessment) -> Answer:
-    topples, likely, _, helps, _ = (line.partition("  ")[2] for line in five_lines(found))
-    best = f"Safest is {safest(found)}. " if len(found.by_arrangement) > 1 else ""
+    largest = found.main.largest
+    doubtful = doubts(found)
+    if largest:
+        doubtful.append(f"Most of the uncertainty comes from {NAMES[largest]}.")
+    doubtful.append(worst_direction(found))
     return Answer(
         asked="Does it topple, how probable is that, and what helps?",
         sentences=[
-            Finding("At the site", _capital(topples)),
-            Finding(f"In {found.request.years:g} years", _capital(likely)),
-            Finding("What helps", f"{best}{_capital(helps)}"),
+            Finding("At the site", at_the_site(found)),
+            Finding(f"In {found.request.years:g} years", risk(found)),
+            Finding("What helps", helps(found)),
         ],
         figure=FigureSpec(
             "shares",
-            f"Share of the motions that topple the object over the level of shaking. {topples}",
-            "Share of the motions that topple it when they are scaled to a level of shaking.",
+            f"Motions that topple the object by the level of shaking. {at_the_site(found)}",
+            "Motions that topple it when they are scaled to a level of shaking; the band is what another choice "
+            "of "
+            "as many earthquakes could show (90 %).",
             lambda: shares_figure(found),
         ),
-        rests_on=assumptions(found),
-        could_overturn=[*doubts(found), f"The range comes mostly from {NAMES[found.main.largest]}."]
-        if found.main.largest
-        else doubts(found),
+        rests_on=[sure(found)],
+        could_overturn=doubtful,
         questions=[
             ("What helps?", "remedies"),
             ("How does it stand best?", "arrangements"),
             ("How sure is that?", "sure"),
-            ("What if it were 5 cm wider?", "live"),
+            ("What was assumed?", "assumed"),
+            *([("What if it were 5 cm wider?", "live")] if not found.request.objects.round else []),
         ],
     )
 
@@ -129,41 +161,37 @@ def _sections(found: Assessment) -> list[Section]:
         _remedies(found),
         _arrangements(found),
         _sure(found),
-        _rules(found),
+        _assumed(found),
+        *([_rules(found)] if found.rules else []),
         _levels(found),
         _motions(found),
+        _glossary(found),
     ]
 
 
 def _remedies(found: Assessment) -> Section:
     table = pd.DataFrame(
         {
-            "name": [remedy.name for remedy in found.remedies],
+            "name": [_capital(remedy.name) for remedy in found.remedies],
             "value": [value_words(found, remedy.value) for remedy in found.remedies],
-            "factor": [remedy.factor for remedy in found.remedies],
-            "limits": [
-                "–" if np.isnan(r.lower) else f"{r.lower:.2g} to {r.upper:.2g}"
-                for r in found.remedies
-            ],
+            "effect": [_capital(remedy_words(found, remedy)) for remedy in found.remedies],
         }
     )
     columns = (
         Column("name", "Change"),
         Column("value", "With it", numeric=True),
-        Column("factor", "Factor", 2),
-        Column("limits", "90 % interval", numeric=True),
+        Column("effect", "What it does (90 % interval)"),
     )
-    message = f"{_capital(remedy_words(found, found.remedies[0]))}." if found.remedies else ""
     return Section(
         "remedies",
         "What helps",
-        message,
+        helps(found),
         without_simulation(),
         [
             table_html(
                 table,
                 columns,
-                "Each change simulated with the same motions; the factor is on what is estimated without it.",
+                "Each change is simulated with the same motions and compared with the object as it stands.",
             )
         ],
     )
@@ -177,24 +205,30 @@ def _arrangements(found: Assessment) -> Section:
         }
     )
     columns = (Column("name", "How it stands"), Column("value", "Estimate", numeric=True))
-    words = [f"It rocks {found.request.objects.plane}."]
+    words = []
     directions = found.directions
     if directions and np.isfinite(directions.factor):
         words.append(
-            f"Turned through all directions, {directions.records} records topple it at "
-            f"{directions.factor:.2f} times the level if each comes from its worst one"
+            f"{directions.records} records with two components were turned through all directions. If each came "
+            "from "
+            f"its worst one, {100 * directions.factor:.0f} % of the shaking would topple the object"
             + (
-                f"; at the site's level {100 * directions.worst_share:.0f} % instead of "
-                f"{100 * directions.share:.0f} % do."
+                f", and {100 * directions.worst_share:.0f} % instead of {100 * directions.share:.0f} % of the "
+                "records "
+                "at the site's level."
                 if np.isfinite(directions.share)
                 else "."
             )
+            + " The figures of this page are for directions at random; the worst one is not counted in them. Both "
+            "components at once are not simulated either."
         )
-    words.append("On the floor is also what remains if the pedestal is fixed to it.")
+    if len(found.by_arrangement) > 1:
+        words.append("On the floor is also what remains if the pedestal is fixed to it.")
+    message = positions(found)
     return Section(
         "arrangements",
         "How it stands best, and the worst direction",
-        f"Safest is {safest(found)}.",
+        message,
         words,
         [table_html(table, columns, "The same object under the same motions.")],
     )
@@ -211,7 +245,7 @@ def _sure(found: Assessment) -> Section:
         for effect in found.effects
     ]
     columns = (
-        Column("name", "What is not known to the digit"),
+        Column("name", "What is not known exactly"),
         Column("spread", "Standard deviation", numeric=True),
         Column("lower", "If less", numeric=True),
         Column("upper", "If more", numeric=True),
@@ -232,10 +266,27 @@ def _sure(found: Assessment) -> Section:
     return Section(
         "sure",
         "How sure that is",
-        f"{estimate_words(found.main) if found.probability or found.share else 'The amplitude'}: the interval "
-        "holds motions, body, floor and model.",
-        ["Variances of all sources are added; the table shows each assumption moved alone."],
+        sure(found),
+        [
+            f"The result is {estimate_words(found.main)}."
+            if found.probability or found.share
+            else "",
+            "The interval adds the variances of all sources. The table moves each assumption alone, by its "
+            "standard "
+            "deviation.",
+            f"Our scale of risk: {SCALE_WORDS}. The steps are ours." if found.probability else "",
+        ],
         parts,
+    )
+
+
+def _assumed(found: Assessment) -> Section:
+    lines = assumptions(found)
+    return Section(
+        "assumed",
+        "What was assumed",
+        "What was not given, and what the model leaves out; that first which matters most.",
+        lines,
     )
 
 
@@ -272,21 +323,32 @@ def _levels(found: Assessment) -> Section:
     shares = verdicts.shares()
     rocks = verdicts.shares(rocks=True)
     shown = np.flatnonzero((rocks > 0) & (np.append(0, shares[:-1]) < 0.99))[::4]
+    low, high = verdicts.band()
     table = pd.DataFrame(
         {
             "level": verdicts.ladder.levels[shown],
             "rocks": [f"{100 * value:.0f} %" for value in rocks[shown]],
-            "topples": [f"{100 * value:.0f} %" for value in shares[shown]],
+            "topples": [
+                f"{100 * shares[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)"
+                for i in shown
+            ],
         }
     )
     columns = [
         Column("level", f"{found.measure.name} [{found.measure.unit}]", 3),
-        Column("rocks", "Rocks", numeric=True),
-        Column("topples", "Topples", numeric=True),
+        Column("rocks", "Motions that make it rock", numeric=True),
+        Column("topples", "Motions that topple it (90 % interval)", numeric=True),
     ]
     if found.hazard is not None:
-        table["rate"] = [1 / rate for rate in found.hazard.rate(table["level"].to_numpy())]
-        columns.append(Column("rate", "Return period [years]", 0))
+        levels = table["level"].to_numpy()
+        reach = FURTHEST * found.hazard.levels[-1]
+        if found.request.level is not None and not found.request.hazard[0].is_read:
+            reach = FURTHEST * found.request.level.value
+        table["rate"] = [
+            _years(1 / float(found.hazard.rate(level))) if level <= reach else "beyond the hazard"
+            for level in levels
+        ]
+        columns.append(Column("rate", "Return period [years]", numeric=True))
     curve = found.curve
     words = []
     if curve is not None and np.isfinite(curve.fit.theta):
@@ -294,12 +356,41 @@ def _levels(found: Assessment) -> Section:
             f"As a lognormal curve: median {curve.fit.theta:.3g} {found.measure.unit}, β {curve.fit.beta:.2f}.",
             *curve.warnings,
         ]
+    starts = (
+        f"It starts to rock at {found.measure.name} {found.rocks_from:.2g} {found.measure.unit}."
+        if np.isfinite(found.rocks_from)
+        else "Nothing that was tried makes it rock."
+    )
     return Section(
         "levels",
         "At other levels",
-        "Share of the motions by level of shaking.",
+        starts,
         words,
-        [table_html(table, columns, "Motions that make it rock, and that topple it.")],
+        [
+            table_html(
+                table,
+                columns,
+                "Motions that make it rock, and that topple it, by the level of shaking.",
+            )
+        ],
+    )
+
+
+def _years(period: float) -> str:
+    """A return period to two digits: 475 years stand for some 480."""
+    rounded = float(f"{period:.2g}")
+    return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
+
+
+def _glossary(found: Assessment) -> Section:
+    table = pd.DataFrame(words_used(found), columns=["word", "meaning"])
+    columns = (Column("word", "Word"), Column("meaning", "What it means here"))
+    return Section(
+        "glossary",
+        "Words used here",
+        "What the words of earthquake engineers mean.",
+        (),
+        [table_html(table, columns, "Words and abbreviations of this page.")],
     )
 
 
@@ -309,14 +400,24 @@ def _motions(found: Assessment) -> Section:
     table = pd.DataFrame(
         {
             "name": [found.motions.ground[i].name for i in order],
-            "event": [str(found.motions.events[i]) for i in order],
+            "event": [
+                ", ".join(
+                    dict.fromkeys(
+                        [
+                            str(found.motions.events[i]),
+                            str(found.motions.ground[i].metadata.get("station", "")),
+                        ]
+                    )
+                ).strip(", ")
+                for i in order
+            ],
             "recorded": found.motions.values(found.measure)[order],
             "first": first[order],
         }
     )
     columns = (
         Column("name", "Motion"),
-        Column("event", "Earthquake"),
+        Column("event", "Earthquake and station"),
         Column("recorded", f"As recorded [{found.measure.unit}]", 2),
         Column("first", f"Topples it from [{found.measure.unit}]", 2),
     )

@@ -6,12 +6,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
-from rockfrag.building.settings import read_building
+from rockfrag.building.settings import make_building, read_building
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.schema import checked
 
 STOREY_HEIGHT = 3.5
 """Height of a storey of a building of which nothing is known [m]."""
@@ -24,6 +26,34 @@ HIGHEST_BUILDING = 40
 
 TOLERANCES = {"period": 0.3, "damping": 0.4}
 """Relative standard deviations of an assumed building's first period and damping, unless stated."""
+
+TOLERANCE_OF_KNOWN_PERIOD = 0.1
+"""That of a first period that was given [-]."""
+
+PERIOD_FACTORS = {"steel": 0.085, "concrete": 0.075, "masonry": 0.05}
+"""C_t of T = C_t H^(3/4) with H in metres: frames of steel and of concrete, all other buildings
+(EN 1998-1:2004, 4.3.3.2.2(3))."""
+
+ORDINALS = (
+    "ground",
+    "first",
+    "second",
+    "third",
+    "fourth",
+    "fifth",
+    "sixth",
+    "seventh",
+    "eighth",
+    "ninth",
+    "tenth",
+)
+"""Names of floors."""
+
+ENDINGS = {digit: ORDINALS[digit][-2:] for digit in (1, 2, 3)}
+"""Endings of numbers by their last digit."""
+
+_WHOLE = ("masses_", "masses")
+"""Keys that only the description of a whole building has begin so."""
 
 _FLOOR = re.compile(r"\s*(\d+)\s*(?:/|of)\s*(\d+)\s*")
 
@@ -40,27 +70,46 @@ class Place:
         Label of the floor in the building; empty on the ground.
     tolerances
         Relative standard deviations of the building's first period and damping.
+    label
+        What the user calls the floor; empty where that is only a level over the number of storeys.
     assumed
-        Sentences, one for each thing that was not given.
+        What was not given.
     """
 
     building: ShearBuilding | None = None
     floor: str = ""
     tolerances: Mapping[str, float] | None = None
-    assumed: tuple[str, ...] = ()
+    label: str = ""
+    assumed: tuple[Assumption, ...] = ()
 
     @property
     def words(self) -> str:
-        """Such as ``on the ground`` or ``on level 2 of 4``."""
+        """Such as ``on the ground``, ``on level 2 of 4`` or ``on the floor attic, level 4 of 4``."""
         if self.building is None:
-            return "on the ground"
-        return f"on level {self.building.level(self.floor)} of {self.building.storeys}"
+            return f"on the floor {self.label}" if self.label else "on the ground"
+        level = f"level {self.building.level(self.floor)} of {self.building.storeys}"
+        return f"on the floor {self.label}, {level}" if self.label else f"on {level}"
+
+    @property
+    def floor_name(self) -> str:
+        """What Europe and America call the level, such as ``second floor in Europe, third in America``."""
+        if self.building is None:
+            return ""
+        level = self.building.level(self.floor)
+        if level == self.building.storeys:
+            return "the roof"
+        return f"{_ordinal(level)} floor in Europe, {_ordinal(level + 1)} in America"
+
+    @property
+    def shakes_as_ground(self) -> bool:
+        """Whether what the object stands on moves as the ground does."""
+        return self.building is None or self.building.level(self.floor) == 0
 
     @property
     def key(self) -> object:
         """Equal for places whose floors move alike."""
         building = self.building
-        if building is None or building.level(self.floor) == 0:
+        if building is None or self.shakes_as_ground:
             return None
         return building.stiffnesses, building.masses, building.damping, building.level(self.floor)
 
@@ -72,14 +121,14 @@ class Place:
         motion
             The ground's motion.
         """
-        if self.building is None or self.building.level(self.floor) == 0:
+        if self.building is None or self.shakes_as_ground:
             return motion
         return floor_motions(self.building, motion, [self.floor])[0]
 
     def variants(self) -> list[Moved["Place"]]:
         """The place with each property of the building smaller and larger by its standard deviation."""
         building = self.building
-        if building is None or building.level(self.floor) == 0:
+        if building is None or self.shakes_as_ground:
             return []
 
         def slower(factor: float) -> Place:
@@ -109,69 +158,157 @@ def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
         If the floor does not exist, or the building is not elastic.
     """
     floor = settings.get("floor")
-    on_floor = settings.get("records", {}).get("recorded_on") == "floor"
-    if on_floor:
+    if settings.get("records", {}).get("recorded_on") == "floor":
         if "building" in settings:
             raise InputError(
-                "building: records of the floor itself need no building; leave it out."
+                "key building: records of the floor itself need no building; leave it out."
             )
-        return Place(assumed=("The records are those of the floor itself.",))
-    tolerances = TOLERANCES | {
-        key: float(value)
-        for key, value in settings.get("tolerances", {}).items()
-        if key in TOLERANCES
-    }
+        _refuse_unused_tolerances(settings, "records of the floor itself need no building")
+        said = Assumption("", "The records are those of the floor itself.")
+        return Place(label="" if floor is None else str(floor), assumed=(said,))
     if "building" in settings:
-        return _given(folder / settings["building"], floor, tolerances)
+        return _given(settings, floor, folder)
     if floor is None:
-        return Place(assumed=("It stands on the ground, no floor was given.",))
-    return _assumed(str(floor), tolerances)
+        _refuse_unused_tolerances(settings, "the object stands on the ground")
+        said = Assumption("it stands on the ground", "It stands on the ground; no floor was given.")
+        return Place(assumed=(said,))
+    return _sketched(str(floor), {}, settings)
 
 
-def _given(path: Path, floor: Any, tolerances: Mapping[str, float]) -> Place:
-    building = read_building(path)
+def _refuse_unused_tolerances(settings: Mapping[str, Any], reason: str) -> None:
+    for key in TOLERANCES:
+        if key in settings.get("tolerances", {}):
+            raise InputError(f"key tolerances.{key}: {reason}; leave it out.")
+
+
+def _tolerances(settings: Mapping[str, Any], usual: Mapping[str, float]) -> dict[str, float]:
+    given = settings.get("tolerances", {})
+    return dict(usual) | {key: float(given[key]) for key in given if key in TOLERANCES}
+
+
+def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
+    """The building of a file, or a mapping that describes all of it or what is known of it."""
+    given = settings["building"]
+    if isinstance(given, str):
+        building = read_building(folder / given)
+        where = given
+    elif any(key.startswith(_WHOLE) for key in map(str, given)):
+        building, where = make_building(given), "the building"
+    else:
+        if floor is None:
+            raise InputError("key floor is missing; give the level over the storeys, such as 2/4.")
+        return _sketched(str(floor), checked(given, "known_of_building", "building"), settings)
+    return _described(building, where, floor, _tolerances(settings, TOLERANCES))
+
+
+def _described(
+    building: ShearBuilding, where: str, floor: Any, tolerances: Mapping[str, float]
+) -> Place:
     if building.model != "elastic":
         raise InputError(
-            f"{path}: one object is assessed with an elastic building; set model: elastic, or run a study with "
-            "this one."
+            f"key building: {where} is not elastic, and one object is assessed with an elastic building; set "
+            "model: "
+            "elastic, or run a study with this one."
         )
     if floor is None:
-        raise InputError(f"floor: which of {', '.join(building.floors)} of {path.name} is meant?")
+        raise InputError(
+            f"key floor is missing: which of {', '.join(building.floors)} of {where} is meant?"
+        )
     label = str(floor)
     found = _FLOOR.fullmatch(label)
     if found and int(found[2]) != building.storeys:
-        raise InputError(f"floor: {path.name} has {building.storeys} storeys, not {found[2]}.")
+        raise InputError(f"key floor: {where} has {building.storeys} storeys, not {found[2]}.")
     level = found[1] if found else label
-    if label not in building.floors and level.isdigit():
+    if label not in building.floors and level.isdecimal():
         building = replace(building, floors={**building.floors, label: int(level)})
     building.level(label)
-    return Place(building, label, tolerances)
+    name = "" if found or label.isdecimal() else label
+    said = Assumption(
+        "the building stays elastic",
+        "The building is taken as given; it stays elastic.",
+        ("period", "damping"),
+    )
+    return Place(building, label, tolerances, name, (said,))
 
 
-def _assumed(floor: str, tolerances: Mapping[str, float]) -> Place:
-    found = _FLOOR.fullmatch(floor)
-    if not found:
-        raise InputError(
-            f"floor: expected a level over the number of storeys such as 2/4, found {floor[:40]!r}."
-        )
-    level, storeys = int(found[1]), int(found[2])
-    if not (level <= storeys and 1 <= storeys <= HIGHEST_BUILDING):
-        raise InputError(
-            f"floor: {floor} does not exist; levels run from 0, the ground, to the number of storeys, which is at "
-            f"most {HIGHEST_BUILDING}."
-        )
-    heights, masses = (STOREY_HEIGHT,) * storeys, (STOREY_MASS,) * storeys
-    period = 0.05 * (STOREY_HEIGHT * storeys) ** 0.75
+def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any]) -> Place:
+    """A building of equal floors, of which the period follows from its height unless it is known."""
+    level, storeys = _level(floor)
+    heights = _heights(known, storeys)
+    total = sum(heights)
+    material = known.get("material", "masonry")
+    factor = PERIOD_FACTORS[material]
+    period = float(known.get("first_period_s", factor * total**0.75))
+    masses = (STOREY_MASS,) * storeys
     building = ShearBuilding(
         masses=masses,
         heights=heights,
         stiffnesses=stiffnesses_for_period(masses, heights, period),
-        damping=ModalDamping(),
+        damping=ModalDamping(float(known.get("damping_ratio", ModalDamping().ratio))),
         floors={"floor": level},
         name=f"building of {storeys} storeys",
     )
-    words = (
-        f"An elastic building of {storeys} equal storeys of {STOREY_HEIGHT:g} m with a first period of "
-        f"{period:.2f} s (0.05 H^0.75, EN 1998-1) and {building.damping.ratio:.0%} damping."
+    of = f" of {material}" if "material" in known else ""
+    rule = (
+        "as given" if "first_period_s" in known else f"{factor:g} H³ᐟ⁴ with H in metres, EN 1998-1"
     )
-    return Place(building, "floor", tolerances, (words,))
+    said = Assumption(
+        f"an elastic building {total:.3g} m high with a first period of {period:.2g} s",
+        f"An elastic building{of} with {storeys} equal floors, {total:.3g} m high "
+        f"({_of_storeys(known, heights)}), with a "
+        f"first period of {period:.2f} s ({rule}) and {building.damping.ratio:.3g} of critical damping.",
+        ("period", "damping"),
+    )
+    usual = TOLERANCES | (
+        {"period": TOLERANCE_OF_KNOWN_PERIOD} if "first_period_s" in known else {}
+    )
+    return Place(building, "floor", _tolerances(settings, usual), assumed=(said,))
+
+
+def _of_storeys(known: Mapping[str, Any], heights: tuple[float, ...]) -> str:
+    if "storey_heights_m" in known:
+        return "storeys of " + ", ".join(f"{one:g}" for one in heights) + " m"
+    assumed = "" if "storey_height_m" in known else ", assumed"
+    return f"storeys of {heights[0]:g} m{assumed}"
+
+
+def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
+    if "storey_heights_m" not in known:
+        return (float(known.get("storey_height_m", STOREY_HEIGHT)),) * storeys
+    if "storey_height_m" in known:
+        raise InputError(
+            "key building.storey_height: the heights of all storeys are given too; leave one out."
+        )
+    heights = tuple(float(one) for one in known["storey_heights_m"])
+    if len(heights) != storeys:
+        raise InputError(
+            f"key building.storey_heights: {len(heights)} heights are given for {storeys} storeys; give one a "
+            "storey."
+        )
+    return heights
+
+
+def _level(floor: str) -> tuple[int, int]:
+    found = _FLOOR.fullmatch(floor)
+    if not found:
+        raise InputError(
+            f"key floor: expected a level over the number of storeys such as 2/4, found {floor[:40]!r}; level 0 "
+            "is "
+            "the ground, level 2 what Europe calls the second floor and America the third."
+        )
+    # no number of storeys has more digits
+    level, storeys = (int(one) if len(one) <= 3 else HIGHEST_BUILDING + 1 for one in found.groups())
+    if not (level <= storeys and 1 <= storeys <= HIGHEST_BUILDING):
+        raise InputError(
+            f"key floor: {floor[:40]} does not exist; levels run from 0, the ground, to the number of storeys, "
+            "which "
+            f"is at most {HIGHEST_BUILDING}."
+        )
+    return level, storeys
+
+
+def _ordinal(number: int) -> str:
+    if number < len(ORDINALS):
+        return ORDINALS[number]
+    # 21 and 31 end as 1 does; 11 to 13 are exceptions
+    return f"{number}{'th' if number % 100 in (11, 12, 13) else ENDINGS.get(number % 10, 'th')}"

@@ -1,5 +1,6 @@
 """What helps: the object changed, shaken by the same motions, as a factor on the probability."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -33,6 +34,8 @@ class Remedy:
         That over the one without it [-]; 0 where no motion topples the object any more.
     lower, upper
         Limits of the factor, of the same motions with and without it; NaN where there are none.
+    helps
+        Whether the object is better off with it: what is estimated shrinks, or an amplitude grows.
     """
 
     name: str
@@ -40,6 +43,7 @@ class Remedy:
     factor: float
     lower: float
     upper: float
+    helps: bool
 
 
 def remedies_of(objects: Objects) -> dict[str, Body]:
@@ -51,7 +55,7 @@ def remedies_of(objects: Objects) -> dict[str, Body]:
         The object as it is.
     """
     statue, pedestal = objects.statue, objects.pedestal
-    more, less = f"{WIDER - 1:.0%} wider", f"{1 - LOWER:.0%} lower"
+    more, less = f"{100 * (WIDER - 1):.0f} % wider", f"{100 * (1 - LOWER):.0f} % lower"
     if pedestal is None:
         return {
             f"a base {more}": wider(statue, WIDER),
@@ -89,24 +93,26 @@ def compare(target: Target, now: Verdicts, changed: Mapping[str, Verdicts]) -> l
 
 
 def _remedy(target: Target, name: str, now: Verdicts, one: Verdicts) -> Remedy:
-    before, after = (target.back(target.on_scale(v)) for v in (now, one))
-    if not (np.isfinite(before) and before > 0):
-        return Remedy(name, after, float("nan"), float("nan"), float("nan"))
+    before, after = target.value(now), target.value(one)
+    helps = after > before if math.isinf(target.certain) else after < before
+    if not (math.isfinite(before) and before > 0 and math.isfinite(after)):
+        return Remedy(name, after, math.nan, math.nan, math.nan, helps)
+    factor = after / before
+    limits = _limits(target, now, one, factor)
+    return Remedy(name, after, factor, *limits, helps)
+
+
+def _limits(target: Target, now: Verdicts, one: Verdicts, factor: float) -> tuple[float, float]:
+    """Limits of a factor by a jackknife over earthquakes; NaN where one of them decides alone."""
     weights = event_weights(now.events)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = np.log(
-            [
-                target.back(target.on_scale(one, w)) / target.back(target.on_scale(now, w))
-                for w in weights
-            ]
-        )
     groups = len(weights)
-    if groups < 2 or not np.isfinite(ratios).all():
-        return Remedy(name, after, after / before, float("nan"), float("nan"))
+    pairs = np.array([[target.value(v, w) for v in (one, now)] for w in weights])
+    if groups < 2 or not np.isfinite(pairs).all() or (pairs <= 0).any():
+        return math.nan, math.nan
+    ratios = np.log(pairs[:, 0] / pairs[:, 1])
     error = np.sqrt((groups - 1) / groups * ((ratios - ratios.mean()) ** 2).sum())
     half = float(stats.t.ppf(0.5 + LEVEL / 2, groups - 1) * error)
-    factor = after / before
-    return Remedy(name, after, factor, factor * np.exp(-half), factor * np.exp(half))
+    return factor * math.exp(-half), factor * math.exp(half)
 
 
 def without_simulation() -> list[str]:

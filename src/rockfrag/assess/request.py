@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +17,9 @@ from rockfrag.errors import InputError
 from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
+
+LONGEST_PERIOD = 1e6
+"""Longest return period of a level [year]."""
 
 YEARS = 50.0
 """Time for which the probability is given unless another is asked for [year]."""
@@ -150,48 +154,93 @@ def _level(settings: Mapping[str, Any]) -> Level | None:
     given = [key for key in ("pga", "pgv", "sa") if key in settings]
     if len(given) > 1:
         raise InputError(
-            f"{given[0]} and {given[1]} are both given; one level of shaking is enough."
+            f"key {given[0]} and key {given[1]} are both given; give one level of shaking."
         )
     if not given:
         return None
     if given == ["pgv"]:
         return _sensible(
-            "pgv", Level(PGV, quantity(settings["pgv"], "m_s", None) * CENTIMETRES_PER_METRE)
+            "pgv", Level(PGV, _of("pgv", settings["pgv"], "m_s") * CENTIMETRES_PER_METRE)
         )
     if given == ["pga"]:
-        return _sensible("pga", Level(PGA, _in_g(settings["pga"])))
+        return _sensible("pga", Level(PGA, _of("pga", settings["pga"], "m_s2") / GRAVITY))
     period, value = settings["sa"]
-    measure = read_measure(f"SA({quantity(period, 's', None):g})", "sa")
-    return _sensible("sa", Level(measure, _in_g(value)))
+    measure = read_measure(f"SA({_of('sa', period, 's'):g})", "key sa")
+    return _sensible("sa", Level(measure, _of("sa", value, "m_s2") / GRAVITY))
 
 
-def _in_g(text: str) -> float:
-    return quantity(text, "m_s2", None) / GRAVITY
+def _of(key: str, given: str, unit: str) -> float:
+    try:
+        return quantity(given, unit, None)
+    except InputError as error:
+        raise InputError(f"key {key}: {error}") from None
 
 
 def _sensible(key: str, level: Level) -> Level:
     if not 0 < level.value <= HIGHEST[level.measure.kind]:
         raise InputError(
-            f"{key}: {level.words} is no shaking of an earthquake; expected more than 0 and at most "
+            f"key {key}: {level.words} is no shaking of an earthquake; expected more than 0 and at most "
             f"{HIGHEST[level.measure.kind]:g} {level.measure.unit}."
         )
     return level
 
 
+_PERIOD = re.compile(r"\s*([\d.]+(?:[eE][+-]?\d+)?)\s*(?:years?|yrs?|a|anni)?\s*")
+
+
+def _return_period(settings: Mapping[str, Any]) -> float | None:
+    """The return period in years, under the key that states the unit or beside it."""
+    if "return_period" not in settings:
+        years = settings.get("return_period_years")
+        return None if years is None else float(years)
+    if "return_period_years" in settings:
+        raise InputError(
+            "key return_period and key return_period_years are both given; leave one out."
+        )
+    given = settings["return_period"]
+    found = _PERIOD.fullmatch(str(given))
+    try:
+        years = float(found[1]) if found else math.nan
+    except ValueError:
+        years = math.nan
+    if not 0 < years <= LONGEST_PERIOD:
+        raise InputError(
+            f"key return_period: expected more than 0 and at most {LONGEST_PERIOD:g} years such as 475 years, "
+            "found "
+            f"{given!r:.40}."
+        )
+    return years
+
+
 def _hazard(settings: Mapping[str, Any], folder: Path) -> tuple[HazardCurve, ...]:
     files = settings.get("hazard", [])
-    level, years = _level(settings), settings.get("return_period_years")
+    level, years = _level(settings), _return_period(settings)
     if files and years is not None:
-        raise InputError("hazard and return_period_years are both given; leave one out.")
+        raise InputError(
+            "key hazard and key return_period are both given; a hazard curve says it all, leave the period out."
+        )
     if years is not None:
         if level is None:
-            raise InputError("return_period_years: give the level it belongs to, such as pga.")
-        return (curve_of_one_level(level.measure, level.value, float(years)),)
+            raise InputError("key return_period: give the level it belongs to, such as pga 0.25 g.")
+        return (curve_of_one_level(level.measure, level.value, years),)
+    if not files and "years" in settings:
+        raise InputError(
+            "key years: a probability in some years needs a hazard; give key hazard or key return_period too."
+        )
+    if "friction" in settings and level is None and not files:
+        raise InputError(
+            "key friction: sliding is simulated at a level of shaking; give one, such as pga 0.25 g."
+        )
     return tuple(read_hazard([folder / file for file in files]))
 
 
 def _records(settings: Mapping[str, Any], folder: Path) -> Records:
     given = settings.get("records", {})
+    away = [key for key in ("magnitude", "distance_km") if key in settings]
+    if given and away:
+        raise InputError(
+            f"key {away[0]}: chooses among the default motions, and records of your own are given; leave one out."
+        )
     return Records(
         paths=tuple(folder / path for path in given.get("paths", [])),
         on_floor=given.get("recorded_on", "ground") == "floor",

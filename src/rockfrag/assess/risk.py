@@ -8,7 +8,9 @@ power law, so that each piece is integrated in closed form.  In 50 years the pro
 Its interval is taken on ln λ (on the logit of a share): the variances of its sources are added, each from its own
 calculation, and Student's t has the degrees of freedom of Welch and Satterthwaite.
 
-- motions: jackknife that leaves out an earthquake at a time;
+- motions: jackknife that leaves out an earthquake at a time, of shares with half an earthquake on either side
+  added (Haldane 1956, Anscombe 1956), without which one earthquake that holds every toppling would leave the
+  interval without bound;
 - body, floor: each property moved by its standard deviation to both sides;
 - model: the median amplitude moved by the error of the planar rocking model;
 - conversion: where hazard in PGA or Sa speaks about velocity, see :mod:`rockfrag.assess.conversion`;
@@ -115,18 +117,56 @@ class Target:
         Turns levels, shares and a shift of the levels into the number that is estimated.
     forward, back
         To the scale on which intervals are symmetric and back.
+    rocks
+        Whether the shares are those of motions that make the object rock.
+    certain
+        The number where all motions agree that it happens; infinite for a level that none reaches.
     """
 
     of: Callable[[Floats, Floats, float], float]
     forward: Callable[[float], float]
     back: Callable[[float], float]
+    rocks: bool = False
+    certain: float = 1.0
 
     def on_scale(
         self, verdicts: Verdicts, weights: Floats | None = None, shift: float = 0.0
     ) -> float:
-        """Value on the scale of the interval; -∞ where nothing topples."""
-        shares = verdicts.shares(weights)
+        """Value on the scale of the interval; -∞ where nothing topples.
+
+        Parameters
+        ----------
+        verdicts
+            What happened.
+        weights
+            Weight of each motion, shape (motions,); all alike if None.
+        shift
+            Logarithm of a factor on all levels.
+        """
+        shares = verdicts.shares(weights, rocks=self.rocks)
         return self.forward(self.of(verdicts.ladder.levels, shares, shift))
+
+    def value(self, verdicts: Verdicts, weights: Floats | None = None) -> float:
+        """What is estimated."""
+        return self.back(self.on_scale(verdicts, weights))
+
+    def without_each(self, verdicts: Verdicts) -> Floats:
+        """Values on the scale without one earthquake each, shape (earthquakes,).
+
+        Half an earthquake that topples the object wherever it rocks, and half of one that does not, are added to
+        those that are left where one of them decides alone.
+        """
+        weights = event_weights(verdicts.events)
+        found = np.array([self.on_scale(verdicts, w) for w in weights])
+        if np.isfinite(found).all():
+            return found
+        levels, count = verdicts.ladder.levels, len(weights) - 1
+        values = []
+        for w in weights:
+            could = verdicts.shares(w, rocks=True) > 0
+            shares = (count * verdicts.shares(w, rocks=self.rocks) + 0.5 * could) / (count + 1)
+            values.append(self.forward(self.of(levels, shares, 0.0)))
+        return np.array(values)
 
 
 def _log(value: float) -> float:
@@ -155,13 +195,15 @@ def risk_target(hazard: HazardCurve, years: float) -> Target:
     )
 
 
-def share_target(level: float) -> Target:
+def share_target(level: float, *, rocks: bool = False) -> Target:
     """The share of motions that topple the object at a level.
 
     Parameters
     ----------
     level
         Level in the unit of the ladder.
+    rocks
+        That of motions that make it rock instead.
     """
     return Target(
         of=lambda levels, shares, shift: float(
@@ -169,6 +211,7 @@ def share_target(level: float) -> Target:
         ),
         forward=lambda share: float(special.logit(share)),
         back=lambda value: float(special.expit(value)),
+        rocks=rocks,
     )
 
 
@@ -192,7 +235,7 @@ def amplitude_target(share: float) -> Target:
         x = np.log(levels)
         return float(np.exp(x[i - 1] + part * (x[i] - x[i - 1]) + shift))
 
-    return Target(of=level, forward=_log, back=_exp)
+    return Target(of=level, forward=_log, back=_exp, certain=math.inf)
 
 
 def event_weights(events: NDArray[np.object_]) -> Floats:
@@ -227,7 +270,7 @@ def estimate(
     if not math.isfinite(middle):
         return _bounded(target, verdicts, middle, shifts)
     sources: dict[str, float] = {}
-    left_out = np.array([target.on_scale(verdicts, w) for w in event_weights(verdicts.events)])
+    left_out = target.without_each(verdicts)
     sources["motions"] = _jackknife(left_out, middle)
     for name, (lower, upper) in moved.items():
         ends = target.on_scale(lower), target.on_scale(upper)
@@ -250,7 +293,7 @@ def _jackknife(left_out: Floats, middle: float) -> float:
         return math.inf
     finite = np.isfinite(left_out)
     if not finite.all():
-        # one earthquake holds every toppling: what others would say is open by as much as it adds
+        # nothing rocks without one of them: what others would say is open
         return math.inf
     return float(np.sqrt((groups - 1) / groups * ((left_out - left_out.mean()) ** 2).sum()))
 
@@ -275,12 +318,46 @@ def _bounded(
     target: Target, verdicts: Verdicts, middle: float, shifts: Mapping[str, float]
 ) -> Estimate:
     """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
-    groups = len(set(verdicts.events))
-    hidden = 1 - (1 - LEVEL) ** (1 / groups)
-    shift = -_Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
+    hidden = 1 - (1 - LEVEL) ** (1 / len(set(verdicts.events)))
+    shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
+    levels, shares = verdicts.ladder.levels, verdicts.shares(rocks=target.rocks)
+    could = np.where(verdicts.shares(rocks=True) > 0, np.maximum(shares, hidden), 0.0)
+    if math.isinf(target.certain):
+        # never reached: hidden motions could be enough at some level, or it lies above the last one
+        least = target.of(levels, could, -shift)
+        return Estimate(math.inf, min(least, float(levels[-1])), math.inf, {})
     if middle > 0:
-        shares = verdicts.shares() - hidden
-        return Estimate(1.0, target.of(verdicts.ladder.levels, shares, -shift), 1.0, {})
-    shares = np.where(verdicts.shares(rocks=True) > 0, np.maximum(verdicts.shares(), hidden), 0.0)
-    bound = target.forward(target.of(verdicts.ladder.levels, shares, shift))
+        surely = target.of(levels, np.maximum(shares - hidden, 0.0), shift)
+        return Estimate(1.0, target.back(target.forward(surely)), 1.0, {})
+    bound = target.forward(target.of(levels, could, -shift))
     return Estimate(0.0, 0.0, target.back(bound), {})
+
+
+def estimate_rocking(
+    level: float, verdicts: Verdicts, moved: Mapping[str, tuple[Verdicts, Verdicts]], *, exact: bool
+) -> Estimate:
+    """Estimate the share of motions at a level that make the object rock.
+
+    The error of the rocking model does not enter: a contact opens by statics.
+
+    Parameters
+    ----------
+    level
+        Level in the unit of the ladder.
+    verdicts
+        Of the object as it is.
+    moved
+        Of each property moved to both sides by its standard deviation.
+    exact
+        Whether the level alone decides, as a peak acceleration of what it stands on does; other earthquakes then
+        say the same.
+    """
+    target = share_target(level, rocks=True)
+    found = estimate(target, verdicts, moved, {}, {})
+    if 0 < found.value < 1:
+        return found
+    sides = [target.value(side) for both in moved.values() for side in both]
+    hidden = 0.0 if exact else 1 - (1 - LEVEL) ** (1 / len(set(verdicts.events)))
+    if found.value == 0:
+        return Estimate(0.0, 0.0, max([hidden, *sides]), {})
+    return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
 from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import MotionSet
@@ -29,6 +30,10 @@ RANGE = (0.05, 8.0)
 
 LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
+
+
+WORST_STEP_DEG = 15
+"""Angle between directions of which the worst is taken [degrees]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,6 +132,20 @@ class Verdicts:
         share = np.divide(fell, total, out=np.zeros(total.size), where=known)
         return np.asarray(share[at])
 
+    def band(self) -> tuple[Floats, Floats]:
+        """Limits of the share at each level that as few earthquakes leave open (90 %), shape (levels,) each.
+
+        Wilson's interval (1927) of the share with the earthquakes as the number of trials, since motions of one
+        earthquake are alike; it stays within 0 and 1.
+        """
+        n, z = len(set(self.events)), float(stats.norm.ppf(0.95))
+        p = self.shares()
+        middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
+        half = z / (1 + z**2 / n) * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
+        low, high = np.maximum(middle - half, 0.0), np.minimum(middle + half, 1.0)
+        # what does not rock cannot topple
+        return np.where(p > 0, low, 0.0), np.where(self.shares(rocks=True) > 0, high, 0.0)
+
     def first(self) -> NDArray[np.intp]:
         """Place of the least level at which each motion topples the body, -1 where none does, shape (motions,).
 
@@ -197,8 +216,11 @@ def verdicts_of_all(
 def _shaken(
     bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
 ) -> list[Verdicts]:
+    """Verdicts of planar bodies; an engine in space would take both components of a record here."""
     if not bodies:
         return []
+    if motions.worst:
+        return _shaken_from_all_sides(bodies, restitution, motions, ladder)
     result = overturns(
         bodies,
         [motion.acceleration for motion in motions.base],
@@ -211,6 +233,33 @@ def _shaken(
         Verdicts(ladder, result.overturned[i], _rocked(result, i), motions.events)
         for i in range(len(bodies))
     ]
+
+
+def _shaken_from_all_sides(
+    bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
+) -> list[Verdicts]:
+    """Verdicts by records, each in its worst direction; both components of a record get that of the record."""
+    records = motions.turned(WORST_STEP_DEG)
+    shaking = [motion for _, turned in records for motion in turned]
+    of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
+    result = overturns(
+        bodies,
+        [motion.acceleration for motion in shaking],
+        [motion.dt for motion in shaking],
+        np.minimum(ladder.scales[of_row], believable_scales(shaking)),
+        restitution=restitution,
+    )
+    # the place of the record that stands for each motion
+    place = np.arange(len(motions.base))
+    for first, second in motions.pairs:
+        place[second] = first
+    found = []
+    for i in range(len(bodies)):
+        fell, rocked = (np.zeros(ladder.scales.shape, dtype=bool) for _ in range(2))
+        np.logical_or.at(fell, of_row, result.overturned[i])
+        np.logical_or.at(rocked, of_row, _rocked(result, i))
+        found.append(Verdicts(ladder, fell[place], rocked[place], motions.events))
+    return found
 
 
 def share_with_sliding(

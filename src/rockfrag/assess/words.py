@@ -4,21 +4,24 @@ import math
 from collections.abc import Mapping
 
 from rockfrag.assess.answer import Assessment
+from rockfrag.assess.assumed import Assumption
+from rockfrag.assess.narrowing import MEASUREMENTS, Narrowed, is_wide, narrowed
 from rockfrag.assess.remedies import Remedy
 from rockfrag.assess.risk import LEVEL, Estimate
+from rockfrag.assess.scale import SCALE_WORDS, classes
 from rockfrag.assess.verdicts import LARGEST_FACTOR
 from rockfrag.report.wording import counted
 
 NAMES: Mapping[str, str] = {
-    "motions": "the motions of other earthquakes",
-    "width": "the width that carries",
-    "cg_height": "the height of the centre of gravity",
+    "motions": "how much earthquakes differ",
+    "width": "the width on which it stands",
+    "cg_height": "the height of its centre of gravity",
     "restitution": "the energy that impacts take",
-    "mass": "the mass",
+    "mass": "its mass",
     "period": "the building's first period",
     "damping": "the building's damping",
-    "model": "the planar rocking model",
-    "conversion": "how fast the ground moves at that hazard",
+    "model": "the error of the planar rocking model",
+    "conversion": "the ground velocity, which the given measure does not fix",
     "hazard": "the hazard curve",
 }
 """Sources of uncertainty and assumptions as a reader may know them."""
@@ -27,7 +30,13 @@ MANY = 0.5
 """Share of motions from which an object is said to topple."""
 
 FEW = 0.01
-"""Share of motions below which it is said to stand."""
+"""Share of motions up to which it is said to be unlikely to topple."""
+
+ROCK, TOPPLE = 1, 2
+"""Places of what motions do in the counts of an assessment."""
+
+MOST_ASSUMPTIONS = 3
+"""Assumptions that are named in a line; the page has all."""
 
 
 def share_words(value: float) -> str:
@@ -44,22 +53,36 @@ def share_words(value: float) -> str:
 
 
 def estimate_words(estimate: Estimate) -> str:
-    """A probability with its interval, such as ``4 % (1 to 18 %)``, to as many digits as the interval deserves."""
+    """A probability with its interval, such as ``4.2 % (1.3 to 18 %)``, or with its bound where all agree."""
     if estimate.value == 0:
-        return f"less than {share_words(estimate.upper)}"
+        if estimate.upper == 0:
+            return "0 %"
+        return f"0 % (upper limit {share_words(estimate.upper)})"
     if estimate.value == 1:
-        return f"more than {share_words(estimate.lower)}"
-    # two digits of the upper limit, but enough to tell the estimate from nothing
-    digits = max(0, 1 - _place(estimate.upper), -_place(estimate.value))
-    value, low, high = (
-        f"{100 * one:.{digits}f}" for one in (estimate.value, estimate.lower, estimate.upper)
-    )
-    return f"{value} % ({low} to {high} %)"
+        return f"100 % (lower limit {share_words(estimate.lower)})"
+    if not _has_interval(estimate):
+        return share_words(estimate.value)
+    return f"{share_words(estimate.value)} ({_range(estimate)})"
 
 
-def _place(share: float) -> int:
-    """Power of ten of a share in per cent; that of 10⁻⁴ % for less."""
-    return math.floor(math.log10(max(100 * share, 1e-4)))
+def _range(estimate: Estimate) -> str:
+    """The limits of an interval, such as ``1.3 to 18 %``."""
+    return f"{_limit(estimate.lower)} to {_limit(estimate.upper)} %"
+
+
+def _limit(share: float) -> str:
+    """A limit in per cent: whole numbers from 10 on, two digits from 1 on, one below."""
+    percent = 100 * share
+    if percent < 5e-4:
+        return "0"
+    if percent >= 10:
+        return f"{percent:.0f}"
+    return f"{percent:.2g}" if percent >= 1 else f"{percent:.1g}"
+
+
+def _has_interval(estimate: Estimate) -> bool:
+    """Whether the interval says anything: one earthquake alone gives none."""
+    return not (estimate.lower <= 0 and estimate.upper >= 1)
 
 
 def value_words(found: Assessment, value: float) -> str:
@@ -67,7 +90,7 @@ def value_words(found: Assessment, value: float) -> str:
     if found.probability or found.share:
         return share_words(value)
     if not math.isfinite(value):
-        return "none reached"
+        return "not reached"
     return f"{value:.2g} {found.measure.unit}"
 
 
@@ -80,66 +103,198 @@ def five_lines(found: Assessment) -> list[str]:
         The assessment.
     """
     return [
-        f"Topples?  {_at_the_site(found)}",
-        f"How likely?  {_probability(found)}",
-        f"How does it stand best?  {_arrangements(found)}",
-        f"What helps?  {_helps(found)}",
-        f"How sure?  {_sure(found)}",
+        f"Result: {at_the_site(found)}",
+        f"Risk: {risk(found)}",
+        f"Position: {positions(found)}",
+        f"What helps: {helps(found)}",
+        f"How sure: {sure(found)}",
     ]
 
 
-def verdict(found: Assessment) -> str:
+def headline(found: Assessment) -> str:
     """Say in a few words whether the object rocks and topples; the heading of the page."""
-    name = found.request.name[:1].upper() + found.request.name[1:]
-    if found.share is None or found.level is None:
+    name = _subject(found)
+    if found.share is None or found.level is None or found.rocking is None:
         half = found.amplitudes[0.5].value
         if not math.isfinite(half):
-            return f"No shaking that was tried topples {name} in half of the motions"
-        return f"Half of the motions topple {name} at {found.measure.name} {half:.2g} {found.measure.unit}"
+            return f"{name}: no shaking that was tried topples it in half of the motions"
+        return f"{name}: half of the motions topple it at {found.measure.name} {half:.2g} {found.measure.unit}"
     at = found.level.words
+    if does_not_move(found):
+        return f"{name} does not move at {at}"
+    if found.rocking.value == 0:
+        return f"{name} is not expected to move at {at}"
+    if not_decidable(found):
+        return f"{name} rocks at {at}; whether it topples is open"
     if found.share.value >= MANY:
         return f"{name} is likely to topple at {at}"
     if found.share.value > FEW:
         return f"{name} may topple at {at}"
-    if found.rocking_share > FEW:
-        return f"{name} rocks at {at} and hardly topples"
-    return f"{name} does not even rock at {at}"
+    return f"{name} may rock at {at} but is unlikely to topple"
 
 
-def _at_the_site(found: Assessment) -> str:
-    place = found.request.place.words
-    if found.level is None or found.share is None:
-        tenth, half = (found.amplitudes[p].value for p in (0.1, 0.5))
-        unit = found.measure.unit
-        if not math.isfinite(tenth):
-            return (
-                f"{found.request.name}, {place}: not one in ten motions topples it, however strong."
-            )
-        more = f", half of them at {half:.2g} {unit}" if math.isfinite(half) else ""
+def does_not_move(found: Assessment) -> bool:
+    """Whether even what is not known leaves the object at rest at the level."""
+    return found.rocking is not None and found.rocking.upper == 0
+
+
+def not_decidable(found: Assessment) -> bool:
+    """Whether the interval reaches from unlikely to likely toppling."""
+    return found.share is not None and is_wide(found.share)
+
+
+def _subject(found: Assessment) -> str:
+    name = found.request.name
+    return name[:1].upper() + name[1:]
+
+
+def _where(found: Assessment) -> str:
+    place = found.request.place
+    return place.words + (f" ({place.floor_name})" if place.floor_name else "")
+
+
+def at_the_site(found: Assessment) -> str:
+    """What happens at the level asked about, or which levels topple the object."""
+    who = f"{_subject(found)} {_where(found)}"
+    if found.level is None or found.share is None or found.rocking is None:
+        return f"{who}: {_amplitudes(found)}"
+    period = " (exceeded once in 475 years on average)" if found.request.level is None else ""
+    at = f"at {found.level.words}{period}"
+    if found.rocking.value == 0:
+        return f"{who} {_at_rest(found, at)}"
+    rocks = f"{_counted(found, ROCK)} it rock"
+    if found.share.value == 0:
         return (
-            f"{found.request.name}, {place}: one in ten motions topples it at {found.measure.name} "
-            f"{tenth:.2g} {unit}{more}."
+            f"{who} is unlikely to topple {at}: none of {_total(found)} motions topples it (upper limit "
+            f"{share_words(found.share.upper)}); {rocks}."
         )
-    period = " (475 years)" if found.request.level is None else ""
+    said = f"{_counted(found, TOPPLE)} it{_interval(found.share)}; {rocks}."
+    if not_decidable(found):
+        whether = f"Whether {found.request.name} {_where(found)} topples {at}"
+        return (
+            f"{whether} is not decidable with what was given: {said} {_would_narrow(found)}".strip()
+        )
+    may = "is likely to topple" if found.share.value >= MANY else "may topple"
+    return f"{who} {may} {at}: {said}"
+
+
+def _at_rest(found: Assessment, at: str) -> str:
+    """What is said of an object that no motion makes rock."""
+    assert found.share is not None and found.level is not None
+    starts = _starts(found)
+    if does_not_move(found):
+        return f"does not move {at}; it starts to rock at {starts}."
+    limit = f"upper limit of toppling {share_words(found.share.upper)}"
+    if found.rocks_from > found.level.value:
+        return (
+            f"is not expected to move {at}: it starts to rock at {starts}, which what is not known of it could "
+            "lower "
+            f"({limit})."
+        )
+    return f"is not expected to move {at}: none of {_total(found)} motions makes it rock ({limit})."
+
+
+def _starts(found: Assessment) -> str:
+    if not math.isfinite(found.rocks_from):
+        return "more than was tried"
+    return f"{found.measure.name} {found.rocks_from:.2g} {found.measure.unit}"
+
+
+def _total(found: Assessment) -> int:
+    return found.counts[0] if found.counts else len(found.motions.ground)
+
+
+def _counted(found: Assessment, what: int) -> str:
+    """How many motions do it, such as ``1 of 100 motions topples``."""
+    one, many = {ROCK: ("makes", "make"), TOPPLE: ("topples", "topple")}[what]
+    if found.counts is None:
+        share = found.rocking if what == ROCK else found.share
+        assert share is not None
+        return f"{share_words(share.value)} of the motions {many}"
+    number, total = found.counts[what], found.counts[0]
+    if number == total:
+        return f"all {total} motions {many}"
+    return f"{number} of {total} motions {one if number == 1 else many}"
+
+
+def _interval(estimate: Estimate) -> str:
+    if estimate.value == 1:
+        return f" (lower limit {share_words(estimate.lower)})"
+    if not _has_interval(estimate):
+        return " (no interval can be given)"
+    return f" ({100 * LEVEL:.0f} % interval {_range(estimate)})"
+
+
+def _would_narrow(found: Assessment) -> str:
+    better = narrowed(found.share) if found.share else None
+    return f"{_capital(_narrowing(better))}." if better else ""
+
+
+def _narrowing(better: Narrowed) -> str:
+    """Such as ``knowing the ground velocity (PGV) of the site would narrow the interval to 2 to 19 %``."""
+    words = " and ".join(MEASUREMENTS[name].words for name in better.known)
+    return f"knowing {words} would narrow the interval to {_range(better.estimate)}"
+
+
+def _amplitudes(found: Assessment) -> str:
+    tenth, half = (found.amplitudes[p] for p in (0.1, 0.5))
+    name, unit = found.measure.name, found.measure.unit
+    starts = f"it starts to rock at {_starts(found)}; "
+    if not math.isfinite(tenth.value):
+        return f"{starts}even the strongest shaking that was tried topples it in fewer than one in ten motions."
+    more = f", half of them at {half.value:.2g} {unit}" if math.isfinite(half.value) else ""
+    limits = (
+        f" ({tenth.lower:.2g} to {tenth.upper:.2g} {unit})"
+        if math.isfinite(tenth.upper) and tenth.lower > 0
+        else ""
+    )
     return (
-        f"{found.request.name}, {place}, {found.level.words}{period}: rocks in "
-        f"{share_words(found.rocking_share)} and topples in {estimate_words(found.share)} of the motions."
+        f"{starts}one in ten motions topples it at {name} {tenth.value:.2g} {unit}{limits}{more}."
     )
 
 
-def _probability(found: Assessment) -> str:
+def risk(found: Assessment) -> str:
+    """The probability, whether that is much, and what to do."""
     if found.probability is None:
-        return "no hazard was given; --hazard FILE or --return-period YEARS gives it."
-    return f"{estimate_words(found.probability)} in {found.request.years:g} years, {100 * LEVEL:.0f} % interval."
+        return (
+            "It is not computed without a hazard; add a hazard curve (--hazard FILE) or the return period of "
+            "the level "
+            "(--return-period 475)."
+        )
+    years = found.request.years
+    step = classes(found.probability, years)
+    if found.probability.value == 0:
+        first = (
+            "None of the motions topples it at any level that was tried; the probability in "
+            f"{years:g} years is at most {share_words(found.probability.upper)}"
+        )
+    else:
+        first = (
+            f"It topples with a probability of {share_words(found.probability.value)} in {years:g} years"
+            f"{_interval(found.probability)}"
+        )
+    weaker = (
+        f" All shaking of the site is counted, weaker and stronger than {found.level.words}."
+        if found.level is not None
+        else ""
+    )
+    return f"{first}. That is {step.name} on our scale ({SCALE_WORDS}). {step.advice}{weaker}"
 
 
-def _arrangements(found: Assessment) -> str:
+def positions(found: Assessment) -> str:
+    """The ways in which it can stand, the best one, and the direction that it faces."""
     ranked = _ranked(found)
-    worst = _worst_direction(found)
+    direction = worst_direction(found)
     if len(ranked) == 1:
-        return worst
-    words = ", ".join(f"{name} {value_words(found, value)}" for name, value in ranked)
-    return f"{words}. {worst}".strip()
+        return direction
+    words = ", ".join(f"{name} {_position_value(found, value)}" for name, value in ranked)
+    if len({value for _, value in ranked}) == 1:
+        return f"All positions are equally safe ({words}). {direction}"
+    return f"It is safest {ranked[0][0]} ({words}). {direction}"
+
+
+def _position_value(found: Assessment, value: float) -> str:
+    return "none of the motions" if value == 0 else value_words(found, value)
 
 
 def _ranked(found: Assessment) -> list[tuple[str, float]]:
@@ -153,69 +308,124 @@ def safest(found: Assessment) -> str:
     return _ranked(found)[0][0]
 
 
-def _worst_direction(found: Assessment) -> str:
-    plane = f"It rocks {found.request.objects.plane}"
+def worst_direction(found: Assessment) -> str:
+    """In which plane it rocks, and whether the worst direction is counted."""
+    if found.request.objects.round:
+        return "The base is round; each record meets it from its worst direction, which is counted."
+    plane = f"It rocks {found.request.objects.plane}."
     directions = found.directions
     if directions is None or not math.isfinite(directions.factor):
-        return f"{plane}."
+        return f"{plane} Motions come in the direction in which they were recorded; the worst one is not counted."
     return (
-        f"{plane}; from the worst direction {directions.factor:.2f} times the shaking topples it."
+        f"{plane} Motions come in the direction in which they were recorded, at random; in the worst one "
+        f"{100 * directions.factor:.0f} % of the shaking is enough, which is not counted in these figures."
     )
 
 
-def _helps(found: Assessment) -> str:
+def helps(found: Assessment) -> str:
+    """Changes that help, most helpful first."""
     if not found.remedies:
-        return "nothing was tried."
-    best = [remedy_words(found, remedy) for remedy in found.remedies[:3]]
-    return "; ".join(best) + "."
+        return "Nothing was tried."
+    target = found.main
+    if target.value == 0:
+        return "No change is needed for this: none of the motions topples it as it stands."
+    best = [remedy for remedy in found.remedies if remedy.helps][:3]
+    if not best:
+        return "None of the changes that were tried helps."
+    return _capital("; ".join(remedy_words(found, one) for one in best)) + "."
 
 
 def remedy_words(found: Assessment, remedy: Remedy) -> str:
-    """A change and its factor."""
-    what = "amplitude" if found.probability is None and found.share is None else "risk"
+    """A change and what it does to the risk, or to the shaking that the object bears."""
+    of_amplitude = found.probability is None and found.share is None
     if math.isnan(remedy.factor):
         return f"{remedy.name}: {value_words(found, remedy.value)}"
+    if of_amplitude:
+        change = 100 * (remedy.factor - 1)
+        more = "more" if change >= 0 else "less"
+        return f"{remedy.name} lets it bear {abs(change):.0f} % {more} shaking{_limits(remedy, -1)}"
     if remedy.factor == 0:
-        return f"{remedy.name}: no motion topples it"
-    return f"{remedy.name}: {what} times {remedy.factor:.2g}"
+        return f"{remedy.name} leaves no motion that topples it"
+    change = 100 * (1 - remedy.factor)
+    if change < 0:
+        return f"{remedy.name} makes the risk {remedy.factor:.2g} times as large"
+    return f"{remedy.name} reduces the risk by {change:.0f} %{_limits(remedy, 1)}"
 
 
-def _sure(found: Assessment) -> str:
+def _limits(remedy: Remedy, sign: int) -> str:
+    """Limits of a reduction (1) or a gain (-1) in per cent."""
+    if not math.isfinite(remedy.lower):
+        return ""
+    low, high = sorted(sign * 100 * (1 - one) for one in (remedy.lower, remedy.upper))
+    return f" ({low:.0f} to {high:.0f} %)".replace("-", "−")
+
+
+def sure(found: Assessment) -> str:
+    """The motions, what makes the interval wide, what would narrow it, and what was assumed."""
     main = found.main
-    parts = [found.motions.words + "."]
+    parts = [f"{found.motions.words}."]
     if main.largest:
-        parts.append(f"The range comes mostly from {NAMES[main.largest]}.")
-    assumed = found.request.objects.assumed + found.request.place.assumed
-    if assumed:
-        parts.append(f"Assumed: {counted(len(assumed), 'thing')}, see the page.")
+        parts.append(f"Most of the uncertainty comes from {NAMES[main.largest]}.")
+    better = narrowed(main) if found.probability or found.share else None
+    if better is not None and not (not_decidable(found) and main is found.share):
+        parts.append(f"{_capital(_narrowing(better))}.")
+    named, more = _main_assumptions(found)
+    if named:
+        rest = f"; {counted(more, 'more assumption')} on the page" if more else ""
+        parts.append(f"Assumed: {', '.join(named)}{rest}.")
     return " ".join(parts)
+
+
+def _main_assumptions(found: Assessment) -> tuple[list[str], int]:
+    """What matters most, in a few words each, and how many more there are."""
+    lines = [one for one in all_assumed(found) if one.short]
+    return [one.short for one in lines[:MOST_ASSUMPTIONS]], max(0, len(lines) - MOST_ASSUMPTIONS)
+
+
+def all_assumed(found: Assessment) -> list[Assumption]:
+    """What was assumed, that first which widens the interval most."""
+    sources = found.main.sources
+    lines = [*found.request.place.assumed, *found.request.objects.assumed]
+
+    def size(one: Assumption) -> float:
+        return sum(sources.get(name, 0.0) ** 2 for name in one.sources)
+
+    return sorted(lines, key=size, reverse=True)
 
 
 def assumptions(found: Assessment) -> list[str]:
     """Sentences of all that was assumed and of all that a reader must know."""
     request = found.request
-    lines = [*request.objects.assumed, *request.place.assumed]
+    lines = [one.words for one in all_assumed(found)]
     if request.place.building is not None:
         lines.append(
-            "The building stays elastic; one that cracks passes on less, and that of other frequencies."
+            "The building stays elastic; one that cracks shakes its floors less strongly and more slowly."
         )
     lines.append("It rocks in one plane on sharp rigid edges.")
+    if found.directions is not None and math.isfinite(found.directions.factor):
+        lines.append(
+            "Records come from directions at random. Neither the worst direction nor both components at once are "
+            "counted in the figures and their intervals."
+        )
     if math.isfinite(found.sliding_share) and found.share is not None:
         lines.append(
-            f"With a friction of {request.objects.friction:g} it may slide and topples in "
-            f"{share_words(found.sliding_share)} of the motions at that level instead of "
-            f"{share_words(found.share.value)}; all other numbers are without sliding."
+            f"With a friction of {request.objects.friction:g} it may slide, and "
+            f"{share_words(found.sliding_share)} of "
+            f"the motions at that level topple it instead of {share_words(found.share.value)}; all other "
+            "numbers are "
+            "without sliding."
         )
     else:
-        lines.append("It does not slide; that needs friction, and a rough base.")
+        lines.append("It does not slide; that needs enough friction (--friction tries it).")
     if found.conversion:
         lines.append(found.conversion.words)
     if found.hazard:
         lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
     factor = found.verdicts.ladder.allowed.mean()
     lines.append(
-        f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most; {100 * factor:.0f} % of all "
-        "that the levels ask for is within that."
+        f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
+        f"{100 * factor:.0f} % "
+        "of all pairs of motion and level."
     )
     return lines
 
@@ -238,13 +448,17 @@ def doubts(found: Assessment) -> list[str]:
             lines.append(
                 f"The hazard's level of 475 years, {strong:.2g} {found.measure.unit}, is unusual; check its unit."
             )
+    if found.request.objects.round and not found.motions.pairs:
+        lines.append(
+            "No record has two components, so that the worst direction of a round base could not be tried."
+        )
     for event, share in _influential(found):
         lines.append(f"{share:.0%} of the motions that topple it at that level are of {event}.")
     return lines
 
 
 def _influential(found: Assessment) -> list[tuple[str, float]]:
-    """Earthquakes that make most of the verdicts at the level asked about."""
+    """Earthquakes of which most of the motions are that topple the object at the level asked about."""
     if found.level is None:
         return []
     verdicts = found.verdicts
@@ -255,3 +469,7 @@ def _influential(found: Assessment) -> list[tuple[str, float]]:
     names = verdicts.events[fell]
     counts = {name: (names == name).mean() for name in dict.fromkeys(names)}
     return [(str(name), float(share)) for name, share in counts.items() if share > 0.5]
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

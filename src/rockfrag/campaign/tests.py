@@ -65,10 +65,11 @@ def read_campaign(
     path
         CSV with one row a test.
     columns
-        Its columns: ``test`` and ``motion``; either ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the
-        largest peak survived and the one that overturned, which make two tests; ``group`` where tests of one
-        input motion share a name, else the motion; ``amplitude_g`` where motions are scaled to a peak; ``rocked``
-        and ``slid`` (yes or no) and ``which_way`` (text) where the laboratory noted them.
+        Its columns: ``test`` and ``motion`` (without it the measures of a test name its motion); either
+        ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the largest peak survived and the one that
+        overturned, which make two tests; ``group`` where tests of one input motion share a name, else the
+        motion; ``amplitude_g`` where motions are scaled to a peak; ``rocked`` and ``slid`` (yes or no) and
+        ``which_way`` (text) where the laboratory noted them.
     measures
         For each intensity measure the columns and numbers whose product it is.
     other_codes
@@ -91,16 +92,19 @@ def read_campaign(
     tests = pd.DataFrame(
         {
             "test": raw[columns["test"]],
-            "motion": raw[columns["motion"]],
-            "group": raw[columns.get("group", columns["motion"])],
+            "motion": raw[columns["motion"]] if "motion" in columns else "",
         }
     )
+    tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
     doubled = tests["test"][tests["test"].duplicated()]
     if len(doubled):
         raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
     for name, recipe in measures.items():
         factors = [raw[one] if isinstance(one, str) else one for one in recipe]
         tests[name] = math.prod(factors)
+    if "motion" not in columns:
+        tests["motion"] = settings_of(tests, list(measures))
+        tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
     for key in NOTED:
         if key in columns:
             tests[key] = raw[columns[key]].astype(bool)
@@ -108,6 +112,12 @@ def read_campaign(
         tests["which_way"] = raw[columns["which_way"]]
     tests = _with_verdicts(tests, raw, columns, source)
     return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
+
+
+def settings_of(tests: pd.DataFrame, measures: Sequence[str]) -> list[str]:
+    """Name of each test's setting, its measures in words, which tests that repeat it share."""
+    rows = tests[list(measures)].to_numpy().tolist()
+    return [", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows]
 
 
 def _with_verdicts(

@@ -56,6 +56,7 @@ from .pulse_extraction import (
     strongest_pulse as strongest_pulse,
 )
 from .pulses import (
+    commanded_cosine as commanded_cosine,
     half_sine as half_sine,
     mavroeidis_papageorgiou as mavroeidis_papageorgiou,
     one_cosine as one_cosine,

@@ -6,8 +6,10 @@ from numbers import Real
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
 
 MOST_SAMPLES = 10_000_000
 """More samples than this are taken for a mistake in a unit."""
@@ -61,6 +63,12 @@ def plain(parameters: Mapping[str, Any]) -> dict[str, Any]:
         key: value.item() if isinstance(value, np.generic) else value
         for key, value in parameters.items()
     }
+
+
+def peaks(motion: Motion, samples: NDArray[np.float64]) -> dict[str, float]:
+    """Return the peaks [m/s²] before and after a step that changes samples, for its provenance."""
+    after = float(np.abs(samples).max()) if samples.size else 0.0
+    return {"peak_before_m_s2": motion.pga, "peak_after_m_s2": after}
 
 
 def _of(unit: str) -> str:

@@ -83,7 +83,7 @@ def motion_and_vertical(row: dict[str, Any], folder: Path, records: Path) -> tup
         load_motion(row, folder, records),
         *(_scaled(load_component(row, one, folder, records), row) for one in others),
     ]
-    motion, vertical, *second = common_time(components)
+    motion, vertical, *second = common_time(components, verticals=(1,))
     if second:
         motion = replace(turned(motion, second[0], direction), name=motion.name)
     return motion, replace(vertical, name=motion.name)
@@ -132,7 +132,8 @@ def components_of_row(row: dict[str, Any], folder: Path, records: Path) -> dict[
     named = {"first": row["file"], "second": row.get("second"), "vertical": row.get("vertical")}
     files = {role: str(file) for role, file in named.items() if file}
     motions = [load_component(row, file, folder, records) for file in files.values()]
-    return dict(zip(files, common_time(motions), strict=True))
+    verticals = [place for place, role in enumerate(files) if role == "vertical"]
+    return dict(zip(files, common_time(motions, verticals), strict=True))
 
 
 def measure_records(

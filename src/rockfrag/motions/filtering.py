@@ -1,22 +1,28 @@
-"""Steps that change the frequency content or the sampling: acausal Butterworth filters, resampling.
+"""Steps that change the frequency content or the sampling: Butterworth filters, resampling.
 
 The filters are ObsPy's, run forwards and backwards: no phase shift, and a response that is the
 square of the Butterworth response of the given order (at a corner -6 dB, not -3 dB).  They start
 from rest at either end; put zero pads first where the displacement matters
-(:func:`rockfrag.motions.pad`).  ObsPy and SciPy are loaded where they filter: naming a step needs neither.
+(:func:`rockfrag.motions.pad`).  A causal filter (``causal: true``) runs forwards alone: the Butterworth
+response itself (-3 dB at a corner), with its delay, and nothing before the motion begins (Boore and Akkar,
+2003, Earthq. Eng. Struct. Dyn. 32: 1729-1740, compare the two).  The provenance has the peak before and after
+and the first and last sample, which are not zero where pads were missing.  ObsPy and SciPy are loaded where they
+filter: naming a step needs neither.
 """
 
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.motions.checks import positive, whole
+from rockfrag.motions.checks import peaks, positive, whole
 from rockfrag.records.motion import Motion
 
 
-def highpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
-    """Acausal Butterworth high-pass filter.
+def highpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
+    """Butterworth high-pass filter, acausal unless a causal one is asked for.
 
     Parameters
     ----------
@@ -25,7 +31,9 @@ def highpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
     corner_hz
         Corner frequency [Hz], below Nyquist.
     order
-        Order of the filter, 1 to 10; it acts twice.
+        Order of the filter, 1 to 10; an acausal one acts twice.
+    causal
+        Whether it runs forwards alone.
 
     Raises
     ------
@@ -33,17 +41,24 @@ def highpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
         If the corner is not between zero and Nyquist or the order is not such a number.
     """
     corner_hz = _corner("highpass", "corner_hz", corner_hz, motion)
-    order = whole("step highpass", "order", order, 1, 10)
+    order, causal = whole("step highpass", "order", order, 1, 10), _flag("highpass", causal)
     from obspy.signal import filter as obspy_filter
 
     filtered = obspy_filter.highpass(
-        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=True
+        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=not causal
     )
-    return motion.after("highpass", filtered, corner_hz=corner_hz, order=order)
+    return motion.after(
+        "highpass",
+        filtered,
+        corner_hz=corner_hz,
+        order=order,
+        causal=causal,
+        **_found(motion, filtered),
+    )
 
 
-def lowpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
-    """Acausal Butterworth low-pass filter.
+def lowpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
+    """Butterworth low-pass filter, acausal unless a causal one is asked for.
 
     Parameters
     ----------
@@ -52,7 +67,9 @@ def lowpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
     corner_hz
         Corner frequency [Hz], below Nyquist.
     order
-        Order of the filter, 1 to 10; it acts twice.
+        Order of the filter, 1 to 10; an acausal one acts twice.
+    causal
+        Whether it runs forwards alone.
 
     Raises
     ------
@@ -60,17 +77,26 @@ def lowpass(motion: Motion, corner_hz: float, order: int = 4) -> Motion:
         If the corner is not between zero and Nyquist or the order is not such a number.
     """
     corner_hz = _corner("lowpass", "corner_hz", corner_hz, motion)
-    order = whole("step lowpass", "order", order, 1, 10)
+    order, causal = whole("step lowpass", "order", order, 1, 10), _flag("lowpass", causal)
     from obspy.signal import filter as obspy_filter
 
     filtered = obspy_filter.lowpass(
-        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=True
+        motion.acceleration, corner_hz, 1 / motion.dt, corners=order, zerophase=not causal
     )
-    return motion.after("lowpass", filtered, corner_hz=corner_hz, order=order)
+    return motion.after(
+        "lowpass",
+        filtered,
+        corner_hz=corner_hz,
+        order=order,
+        causal=causal,
+        **_found(motion, filtered),
+    )
 
 
-def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> Motion:
-    """Acausal Butterworth band-pass filter between two corners below Nyquist [Hz].
+def bandpass(
+    motion: Motion, low_hz: float, high_hz: float, order: int = 4, causal: bool = False
+) -> Motion:
+    """Butterworth band-pass filter between two corners below Nyquist [Hz], acausal unless asked for.
 
     Parameters
     ----------
@@ -81,7 +107,9 @@ def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> M
     high_hz
         Upper corner [Hz], below Nyquist.
     order
-        Order of the filter, 1 to 10; it acts twice.
+        Order of the filter, 1 to 10; an acausal one acts twice.
+    causal
+        Whether it runs forwards alone.
 
     Raises
     ------
@@ -91,7 +119,7 @@ def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> M
     """
     low_hz = _corner("bandpass", "low_hz", low_hz, motion)
     high_hz = _corner("bandpass", "high_hz", high_hz, motion)
-    order = whole("step bandpass", "order", order, 1, 10)
+    order, causal = whole("step bandpass", "order", order, 1, 10), _flag("bandpass", causal)
     if low_hz >= high_hz:
         raise InputError(
             f"step bandpass: the band from low_hz {low_hz} to high_hz {high_hz} is empty; "
@@ -100,9 +128,17 @@ def bandpass(motion: Motion, low_hz: float, high_hz: float, order: int = 4) -> M
     from obspy.signal import filter as obspy_filter
 
     filtered = obspy_filter.bandpass(
-        motion.acceleration, low_hz, high_hz, 1 / motion.dt, corners=order, zerophase=True
+        motion.acceleration, low_hz, high_hz, 1 / motion.dt, corners=order, zerophase=not causal
     )
-    return motion.after("bandpass", filtered, low_hz=low_hz, high_hz=high_hz, order=order)
+    return motion.after(
+        "bandpass",
+        filtered,
+        low_hz=low_hz,
+        high_hz=high_hz,
+        order=order,
+        causal=causal,
+        **_found(motion, filtered),
+    )
 
 
 def resample(motion: Motion, dt_s: float) -> Motion:
@@ -110,7 +146,9 @@ def resample(motion: Motion, dt_s: float) -> Motion:
 
     The filter takes out what the coarser of the two samplings cannot carry, so nothing is aliased.
     The values between samples become those of the band-limited signal, not of the straight lines:
-    peaks change; :func:`interpolate` keeps the lines.
+    peaks change, as the provenance says; :func:`interpolate` keeps the lines. A motion that does not begin and
+    end at zero is taken off the straight line between its ends first, so that it does not ring there, and
+    nothing is added beyond its last sample.
 
     Parameters
     ----------
@@ -135,8 +173,11 @@ def resample(motion: Motion, dt_s: float) -> Motion:
         )
     from scipy.signal import resample_poly
 
-    samples = resample_poly(motion.acceleration, ratio.numerator, ratio.denominator)
-    return motion.after("resample", samples, dt=dt_s, dt_s=dt_s)
+    ends = "line" if motion.acceleration.size > 1 else "constant"
+    samples = resample_poly(motion.acceleration, ratio.numerator, ratio.denominator, padtype=ends)
+    count = int((motion.acceleration.size - 1) * motion.dt / dt_s * (1 + 1e-12)) + 1
+    samples = samples[:count]
+    return motion.after("resample", samples, dt=dt_s, dt_s=dt_s, **peaks(motion, samples))
 
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:
@@ -164,6 +205,17 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
     old = np.arange(motion.acceleration.size) * parts
     samples = np.interp(np.arange(old[-1] + 1), old, motion.acceleration)
     return motion.after("interpolate", samples, dt=dt_s, dt_s=dt_s)
+
+
+def _flag(step: str, causal: bool) -> bool:
+    if not isinstance(causal, bool):
+        raise InputError(f"step {step}: causal must be true or false, got {causal!r}.")
+    return causal
+
+
+def _found(motion: Motion, samples: NDArray[np.float64]) -> dict[str, Any]:
+    """Return what a filter made of a motion, for its provenance."""
+    return {**peaks(motion, samples), "ends_m_s2": [float(samples[0]), float(samples[-1])]}
 
 
 def _corner(step: str, name: str, value: float, motion: Motion) -> float:

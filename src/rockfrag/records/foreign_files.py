@@ -2,6 +2,10 @@
 
 import re
 
+_GSE = (
+    "a GSE file, which is not read here; convert it with ObsPy: "
+    "obspy.read(file).write('record.mseed', 'MSEED')"
+)
 _MAGIC: tuple[tuple[bytes, str], ...] = (
     (b"\xff\xfe", "UTF-16 text; save it as UTF-8"),
     (b"\xfe\xff", "UTF-16 text; save it as UTF-8"),
@@ -14,6 +18,11 @@ _MAGIC: tuple[tuple[bytes, str], ...] = (
     (b"\x89PNG", "a picture"),
     (b"\xff\xd8\xff", "a picture"),
     (b"7z\xbc\xaf", "an archive of a kind not unpacked here; unpack it first"),
+    (b"WID1 ", _GSE),
+    (b"WID2 ", _GSE),
+    (b"XW01", _GSE),
+    (b"BEGIN GSE", _GSE),
+    (b"BEGIN IMS", _GSE),
     (b"Rar!", "an archive of a kind not unpacked here; unpack it first"),
 )
 _HTML = re.compile(rb"^\s*(?:<!--.*?-->\s*)*<(?:!doctype\s+html|html)\b", re.IGNORECASE | re.DOTALL)

@@ -1,11 +1,11 @@
 """Which of the formats read here a file is of; ObsPy reads some others."""
 
-from rockfrag.records.formats import columns, plain, rows
+from rockfrag.records.formats import plain
 from rockfrag.records.headed_formats import HEADED
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.text_file import Source
 
-FORMATS: tuple[Format, ...] = (*HEADED, columns.FORMAT, plain.FORMAT, rows.FORMAT)
+FORMATS: tuple[Format, ...] = (*HEADED, plain.FORMAT)
 
 
 def identify(source: Source) -> Format | None:

@@ -4,13 +4,15 @@ import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.records.catalogue import COLUMNS
+from rockfrag.plain_text import printable
+from rockfrag.records.catalogue import COLUMNS, is_catalogue
 from rockfrag.records.doubts import doubts
 from rockfrag.records.parsing.orientation import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
@@ -25,14 +27,16 @@ _PERPENDICULAR = 5.0
 _SUFFIXES = tuple(
     re.compile(pattern, re.IGNORECASE)
     for pattern in (
-        r"^(?P<stem>.*[A-Z_.\- ])(?P<name>[0-3]\d\d)(?P<rest>)$",
-        r"^(?P<stem>.+?)[-_. ]?(?P<name>E-?W|W-?E|N-?S|S-?N|U-?D|[BEH][NLGH][ENZ123]|UP|DWN|VERT?|FN|FP)"
+        # the number of a station of an array may stand before the azimuth: H-E10050
+        r"^(?P<stem>.*[A-Z_.\- ]\d{0,2}?)(?P<name>[0-3]\d\d)(?P<rest>)$",
+        r"^(?P<stem>.+?)[-_. ]?(?P<name>E-?W|W-?E|N-?S|S-?N|U-?D|[BEH][NLGH][ENZ123]|UP|DWN|DOWN|DN|VERT?|VRT"
+        r"|FN|FP|LN|TR|LONG|TRAN)"
         r"(?P<rest>\d?)$",
         r"^(?P<stem>.+)[-_. ](?P<name>[NEZUVHXYLT])(?P<rest>)$",
         r"^(?P<stem>.+)(?P<name>[123])(?P<rest>)$",
     )
 )
-"""How names of files end that name the component: ``CLS000``, ``ISE-WE``, ``EW2``, ``_N``, ``120111``."""
+"""How names of files end that name the component: ``CLS000``, ``E10050``, ``ISE-WE``, ``_N``, ``120111``."""
 
 _AMERICAN_DATE = re.compile(r"\b(?P<m>\d{1,2})/(?P<d>\d{1,2})/(?P<y>\d{4}|\d{2})\b")
 _ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})(?!\d)")
@@ -52,6 +56,8 @@ class Component:
     several: bool
     unit: str
     dt_given: float | None
+    container: str = ""
+    digest: str = ""
     doubts: tuple[str, ...] = ()
 
     @property
@@ -88,13 +94,48 @@ class Component:
         return is_vertical(self.orientation)
 
 
+@dataclass(frozen=True)
+class Note:
+    """What looks wrong in a file."""
+
+    file: str
+    what: str
+
+    @property
+    def kind(self) -> str:
+        """The same for all files in which the same looks wrong: without numbers and names."""
+        return re.sub(r"\d[\d.]*|'[^']*'|\S+\.\w+(?:#\S*)?", "…", self.what)
+
+
 @dataclass
 class CatalogueDraft:
     """A catalogue made: its table, and what a person should look at."""
 
     table: pd.DataFrame
-    warnings: list[str] = field(default_factory=list)
+    notes: list[Note] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What looks wrong, a line each."""
+        return [f"{note.file}: {note.what}" for note in self.notes]
+
+    def summary(self, shown: int = 3) -> list[str]:
+        """Return the warnings, those of one kind as one line with an example where they are many."""
+        kinds: dict[str, list[Note]] = {}
+        for note in self.notes:
+            kinds.setdefault(note.kind, []).append(note)
+        lines = []
+        for kind, notes in kinds.items():
+            if len(notes) <= shown:
+                lines += [f"{note.file}: {note.what}" for note in notes]
+            else:
+                lines.append(f"{len(notes)} times: {kind}; the first is {notes[0].file}")
+        return lines
+
+    def note(self, file: str, what: str) -> None:
+        """Note what looks wrong in a file."""
+        self.notes.append(Note(file, what))
 
 
 def make_catalogue(
@@ -131,28 +172,77 @@ def make_catalogue(
     """
     draft = CatalogueDraft(pd.DataFrame(columns=list(COLUMNS)))
     rows: list[dict[str, Any]] = []
+    groups: list[list[Component]] = []
+    seen: dict[str, str] = {}
     for path in map(Path, paths):
         found, listed = _look_through(path, unit, dt, Path(folder), draft)
         used: set[str] = set()
         for record in listed:
             rows += _peer_rows(record, found, used, draft)
-        left = [component for component in found if component.file not in used]
-        for group in _records_of(left):
-            rows += _rows_of(group, draft)
+        seen |= {component.digest: component.file for component in found if component.file in used}
+        groups += _records_of([component for component in found if component.file not in used])
+    for group in _without_copies(groups, seen, draft):
+        rows += _rows_of(group, draft)
     if not rows:
         more = f": {draft.errors[0]}" if draft.errors else "."
         raise InputError(f"no horizontal component of acceleration was found{more}")
     _name_uniquely(rows)
-    _warn_of_copies(rows, draft)
+    _note_names_of_one_day(rows, draft)
     draft.table = pd.DataFrame(rows, columns=list(COLUMNS)).fillna("")
     return draft
+
+
+def _without_copies(
+    groups: Sequence[list[Component]], seen: dict[str, str], draft: CatalogueDraft
+) -> list[list[Component]]:
+    """Leave out records that are there already, as in an archive and beside it.
+
+    Of two the one with both horizontals is kept, of those the file and not the member of an archive.
+    """
+
+    def worth(number: int) -> tuple[int, bool, int]:
+        group = groups[number]
+        return -len(_horizontal(group)), any(one.container for one in group), number
+
+    kept = []
+    for number in sorted(range(len(groups)), key=worth):
+        told = _horizontal(groups[number]) or groups[number]
+        if all(one.digest in seen for one in told):
+            for one in groups[number]:
+                other = seen.get(one.digest, "")
+                draft.note(one.file, f"the same record as {other or told[0].file}; left out")
+            continue
+        kept.append(number)
+        for one in groups[number]:
+            seen.setdefault(one.digest, one.file)
+    return [groups[number] for number in sorted(kept)]
+
+
+def _horizontal(group: Sequence[Component]) -> list[Component]:
+    return [one for one in group if not one.is_vertical]
+
+
+def _note_names_of_one_day(rows: Sequence[dict[str, Any]], draft: CatalogueDraft) -> None:
+    """Note days of which several earthquakes are named: they may be one under two names."""
+    by_day: dict[str, dict[str, str]] = {}
+    for row in rows:
+        if len(str(row["date"])) == len("1976-05-06"):
+            by_day.setdefault(str(row["date"]), {}).setdefault(str(row["event"]), str(row["file"]))
+    for day, events in by_day.items():
+        if len(events) > 1:
+            one, other = list(events)[:2]
+            draft.note(
+                events[other],
+                f"its earthquake is {other!r}, that of {events[one]} on the same day ({day}) {one!r}; if they "
+                "are one, give it one name in the column event",
+            )
 
 
 def _look_through(
     path: Path, unit: str | None, dt: float | None, folder: Path, draft: CatalogueDraft
 ) -> tuple[list[Component], list[PeerRecord]]:
     """Return the components below a path and what PEER says of them."""
-    files = files_of(path) if path.is_dir() else [path]
+    files = [file for file in files_of(path) if not is_catalogue(file)] if path.is_dir() else [path]
     components: list[Component] = []
     for file in files:
         components += _components(file, unit, dt, folder, draft)
@@ -182,6 +272,11 @@ def _components(
         return []
     draft.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
     relative = Path(os.path.relpath(file, folder)).as_posix()
+    if not relative.isprintable():
+        draft.errors.append(
+            f"{printable(relative)}: its name has characters that no table shows; rename the file"
+        )
+        return []
     found = []
     for number, channel in enumerate(record.channels, start=1):
         own = [c for c in record.channels if c.member == channel.member]
@@ -201,13 +296,16 @@ def _components(
             several=len(own) > 1,
             unit=unit or "" if needs_unit else "",
             dt_given=dt_given,
+            container=str(file) if channel.member else "",
         )
         try:
             motion = motion_of(record, channel, unit if needs_unit else None)
         except InputError as error:
             draft.errors.append(str(error))
             continue
-        found.append(replace(component, facts=dict(motion.metadata), doubts=tuple(doubts(motion))))
+        digest = sha256(motion.acceleration.tobytes() + repr(motion.dt).encode()).hexdigest()
+        facts = dict(motion.metadata)
+        found.append(replace(component, facts=facts, digest=digest, doubts=tuple(doubts(motion))))
     return found
 
 
@@ -251,7 +349,7 @@ def _peer_rows(
     vertical = component(listed.vertical)
     for name, one in zip((listed.first, listed.second), horizontal, strict=True):
         if name and one is None:
-            draft.warnings.append(f"RSN{listed.number}: {name} is listed but not among the files")
+            draft.note(f"RSN{listed.number}", f"{name} is listed but not among the files")
     facts = {
         "event": f"{listed.event} {listed.year}".strip(),
         "date": listed.year if re.fullmatch(r"\d{4}", listed.year) else "",
@@ -273,14 +371,15 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     """Group components of one record: in one file, of one station and time, of like names."""
 
     def in_file(one: Component) -> tuple[object, ...] | None:
-        return (one.path, one.sha256) if one.several else None
+        return (one.container, one.path, one.sha256) if one.several else None
 
     def in_time(one: Component) -> tuple[object, ...] | None:
         station, start = one.facts.get("station"), one.facts.get("start_time")
         return (one.facts.get("network"), station, start) if station and start else None
 
     def in_name(one: Component) -> tuple[object, ...] | None:
-        return (str(Path(one.path).parent), one.stem) if one.stem != one.name else None
+        folder = str(Path(one.path).parent)
+        return (one.container, folder, one.stem) if one.stem != one.name else None
 
     groups: list[list[Component]] = []
     left = list(components)
@@ -290,7 +389,8 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
             named = key(one)
             if named is not None:
                 by_key.setdefault(named, []).append(one)
-        for group in by_key.values():
+        for several in by_key.values():
+            group = list({one.digest: one for one in reversed(several)}.values())[::-1]
             if _is_record(group):
                 groups.append(group)
                 left = [one for one in left if one not in group]
@@ -317,9 +417,9 @@ def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str
     flat = [one for one in group if not one.is_vertical]
     upright = next((one for one in group if one.is_vertical), None)
     if not flat and upright is not None:
-        draft.warnings.append(f"{upright.file}: a vertical component of no record here; left out")
+        draft.note(upright.file, "a vertical component of no record here; left out")
     if len(flat) == 1:
-        draft.warnings.append(f"{flat[0].file}: its other horizontal component was not found")
+        draft.note(flat[0].file, "its other horizontal component was not found")
     return [
         _row(one, next((o for o in flat if o is not one), None), upright, draft) for one in flat
     ]
@@ -328,17 +428,16 @@ def _rows_of(group: Sequence[Component], draft: CatalogueDraft) -> list[dict[str
 def _row(
     one: Component, other: Component | None, vertical: Component | None, draft: CatalogueDraft
 ) -> dict[str, Any]:
-    draft.warnings += [f"{one.file}: {doubt}" for doubt in one.doubts]
+    for doubt in one.doubts:
+        draft.note(one.file, doubt)
     if other is not None and one.file < other.file and abs(one.npts - other.npts) > 0.1 * one.npts:
-        draft.warnings.append(
-            f"{one.file}: {one.npts} samples, but {other.npts} in {other.file} of the same record"
+        draft.note(
+            one.file, f"{one.npts} samples, but {other.npts} in {other.file} of the same record"
         )
     event = str(one.facts.get("event") or "")
     if not event:
         event = one.stem
-        draft.warnings.append(
-            f"{one.file}: its earthquake is not stated; the column event has {event!r}"
-        )
+        draft.note(one.file, f"its earthquake is not stated; the column event has {event!r}")
     return {
         "name": f"{one.name} {one.facts.get('channel', '')}".strip() if one.several else one.name,
         "event": event,
@@ -380,11 +479,3 @@ def _name_uniquely(rows: list[dict[str, Any]]) -> None:
             name, number = f"{base} {number}", number + 1
         seen.add(name)
         row["name"] = name
-
-
-def _warn_of_copies(rows: list[dict[str, Any]], draft: CatalogueDraft) -> None:
-    by_digest: dict[str, str] = {}
-    for row in rows:
-        digest, file = row["sha256"], row["file"]
-        if "#" not in file and by_digest.setdefault(digest, file) != file:
-            draft.warnings.append(f"{file}: the same bytes as {by_digest[digest]}")

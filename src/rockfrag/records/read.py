@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
+from rockfrag.plain_text import printable
 from rockfrag.records.digest import sha256_of
+from rockfrag.records.doubts import STRONGEST_G
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.identify import identify
 from rockfrag.records.motion import Motion
@@ -94,7 +96,7 @@ def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[
         name, channels = found.name, found.channels(path, dt, cut_short)
     if dt is not None and any(abs(channel.dt - dt) > _SAME_STEP * dt for channel in channels):
         raise InputError(
-            f"{path}: the file states dt = {channels[0].dt:g} s, not {dt:g} s; leave dt out."
+            f"{path}: the file states dt = {channels[0].dt:g} s, not {dt:g} s; leave dt= out."
         )
     return name, channels
 
@@ -160,6 +162,7 @@ def read_motion(
     channel: str | None = None,
     dt: float | None = None,
     cut_short: bool = False,
+    force: bool = False,
 ) -> Motion:
     """Read one component of acceleration from a record of any known format.
 
@@ -176,6 +179,8 @@ def read_motion(
         Sampling interval [s]; wanted where plain text does not state it.
     cut_short
         Whether to read what there is of a file with fewer samples than its header promises.
+    force
+        Whether to take ``unit`` as given although the peak is then above 3 g.
 
     Returns
     -------
@@ -191,7 +196,7 @@ def read_motion(
         acceleration.
     """
     record = read_record(path, dt, cut_short)
-    return motion_of(record, choose_channel(record, channel), unit)
+    return motion_of(record, choose_channel(record, channel), unit, force)
 
 
 def choose_channel(record: Record, wanted: str | None) -> Channel:
@@ -222,22 +227,32 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
     raise InputError(f"{record.name}: {problem} to {wanted!r}; there are {_listed(record)}.")
 
 
-def motion_of(record: Record, channel: Channel, unit: str | None = None) -> Motion:
+def motion_of(
+    record: Record, channel: Channel, unit: str | None = None, force: bool = False
+) -> Motion:
     """Return one channel of a record as a motion in m/s².
+
+    Parameters
+    ----------
+    record, channel
+        What was read, and which channel of it.
+    unit, force
+        As of :func:`read_motion`.
 
     Raises
     ------
     InputError
-        If the unit is neither stated nor given, or given otherwise than stated.
+        If the unit is neither stated nor given, or given otherwise than stated, or would make the peak
+        larger than those of records.
     """
     samples = channel.samples()
     stored = _settled_unit(record, channel, samples, unit)
     factor = TO_SI[stored]
-    acceleration = samples * factor
+    acceleration = _in_si(record, samples, factor)
     steps: list[dict[str, Any]] = [
         {
             "step": "read",
-            "file": Path(record.name).name,
+            "file": printable(Path(record.name).name),
             "sha256": record.sha256,
             "format": record.format,
             "channel": channel.label,
@@ -252,8 +267,11 @@ def motion_of(record: Record, channel: Channel, unit: str | None = None) -> Moti
     if offset:
         acceleration = acceleration - offset
         steps.append({"step": "remove zero level", "offset_m_s2": offset})
+    if not channel.unit and not force:
+        _check_peak(record, acceleration, stored)
     own = channel.member or record.name.rpartition("#")[2]
     stem = Path(own).name.removesuffix(".gz").rsplit(".", 1)[0]
+    stem = printable(stem)
     several = len(record.channels) > 1
     return Motion(
         acceleration=acceleration,
@@ -262,6 +280,30 @@ def motion_of(record: Record, channel: Channel, unit: str | None = None) -> Moti
         metadata=_metadata(record, channel, stored),
         provenance=tuple(steps),
     )
+
+
+def _in_si(record: Record, samples: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+    """Return samples in m/s², all of them finite numbers."""
+    with np.errstate(over="ignore"):
+        acceleration = samples * factor
+    wrong = np.flatnonzero(~np.isfinite(acceleration))
+    if wrong.size:
+        first = int(wrong[0])
+        raise InputError(
+            f"{record.name}: sample {first + 1} of {samples.size} is {samples[first]:g}, which is no "
+            "acceleration; mend the file."
+        )
+    return acceleration
+
+
+def _check_peak(record: Record, acceleration: NDArray[np.float64], unit: str) -> None:
+    """Refuse a peak that hardly any record has where the unit is what the user says it is."""
+    peak = float(np.abs(acceleration).max())
+    if peak > STRONGEST_G * GRAVITY:
+        raise InputError(
+            f"{record.name}: in {unit} its peak would be {peak / GRAVITY:.3g} g, above {STRONGEST_G:g} g; give "
+            f"the unit of the numbers, or, if it is {unit}, say so with force=True or in the file."
+        )
 
 
 def _archive_facts(record: Record, channel: Channel) -> dict[str, Any]:

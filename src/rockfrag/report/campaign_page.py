@@ -21,7 +21,7 @@ from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import FIGURES, draw, write_captions
 from rockfrag.report.wording import counted, estimate, listed, number, of_all, probability, sentence
 from rockfrag.stages.campaign import OURS, TABLES
-from rockfrag.stages.digest import source_digest
+from rockfrag.stages.digest import package_digest
 from rockfrag.study.campaign import CampaignStudy
 
 
@@ -63,7 +63,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
             "Configuration": study.source.name,
             "Tests": study.tests.name,
             "Seed": str(study.seed),
-            "Source": f"rockfrag {version('rockfrag')}, digest {source_digest('rockfrag.guests')}",
+            "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
         },
         basis="measured",
     )

@@ -29,6 +29,8 @@ from rockfrag.figure_style import (
 from rockfrag.files import file_name
 from rockfrag.motions.intensity import PREDOMINANT_PERIODS, pgd, pgv
 from rockfrag.motions.spectra import fourier_amplitude, oscillator_matrix, response_spectrum
+from rockfrag.plain_text import printable
+from rockfrag.records.catalogue import is_catalogue
 from rockfrag.records.doubts import doubts
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
@@ -69,6 +71,7 @@ def describe_files(
     paths: Iterable[str | os.PathLike[str]],
     unit: str | None = None,
     dt: float | None = None,
+    force: bool = False,
 ) -> pd.DataFrame:
     """Describe every channel of every file, folders and archives searched through, in order of name.
 
@@ -80,6 +83,8 @@ def describe_files(
         Unit of the samples of the files that do not state theirs.
     dt
         Sampling interval [s] of plain text that does not state it.
+    force
+        Whether to take ``unit`` as given although a peak is then above 3 g.
 
     Returns
     -------
@@ -91,7 +96,7 @@ def describe_files(
     """
     rows: list[dict[str, Any]] = []
     for path in _files(paths):
-        rows.extend(_describe(path, unit, dt))
+        rows.extend(_describe(path, unit, dt, force))
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["npts"] = table["npts"].astype("Int64")
     for column in ("doubts", "error"):
@@ -100,12 +105,14 @@ def describe_files(
 
 
 def _files(paths: Iterable[str | os.PathLike[str]]) -> list[Path]:
-    return [
-        file for path in map(Path, paths) for file in (files_of(path) if path.is_dir() else [path])
-    ]
+    found: list[Path] = []
+    for path in map(Path, paths):
+        inside = files_of(path) if path.is_dir() else [path]
+        found += [file for file in inside if not (path.is_dir() and is_catalogue(file))]
+    return found
 
 
-def _describe(path: Path, unit: str | None, dt: float | None) -> list[dict[str, Any]]:
+def _describe(path: Path, unit: str | None, dt: float | None, force: bool) -> list[dict[str, Any]]:
     record: Record | None = None
     problem: InputError | None = None
     # the named interval is for files that do not state theirs
@@ -117,19 +124,19 @@ def _describe(path: Path, unit: str | None, dt: float | None) -> list[dict[str, 
                 problem = error
     if record is None:
         return [_error_row(str(path), problem)]
-    rows = [_row(record, number, unit) for number in range(len(record.channels))]
+    rows = [_row(record, number, unit, force) for number in range(len(record.channels))]
     return rows + [_error_row(f"{path}#{name}", error) for name, error in record.left_out]
 
 
 def _error_row(file: str, error: InputError | None) -> dict[str, Any]:
     status = NOT_ACCELERATION if isinstance(error, NotAcceleration) else UNREADABLE
-    return {"file": file, "error": str(error), "status": status}
+    return {"file": printable(file), "error": str(error), "status": status}
 
 
-def _row(record: Record, number: int, unit: str | None) -> dict[str, Any]:
+def _row(record: Record, number: int, unit: str | None, force: bool) -> dict[str, Any]:
     channel = record.channels[number]
     row: dict[str, Any] = {
-        "file": f"{record.name}#{channel.member}" if channel.member else record.name,
+        "file": printable(f"{record.name}#{channel.member}" if channel.member else record.name),
         "format": record.format,
         "station": channel.station,
         "channel": channel.code or channel.component,
@@ -143,7 +150,7 @@ def _row(record: Record, number: int, unit: str | None) -> dict[str, Any]:
     }
     try:
         # the named unit is for files that do not state theirs
-        motion = motion_of(record, channel, None if channel.unit else unit)
+        motion = motion_of(record, channel, None if channel.unit else unit, force)
     except InputError as error:
         return row | {"error": str(error), "status": UNREADABLE}
     return row | {
@@ -161,6 +168,7 @@ def draw_files(
     folder: str | os.PathLike[str],
     unit: str | None = None,
     dt: float | None = None,
+    force: bool = False,
 ) -> list[Path]:
     """Draw every channel of every file that can be read into a folder, and return the pictures."""
     drawn: list[Path] = []
@@ -169,7 +177,7 @@ def draw_files(
             try:
                 record = read_record(path, given)
                 motions = [
-                    motion_of(record, channel, None if channel.unit else unit)
+                    motion_of(record, channel, None if channel.unit else unit, force)
                     for channel in record.channels
                 ]
             except InputError:

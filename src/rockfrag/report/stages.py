@@ -1,14 +1,11 @@
-"""Reports of studies that are not of a simulated kind: a table of tests, a campaign on a shake table."""
+"""Stages that write reports: of a study, of a table of tests, of a campaign on a shake table."""
 
-from rockfrag.stages.campaign import TABLES
-from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.measured_table import MeasuredTable
 
-MEASURED_TABLES = ("tests", "fragility", "recommendation", "bins", "goodness")
 
-
-def _measured_table(job: Job[MeasuredTable]) -> Results:
+def measured_table(job: Job[MeasuredTable]) -> Results:
     """Yield the fitted tables; draw the figures and write the report."""
     from rockfrag.fragility.user_table import fit_user_table
     from rockfrag.report.measured_page import result_tables, write_measured_report
@@ -30,28 +27,10 @@ def _measured_table(job: Job[MeasuredTable]) -> Results:
     job.log.info("%s", found.choice.words)
 
 
-MEASURED_TABLE = Stage(
-    name="measured_table",
-    run=_measured_table,
-    files=lambda study: [str(study.table)],
-    outputs=(*MEASURED_TABLES, "figures/", "report.html"),
-    settings=("title", "seed", "table", "columns", "measures", "confidence", "replicates"),
-)
-
-
-def _campaign_report(job: Job[CampaignStudy]) -> Results:
+def campaign_report(job: Job[CampaignStudy]) -> Results:
     """Draw the figures of a campaign and write its page."""
     from rockfrag.report.campaign_page import write_campaign_report
 
     write_campaign_report(job.study, job.folder)
     job.log.info("%s", job.folder / "report.html")
     yield from ()
-
-
-CAMPAIGN_REPORT: Stage[CampaignStudy] = Stage(
-    name="campaign_report",
-    run=_campaign_report,
-    inputs=TABLES,
-    outputs=("figures/", "report.html"),
-    settings=("title", "conditioning", "confidence"),
-)

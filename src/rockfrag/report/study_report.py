@@ -83,16 +83,21 @@ def write_captions(answer: Answer, sections: Sequence[Section], folder: Path) ->
 
 def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int) -> dict[str, Picture]:
     """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
-    pictures = in_processes(lambda spec: draw(spec, folder).svg, specs, processes)
-    return {spec.name: Picture(spec, svg) for spec, svg in zip(specs, pictures, strict=True)}
+    # what processes hand over should be small: the name of a file, and not what is in it
+    files = in_processes(lambda spec: _drawn(spec, folder), specs, processes)
+    return {spec.name: read_picture(spec, file) for spec, file in zip(specs, files, strict=True)}
 
 
 def draw(spec: FigureSpec, folder: Path) -> Picture:
     """Draw a figure into a folder as SVG and PNG, and return it for the page."""
+    return read_picture(spec, _drawn(spec, folder))
+
+
+def _drawn(spec: FigureSpec, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     svg = folder / f"{spec.name}.svg"
     save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
-    return read_picture(spec, svg)
+    return svg
 
 
 def study_page(

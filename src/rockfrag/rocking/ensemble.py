@@ -389,7 +389,11 @@ def _fill_with_friction(result: EnsembleResult, setting: _Setting, standing: Sta
     moving = Moving(setting.motions, setting.vertical, setting.dts, setting.factors)
     wanted = np.ones(result.overturned.shape, dtype=bool)
     found = contact_outcomes(standing, moving, wanted, setting.g, setting.step, setting.threads)
-    other = (found["slid"].max(axis=-1) > 0) | (found["flights"] > 0) | (found["paradoxes"] > 0)
+    other = (
+        (found["slid"].max(axis=-1) > 0)
+        | (found["flights"].sum(axis=-1) > 0)
+        | (found["paradoxes"] > 0)
+    )
     for i, body in enumerate(standing.bodies):
         _fill_contact(result, (i, *np.nonzero(other[i])), found[i][other[i]], body)
 
@@ -409,7 +413,7 @@ def _fill_contact(
     result.peak_rotation_pedestal[place] = np.where(fell == 1, np.inf, below)
     result.peak_velocity[place] = found["peak_speed"][:, top]
     result.impacts[place] = found["impacts"]
-    result.flights[place] = found["flights"]
+    result.flights[place] = found["flights"].sum(axis=-1)
     result.closest_approach[place] = np.nan
     for k, name in enumerate(("ground", "interface")):
         getattr(result, f"slip_{name}")[place] = found["slip"][:, k]

@@ -1,47 +1,346 @@
-"""A campaign on a shake table: every test simulated with the table's own motion, and compared."""
+"""The tables of a campaign on a shake table, from the table of tests to comparisons."""
 
-from rockfrag.stages.stage import Job, Results, Stage
-from rockfrag.study.campaign import CampaignStudy
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.campaign.comparison import (
+    agreement_row,
+    by_region,
+    fragility_beside,
+    judged_tests,
+    paired_row,
+)
+from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
+from rockfrag.campaign.table_motions import missing_motions, table_motions
+from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
+from rockfrag.campaign.thresholds import cross_validated_threshold
+from rockfrag.campaign.trials import Trials, sample_trials
+from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
+from rockfrag.campaign.verdicts import simulate_tests
+from rockfrag.errors import InputError
+from rockfrag.motions.filtering import highpass
+from rockfrag.motions.intensity import pga, pgv
+from rockfrag.motions.processing import process
+from rockfrag.motions.pulses import commanded_cosine
+from rockfrag.motions.scaling import scale_to_pga
+from rockfrag.records.motion import Motion
+from rockfrag.records.sources.url import fetch_url
+from rockfrag.stages.job import Job, Results
+from rockfrag.study.campaign import PULSE_MEASURES, CampaignStudy
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import Shape, read_shape
+from rockfrag.units import GRAVITY
 
 OURS = "rockfrag"
 """Who gave the simulated verdicts, in the tables."""
 
 TABLES = (
-    "tests",
-    "trials",
-    "agreement",
-    "rocking",
-    "fragility",
-    "regions",
-    "conditioning",
-    "contact",
-    "footprint",
+    *("tests", "trials", "agreement", "rocking", "fragility"),
+    *("regions", "conditioning", "contact", "footprint"),
 )
 
+VARIED_SHARE = 4
+"""Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
+REPLICATES = 400
+DRIFT_CORNER_HZ = 0.1
+"""High-pass before a measured motion is integrated: its noise would drift."""
 
-def _run(job: Job[CampaignStudy]) -> Results:
-    from rockfrag.stages.campaign_results import campaign_tables
 
-    yield from campaign_tables(job)
+def run(job: Job[CampaignStudy]) -> Results:
+    """Yield the tables of the campaign (``TABLES``), each as soon as it is there."""
+    study = job.study
+    campaign, motions = _campaign_with_motions(job)
+    thing = object_of(study)
+    trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
+    verdicts, rocked = simulate_tests(trials, motions, job.threads)
+    tests = campaign.tests
+    measured = tests[MEASURED].to_numpy()
+    groups = pd.factorize(tests["group"])[0]
+    validated = _validated(study, verdicts, measured, groups)
+    job.log.info(
+        "%d tests under %d motions: %.1f %% of the verdicts right",
+        len(tests), groups.max() + 1, 100 * (validated.verdicts == measured).mean(),
+    )  # fmt: skip
+    yield "tests", judged_tests(tests, validated, measured)
+    yield "trials", _judged_trials(trials, verdicts, measured, groups)
+    yield "agreement", _agreement(study, campaign, validated, groups)
+    yield "rocking", _rocking(study, campaign, verdicts, rocked, groups)
+    yield "fragility", _fragility(study, campaign, validated, groups)
+    first, second = (*campaign.measures, campaign.measures[0])[:2]
+    yield "regions", by_region(tests, first, second, validated.verdict, measured)
+    yield "conditioning", _conditioning(job, campaign, thing, validated, groups)
+    yield "contact", _contact(study, thing, trials, verdicts, measured)
+    yield "footprint", _footprint(study, thing, trials, verdicts == measured, groups)
 
 
-STAGE: Stage[CampaignStudy] = Stage(
-    name="campaign",
-    run=_run,
-    files=lambda study: study.files,
-    outputs=TABLES,
-    settings=(
-        "seed",
-        "fetch",
-        "campaign",
-        "object",
-        "conditioning",
-        "varied_conditioning",
-        "unknowns",
+def _campaign_with_motions(job: Job[CampaignStudy]) -> tuple[Campaign, list[Motion]]:
+    """Read the table of tests and the motion of each, scaled where the table says so."""
+    study = job.study
+    for public in study.fetch:
+        fetch_url(public.url, public.sha256, public.path)
+    campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
+    if study.leave_out:
+        absent = missing_motions(study.motions, list(campaign.tests["motion"]))
+        campaign = campaign.only(~campaign.tests["motion"].isin(absent))
+        job.log.info("%d tests without a motion are left out", len(absent))
+        if campaign.tests.empty:
+            raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
+    motions = _motions(study, campaign, study.conditioning)
+    if not campaign.measures:
+        campaign = Campaign(
+            _measured(campaign.tests, motions), ("pga_g", "pgv_cm_s"), campaign.codes
+        )
+    return campaign, motions
+
+
+def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> list[Motion]:
+    if study.pulse_cycles:
+        settings = campaign.tests[list(PULSE_MEASURES)].to_numpy()
+        return [
+            process(commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles), conditioning)
+            for a, ratio in settings
+        ]
+    motions = table_motions(
+        study.motions,
+        list(campaign.tests["motion"]),
+        unit=study.unit,
+        dt=study.dt_s,
+        channel=study.channel,
+        conditioning=conditioning,
+    )
+    peaks = campaign.tests["amplitude_g"]
+    return [
+        motion if np.isnan(peak) else scale_to_pga(motion, peak)
+        for motion, peak in zip(motions, peaks, strict=True)
+    ]
+
+
+def _measured(tests: pd.DataFrame, motions: list[Motion]) -> pd.DataFrame:
+    """Intensity of the motions themselves, where the table of tests has none."""
+    return tests.assign(
+        pga_g=[pga(one) / GRAVITY for one in motions],
+        pgv_cm_s=[100 * pgv(highpass(one, DRIFT_CORNER_HZ)) for one in motions],
+    )
+
+
+def object_of(study: CampaignStudy) -> Shape | Block:
+    """Return the object: a shape from its mesh, or the planar block given by hand."""
+    given = study.object
+    if study.mesh is not None:
+        return read_shape(
+            study.mesh,
+            mass=given.get("mass_kg"),
+            density=given.get("density_kg_m3"),
+            metres_per_unit=given.get("metres_per_unit", 1.0),
+        )
+    return Block.from_edges(
+        given["left_m"],
+        given["right_m"],
+        cg_height=given["cg_height_m"],
+        height=given["height_m"],
+        mass=given["mass_kg"],
+        inertia=given["inertia_kg_m2"],
+    )
+
+
+def _validated(study: CampaignStudy, verdicts: Any, measured: Any, groups: Any) -> Validated:
+    return cross_validate(
+        verdicts, measured, groups, folds=study.folds, repeats=study.repeats, seed=study.seed
+    )
+
+
+def _judged_trials(trials: Trials, verdicts: Any, measured: Any, groups: Any) -> pd.DataFrame:
+    """Trials with their agreement over all tests: in sample, so it only shows where the plausible ones lie."""
+    right = (verdicts == measured).mean(axis=1)
+    plausible = plausible_trials(verdicts == measured, groups)
+    return trials.table.assign(right_in_sample=right, plausible=plausible).sort_values(
+        "right_in_sample", ascending=False, kind="stable", ignore_index=True
+    )
+
+
+def _agreement(
+    study: CampaignStudy, campaign: Campaign, validated: Validated, groups: Any
+) -> pd.DataFrame:
+    """Who is right how often: the simulation, thresholds on measures, other codes; each compared with ours."""
+    tests, level = campaign.tests, study.confidence
+    measured = tests[MEASURED].to_numpy()
+    rivals = {}
+    chosen = {"folds": study.folds, "repeats": study.repeats, "seed": study.seed}
+    for name in campaign.measures:
+        rivals[f"threshold on {name}"] = cross_validated_threshold(
+            tests[name].to_numpy(), measured, groups, **chosen
+        )
+    if len(campaign.measures) > 1:
+        both = list(campaign.measures[:2])
+        rivals[f"probit on {' and '.join(both)}"] = cross_validated_threshold(
+            tests[both].to_numpy(), measured, groups, **chosen
+        )
+    codes = {f"code {name}": campaign.codes[name].to_numpy() for name in campaign.codes}
+    rows = [agreement_row(OURS, validated.verdicts, measured, groups, level)]
+    if (majority := majority_of_repeats(tests["motion"].to_numpy(), measured)) is not None:
+        rivals[REPEATS] = majority
+    for name, verdicts in {**rivals, **codes}.items():
+        row = agreement_row(name, verdicts, measured, groups, level)
+        row.update(paired_row(validated.verdicts, verdicts, measured, groups, level, study.seed))
+        rows.append(row)
+    table = pd.DataFrame(rows)
+    judged = dict.fromkeys(codes, "as given") | {REPEATS: "by repeats of the same test"}
+    table["judged"] = table["who"].map(judged).fillna("by other motions")
+    return table
+
+
+def _rocking(
+    study: CampaignStudy, campaign: Campaign, verdicts: Any, rocked: Any, groups: Any
+) -> pd.DataFrame:
+    """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
+    columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
+    if "rocked" not in campaign.tests:
+        return pd.DataFrame(columns=columns)
+    found = cross_validate(
+        verdicts,
+        campaign.tests[MEASURED].to_numpy(),
+        groups,
+        folds=study.folds,
+        repeats=study.repeats,
+        seed=study.seed,
+        asked=rocked,
+    )
+    noted = campaign.tests["rocked"].to_numpy()
+    return pd.DataFrame([agreement_row(OURS, found.verdicts, noted, groups, study.confidence)])
+
+
+def _fragility(
+    study: CampaignStudy, campaign: Campaign, validated: Validated, groups: Any
+) -> pd.DataFrame:
+    measured = campaign.tests[MEASURED].to_numpy()
+    parts = [
+        fragility_beside(
+            campaign.tests[name].to_numpy(),
+            measured,
+            {OURS: validated.verdict},
+            groups,
+            level=study.confidence,
+            replicates=REPLICATES,
+            seed=study.seed,
+        ).assign(measure=name)
+        for name in campaign.measures
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def _conditioning(
+    job: Job[CampaignStudy], campaign: Campaign, thing: Any, validated: Validated, groups: Any
+) -> pd.DataFrame:
+    """What other ways of conditioning the motions would have given, with a part of the trials."""
+    study = job.study
+    measured = campaign.tests[MEASURED].to_numpy()
+    rows = [
+        {
+            **agreement_row(
+                "as configured", validated.verdicts, measured, groups, study.confidence
+            ),
+            "trials": study.trials,
+        }
+    ]
+    fewer = max(16, study.trials // VARIED_SHARE)
+    trials = sample_trials(thing, study.unknowns, fewer, study.seed)
+    for name, steps in {
+        "as configured, fewer trials": study.conditioning,
+        **study.varied_conditioning,
+    }.items():
+        verdicts, _ = simulate_tests(trials, _motions(study, campaign, steps), job.threads)
+        found = _validated(study, verdicts, measured, groups)
+        rows.append(
+            {
+                **agreement_row(name, found.verdicts, measured, groups, study.confidence),
+                "trials": fewer,
+            }
+        )
+        job.log.info("conditioning %s", name)
+    return pd.DataFrame(rows).rename(columns={"who": "conditioning"})
+
+
+SCANS = 50
+
+
+def _contact(
+    study: CampaignStudy, thing: Shape | Block, trials: Trials, verdicts: Any, measured: Any
+) -> pd.DataFrame:
+    """How base and verdicts depend on the contact tolerance; the critical angle with scans repeated."""
+    columns = [
+        "contact_tolerance_mm",
+        "worst_direction_deg",
+        "alpha_deg",
+        "alpha_lower_deg",
+        "alpha_upper_deg",
         "trials",
-        "folds",
-        "repeats",
-        "confidence",
-    ),
-    parallel=True,
-)
+        "width_m",
+        "overturned",
+        "right",
+    ]
+    if isinstance(thing, Block):
+        return pd.DataFrame(columns=columns, dtype=float)
+    low, high = study.unknowns["contact_tolerance_mm"]
+    scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
+    rng = np.random.default_rng(study.seed)
+    rows = []
+    tolerances = np.geomspace(low, high, 8)
+    tried = trials.table["contact_tolerance_mm"].to_numpy()
+    nearest = np.abs(np.log(tried[:, None] / tolerances)).argmin(axis=1)
+    width = (trials.table["left_m"] + trials.table["right_m"]).to_numpy()
+    for number, tolerance in enumerate(tolerances):
+        try:
+            direction, angle = thing.worst_direction(tolerance / 1e3)
+        except InputError:
+            continue
+        angles = (
+            [_worst_angle(thing.scanned_again(scan, rng), tolerance) for _ in range(SCANS)]
+            if scan
+            else [angle]
+        )
+        limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
+        near = nearest == number
+        found = (
+            [
+                near.sum(),
+                width[near].mean(),
+                verdicts[near].mean(),
+                (verdicts[near] == measured).mean(),
+            ]
+            if near.any()
+            else [0, float("nan"), float("nan"), float("nan")]
+        )
+        rows.append([tolerance, direction, np.degrees(angle), *limits, *found])
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _footprint(
+    study: CampaignStudy, thing: Shape | Block, trials: Trials, right: Any, groups: Any
+) -> pd.DataFrame:
+    """Seen from above, about the centre of gravity: outline, and what carries within the plausible tolerances."""
+    columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]
+    if isinstance(thing, Block):
+        return pd.DataFrame(columns=columns)
+    likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
+    parts = [("outline", float("nan"), thing.outline)]
+    for name, share in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
+        tolerance = float(likely.quantile(share))
+        parts.append((name, tolerance, thing.contact_polygon(tolerance / 1e3)))
+    return pd.concat(
+        [
+            pd.DataFrame(
+                {"what": name, "contact_tolerance_mm": tolerance, "x_m": xy[:, 0], "y_m": xy[:, 1]}
+            )
+            for name, tolerance, xy in parts
+        ],
+        ignore_index=True,
+    )
+
+
+def _worst_angle(shape: Shape, tolerance_mm: float) -> float:
+    try:
+        return shape.worst_direction(tolerance_mm / 1e3)[1]
+    except InputError:
+        return float("nan")

@@ -8,8 +8,8 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.stages.job import Job, Results
 from rockfrag.stages.protocol import protocol_of
-from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 from rockfrag.system.blocks import Stack
 
@@ -262,25 +262,3 @@ def _in_order(effects: pd.DataFrame) -> pd.DataFrame:
     table = effects.assign(number=number, place=pd.factorize(effects["factor"])[0])
     table = table.sort_values(["place", "number"], kind="stable", ignore_index=True)
     return table.drop(columns=["number", "place"])
-
-
-STAGE = Stage(
-    name="explanation",
-    run=run,
-    wanted=lambda study: study.more.explanation is not None,
-    inputs=("motions/floors.parquet",),
-    files=lambda study: study.body_files,
-    outputs=lambda study: (
-        "explanation/ratios",
-        "explanation/effects",
-        *(["explanation/inversion"] if _asks_for_an_effect(study) else []),
-        *(
-            ["explanation/friction_ratios", "explanation/friction"]
-            if _tries_friction(study)
-            else []
-        ),
-    ),
-    settings=("explanation", "bodies", "amplitudes", "protocol", "seed"),
-    parallel=True,
-    leaves_half=True,
-)

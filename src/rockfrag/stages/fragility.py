@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
+from rockfrag.stages.job import Job, Results
 from rockfrag.stages.measure_choice import CANDIDATES, measure_choice
-from rockfrag.stages.read_sweeps import sweeps_of
-from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.stages.read_sweeps import rows_of, sweeps_of
 from rockfrag.study.study import Study
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def run(job: Job[Study]) -> Results:
     yield "fragility_bins", _at_the_base(found.bins, several)
     yield "fragility_shares", _at_the_base(found.shares, several)
     yield "survival_windows", data.windows
+    yield from _two_measures(job, measures)
     choice = measure_choice(of_all, measures, settings.confidence, job.study.seed)
     yield "measure_choice", choice
     by_floor, floor_shares = floor_curves(
@@ -59,6 +60,24 @@ def run(job: Job[Study]) -> Results:
     )
     best = ", ".join(dict.fromkeys(choice.loc[choice["recommended"], "im"]))
     job.log.info("curves: %d; best measures: %s", len(found.curves), best or "none stands out")
+
+
+def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
+    """Fits in the pairs of measures that the study names; tables without rows where it names none."""
+    from rockfrag.fragility.sweeps import with_measures
+    from rockfrag.fragility.vector_tables import vector_tables
+
+    pairs = job.study.fragility.pairs
+    columns = list(dict.fromkeys(measure for pair in pairs for measure in pair))
+    tests = {}
+    for one in job.study.configurations if pairs else []:
+        rows = rows_of(sweeps_of(job, one))
+        tests[one.name] = with_measures(rows, measures, columns)
+    settings = job.study.fragility
+    found = vector_tables(tests, pairs, level=settings.confidence, seed=job.study.seed)
+    yield "fragility_two_measures", found.fits
+    yield "fragility_contours", found.contours
+    yield "fragility_cells", found.cells
 
 
 BY = ["configuration", "event", "floor", "motion"]
@@ -141,22 +160,3 @@ def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
     return table.assign(
         im=table["im"].replace({"PGA": "peak base acceleration", "PGV": "peak base velocity"})
     )
-
-
-STAGE = Stage(
-    name="fragility",
-    run=run,
-    inputs=lambda study: ("measures", "motions/records.parquet", *study.sweep_files),
-    outputs=(
-        "fragility",
-        "fragility_bands",
-        "fragility_bins",
-        "fragility_shares",
-        "survival_windows",
-        "measure_choice",
-        "fragility_floors",
-        "fragility_floors_shares",
-        "exports/",
-    ),
-    settings=("fragility", "seed", "bodies", "building", "friction", "vertical"),
-)

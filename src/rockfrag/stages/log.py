@@ -8,6 +8,7 @@ import re
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -83,6 +84,9 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 _FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 
+KILLED = "was killed or ran out of memory; run the study again, with fewer cores if it was memory"
+
+
 def in_words(error: Exception) -> str:
     """Say an error in a sentence; what a machine lacks is said so that its owner can mend it."""
     # PyArrow and others put the number of the system's error into their message
@@ -99,6 +103,8 @@ def in_words(error: Exception) -> str:
         return (
             "there is not enough memory; close other programs or use fewer cores, and run it again."
         )
+    if isinstance(error, BrokenExecutor):
+        return f"one of its processes {KILLED}"
     return f"{type(error).__name__}: {text}"
 
 

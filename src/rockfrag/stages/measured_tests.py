@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.stages.job import Job, Results
 from rockfrag.stages.pedestal import pedestal_tables
-from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 
 MEASURED_TABLES = (
@@ -119,15 +119,3 @@ def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFr
             continue
         rows.append(fragility_row(fit, {"configuration": name}, "step_tests", digest))
     return pd.DataFrame(rows) if rows else pd.DataFrame(columns=list(_CURVES))
-
-
-STAGE = Stage(
-    name="measured_tests",
-    small=True,
-    run=run,
-    wanted=lambda study: study.more.measured_tests is not None,
-    inputs=("tests",),
-    files=lambda study: [str(study.more.measured_tests), *study.body_files],
-    outputs=MEASURED_TABLES,
-    settings=("measured_tests", "fragility", "seed", "bodies"),
-)

@@ -8,7 +8,7 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
 
 LEFT_OUT = "left_out"
@@ -127,24 +127,3 @@ def on_the_ground(motion: Motion) -> Motion:
 
     metadata = {**motion.metadata, "floor": GROUND, "level": 0, "ground_motion": motion.name}
     return replace(motion, name=f"{motion.name}_{GROUND}", metadata=metadata)
-
-
-STAGE = Stage(
-    name="motions",
-    run=run,
-    files=lambda study: [
-        str(study.catalogue_file),
-        *study.record_files(RECORDS_FOLDER),
-        *([] if study.building_file is None else [str(study.building_file)]),
-    ],
-    outputs=lambda study: (
-        "motions/records.parquet",
-        "motions/ground.parquet",
-        *study.motion_sets,
-        "measures",
-        *([LEFT_OUT] if study.keep_going else []),
-        *([] if study.write_motions is None else [f"{WRITTEN}/"]),
-    ),
-    settings=("motions", "building", "write_motions", "keep_going", "vertical"),
-    parallel=True,
-)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 
 PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "mixed", "notes")
@@ -60,15 +60,3 @@ def pedestal_tables(
             labelled.insert(0, "reading", reading)
             parts[name].append(labelled)
     return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}
-
-
-STAGE = Stage(
-    name="pedestal",
-    small=True,
-    run=run,
-    wanted=lambda study: study.has_pairs,
-    inputs=("tests",),
-    files=lambda study: study.body_files,
-    outputs=[f"pedestal/{name}" for name in PEDESTAL_TABLES],
-    settings=("bodies", "seed"),
-)

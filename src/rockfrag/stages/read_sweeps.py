@@ -1,9 +1,12 @@
 """Reading the sweeps of a study for the stages behind them, part by part."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+import pandas as pd
 
 from rockfrag.shaketable.swept import Swept, read_swept
-from rockfrag.stages.stage import Job
+from rockfrag.stages.job import Job
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
 
@@ -16,3 +19,32 @@ def sweeps_of(
     jobs = range(study.sweep_jobs)
     files = (job.file(study.sweep_file(configuration, one)) for one in jobs)
     yield from read_swept(files, slid=slid)
+
+
+MOST_LEVELS = 200
+"""Intensity levels of a motion that stand in a table of tests; of more every so many-th does."""
+
+
+def rows_of(parts: Iterable[Swept]) -> pd.DataFrame:
+    """Put outcomes of sweeps into a table with a row a test.
+
+    Parameters
+    ----------
+    parts
+        Sweeps of one configuration.
+
+    Returns
+    -------
+    Columns ``event``, ``floor``, ``motion``, ``amplitude_g`` and ``overturned`` (0 or 1).
+    """
+    tables = []
+    for part in parts:
+        chosen = slice(None, None, -(-part.amplitude_g.size // MOST_LEVELS))
+        amplitude = part.amplitude_g[chosen]
+        about = part.about[["event", "floor", "motion"]]
+        rows = about.loc[about.index.repeat(amplitude.size)].reset_index(drop=True)
+        overturned = part.overturned[:, chosen].ravel().astype(np.int64)
+        tables.append(
+            rows.assign(amplitude_g=np.tile(amplitude, len(about)), overturned=overturned)
+        )
+    return pd.concat(tables, ignore_index=True)

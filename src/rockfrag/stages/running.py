@@ -2,13 +2,15 @@
 
 import os
 from collections.abc import Iterable, Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
+from rockfrag.processes import end_with
+from rockfrag.stages.job import Job
 from rockfrag.stages.log import logged
-from rockfrag.stages.stage import Job, Stage
 from rockfrag.study.loading import AnyStudy, any_study
 from rockfrag.study.records import check_records
 from rockfrag.study.study import Study
@@ -18,6 +20,9 @@ RESULTS = Path("results")
 
 OWNER = "configuration.txt"
 """File in a study's folder that names the configuration whose results these are."""
+
+RUN = "ROCKFRAG_RUN"
+"""Variable of the environment: the process of the run, with which its jobs end."""
 
 
 def prepared(content: Mapping[str, Any], path: str | os.PathLike[str]) -> tuple[AnyStudy, Path]:
@@ -66,31 +71,47 @@ def results_folder(study: AnyStudy) -> Path:
     return folder
 
 
-def run_stage(
-    name: str, stages: Iterable[Stage[Any]], study: Any, threads: int, log_file: str
+def run_job(
+    stage: str,
+    config: Mapping[str, Any],
+    study_file: str,
+    *,
+    inputs: Iterable[str],
+    outputs: Iterable[str],
+    part: int,
+    threads: int,
+    log_file: str,
 ) -> None:
-    """Run the stage called ``name`` and write what it yields.
+    """Run a stage of a study, as a job of the workflow does, and write what it yields.
 
     Parameters
     ----------
-    name
-        Name of the stage.
-    stages
-        Stages of the study.
-    study
-        The study.
+    stage
+        The function that computes the results: its module, a colon and its name.
+    config
+        The configuration as read.
+    study_file
+        The file it was read from.
+    inputs, outputs
+        Paths that the rule declares.
+    part
+        Number of the part of the motions, see :class:`rockfrag.stages.job.Job`.
     threads
         Threads that it may use.
     log_file
-        Path of its log.
+        Path of its log, whose stem names the job.
     """
-    stage = next(one for one in stages if one.name == name)
-    folder = RESULTS / study.name
-    with logged(log_file, name) as log:
+    if RUN in os.environ:
+        end_with(int(os.environ[RUN]))
+    module, _, function = stage.partition(":")
+    with logged(log_file, Path(log_file).stem) as log:
+        study = any_study(config, study_file)
+        folder = RESULTS / study.name
         write_text(f"{_named(study)}\n", folder / OWNER)
-        job = Job(study, stage, folder, threads, log)
-        for result, value in stage.run(job):
-            job.write(result, value)
+        declared = [frozenset(Path(path) for path in paths) for paths in (inputs, outputs)]
+        job = Job(study, folder, threads, log, part, *declared)
+        for name, value in getattr(import_module(module), function)(job):
+            job.write(name, value)
 
 
 def _named(study: AnyStudy) -> str:

@@ -1,7 +1,7 @@
 """The building as an axis: one of its assumptions changed at a time."""
 
+from rockfrag.stages.job import Job, Results
 from rockfrag.stages.protocol import protocol_of
-from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.study.study import Study
 from rockfrag.yaml_file import read_yaml
 
@@ -35,15 +35,3 @@ def run(job: Job[Study]) -> Results:
     laboratory = tests[tests["reading"] == READING]
     yield "building_sensitivity/means", mean_amplitudes_of(laboratory, by)
     job.log.info("buildings: %d", len(variants))
-
-
-STAGE = Stage(
-    name="building_sensitivity",
-    run=run,
-    wanted=lambda study: study.more.sensitivity is not None,
-    inputs=("motions/ground.parquet",),
-    files=lambda study: [str(study.building_file), *study.body_files],
-    outputs=("building_sensitivity/tests", "building_sensitivity/means"),
-    settings=("building_sensitivity", "building", "bodies", "amplitudes", "protocol", "friction"),
-    parallel=True,
-)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rockfrag.files import whole_file
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.swept import FALLEN
-from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
@@ -36,52 +36,27 @@ ROWS_AT_ONCE = 131_072
 FEWEST_AT_ONCE = 12
 """Motions shaken at a time are no fewer, to keep every core busy."""
 
-LONG_JOB = 2_000_000
-"""A job of more histories than this gets all cores that a machine has."""
+
+def run(job: Job[Study]) -> Results:
+    """Write the sweeps of all configurations; yield the outcomes under the motions as recorded."""
+    yield from run_part(job)
+    yield from run_as_recorded(job)
 
 
-def sweep_stages(study: Study) -> list[Stage[Study]]:
-    """Return the stages of the sweeps: one, or for many histories several that share the motions."""
-    jobs = study.sweep_jobs
-    if jobs == 1:
-        return [_stage("sweep", 0, [*study.sweep_files, "as_recorded"])]
-    parts = [
-        _stage(
-            f"sweep_{job:03d}",
-            job,
-            [study.sweep_file(one, job) for one in study.configurations],
-            parallel=study.histories > jobs * LONG_JOB,
-        )
-        for job in range(jobs)
-    ]
-    return [*parts, _stage("as_recorded", None, ["as_recorded"])]
+def run_part(job: Job[Study]) -> Results:
+    """Write the sweeps of all configurations under the job's part of the motions."""
+    _sweep_part(job)
+    yield from ()
 
 
-def _stage(
-    name: str, part: int | None, outputs: Sequence[str], parallel: bool = True
-) -> Stage[Study]:
-    """Return the stage of a part of the motions, or of the motions as recorded where it is None."""
-
-    def run(job: Job[Study]) -> Results:
-        if part is not None:
-            _sweep_part(job, part)
-        if "as_recorded" in outputs:
-            yield "as_recorded", _all_as_recorded(job)
-
-    return Stage(
-        name=name,
-        run=run,
-        inputs=lambda study: study.motion_sets,
-        files=lambda study: study.body_files,
-        outputs=outputs,
-        settings=("bodies", "amplitudes", "friction", "vertical"),
-        parallel=parallel,
-    )
+def run_as_recorded(job: Job[Study]) -> Results:
+    """Yield the outcomes under the motions as recorded."""
+    yield "as_recorded", _all_as_recorded(job)
 
 
-def _sweep_part(job: Job[Study], number: int) -> None:
+def _sweep_part(job: Job[Study]) -> None:
     """Write the sweep of every configuration under part of the motions, a few motions at a time."""
-    study = job.study
+    study, number = job.study, job.part
     part = (number, study.sweep_jobs)
     motions = job.motions("motions/floors", part)
     ups = job.motions("motions/vertical", part) if study.vertical else None

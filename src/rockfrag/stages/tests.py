@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import pandas as pd
 
 from rockfrag.shaketable.swept import Swept
+from rockfrag.stages.job import Job, Results
 from rockfrag.stages.read_sweeps import sweeps_of
 from rockfrag.stages.shaker import limited_tests, limits_table
-from rockfrag.stages.stage import Job, Results, Stage
 from rockfrag.stages.validity import sliding_table, validity_table
 from rockfrag.study.study import Study
 
@@ -49,23 +49,3 @@ def run(job: Job[Study]) -> Results:
         yield "sliding", sliding_table(files)
     censored = int((laboratory["censored"] != "none").sum())
     job.log.info("tests: %d, not overturned: %d", len(laboratory), censored)
-
-
-STAGE = Stage(
-    name="tests",
-    run=run,
-    inputs=lambda study: (*study.motion_sets, *study.sweep_files),
-    files=lambda study: [
-        *study.body_files,
-        *([] if study.more.shaker is None else [str(study.more.shaker_file)]),
-    ],
-    outputs=lambda study: (
-        "tests",
-        "mean_amplitudes",
-        "bodies",
-        "validity",
-        *(["sliding"] if study.slides else []),
-        *([] if study.more.shaker is None else ["shaker"]),
-    ),
-    settings=("bodies", "amplitudes", "protocol", "shaker", "friction", "vertical"),
-)

@@ -11,6 +11,9 @@ from rockfrag.files import is_file
 from rockfrag.schema import checked
 from rockfrag.study.steps import Steps, checked_steps
 
+PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
+"""Measures from which the motion of a commanded pulse follows."""
+
 CAMPAIGN_KEY = "campaign"
 """Key that only a study of a campaign has."""
 
@@ -40,6 +43,9 @@ class CampaignStudy:
         Table of tests, its columns, and a table of other programs' verdicts or None.
     motions, unit, dt_s, channel
         Where the table's motions are, and what their files do not state.
+    pulse_cycles
+        Cycles of the cosine that the table was told to make, where ``motions`` is empty because PGA and PGV/PGA of
+        each test tell its motion; 0 for measured motions.
     leave_out
         Whether tests without a motion are left out; otherwise they are refused.
     measures
@@ -63,6 +69,7 @@ class CampaignStudy:
     columns: Mapping[str, str]
     other_codes: Path | None
     motions: str
+    pulse_cycles: int
     unit: str | None
     dt_s: float | None
     channel: str | None
@@ -115,7 +122,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
     )
     fetched = {one.path for one in fetch}
     _check_object(source, thing, content["unknowns"])
-    _check_columns(source, campaign["columns"])
+    _check_columns(source, campaign["columns"], isinstance(campaign["motions"], Mapping))
     conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
     varied = {
         name: checked_steps(source, f"varied_conditioning.{name}", steps)
@@ -127,7 +134,12 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
                 f"{source}: key unknowns.{key}: expected the lowest value first"
                 f"{', above 0' if key == 'contact_tolerance_mm' else ''}, found [{low}, {high}]."
             )
-    motions = str(_beside(source, campaign["motions"]))
+    motions, pulse_cycles = "", 0
+    if isinstance(campaign["motions"], Mapping):
+        pulse_cycles = campaign["motions"].get("cycles", 1)
+        _check_pulses(source, campaign)
+    else:
+        motions = str(_beside(source, campaign["motions"]))
     if motions.endswith(".npz"):
         _existing(source, "campaign.motions", Path(motions), fetched)
     other = campaign.get("other_codes")
@@ -144,6 +156,7 @@ def campaign_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> C
         if other is None
         else _existing(source, "campaign.other_codes", _beside(source, other), fetched),
         motions=motions,
+        pulse_cycles=pulse_cycles,
         unit=campaign.get("unit"),
         dt_s=campaign.get("dt_s"),
         channel=campaign.get("channel"),
@@ -219,7 +232,31 @@ def _check_object(source: Path, thing: Mapping[str, Any], unknowns: Mapping[str,
         )
 
 
-def _check_columns(source: Path, columns: Mapping[str, str]) -> None:
+def _check_pulses(source: Path, campaign: Mapping[str, Any]) -> None:
+    """A commanded pulse follows from PGA and PGV/PGA of its test."""
+    missing = [name for name in PULSE_MEASURES if name not in campaign.get("measures", {})]
+    if missing:
+        raise InputError(
+            f"{source}: key campaign.measures: {missing[0]} is missing; a pulse follows from "
+            f"{PULSE_MEASURES[0]} and "
+            f"{PULSE_MEASURES[1]} of each test."
+        )
+    needless = [key for key in ("unit", "dt_s", "channel", "without_motion") if key in campaign]
+    if needless:
+        raise InputError(
+            f"{source}: key campaign.{needless[0]}: is of measured motions, and the motions here are pulses; "
+            f"leave it "
+            "out."
+        )
+
+
+def _check_columns(source: Path, columns: Mapping[str, str], pulses: bool) -> None:
+    if not pulses and "motion" not in columns:
+        raise InputError(
+            f"{source}: key campaign.columns.motion is missing; expected the column with the key or file name "
+            f"of the "
+            "table's motion."
+        )
     brackets = ("lower_g" in columns, "upper_g" in columns)
     if any(brackets) and not all(brackets):
         raise InputError(

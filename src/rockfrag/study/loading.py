@@ -131,7 +131,10 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         amplitudes=_amplitudes(source, content["amplitudes"]),
         protocol_step_percent=float(content["protocol"]["step_percent"]),
         fragility=FragilitySettings(
-            measures=tuple(content["fragility"]["measures"]),
+            measures=tuple(m for m in content["fragility"]["measures"] if isinstance(m, str)),
+            pairs=tuple(
+                (m[0], m[1]) for m in content["fragility"]["measures"] if isinstance(m, list)
+            ),
             confidence=content["fragility"]["confidence"],
         ),
         compare_with=content.get("compare_with"),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from rockfrag.errors import InputError
 from rockfrag.plausibility import peak_warning
+from rockfrag.records.catalogue import repeated_motions
 from rockfrag.study.study import RECORDS_FOLDER, Study
 
 _FOUND: dict[tuple[object, ...], list[str]] = {}
@@ -51,7 +52,7 @@ def _state(path: Path) -> tuple[str, int, int]:
 def _read_all(study: Study) -> list[str]:
     from rockfrag.motions.directions import motion_and_vertical, motion_of_row
 
-    warnings = []
+    warnings = [f"{study.catalogue_file}: {line}" for line in repeated_motions(study.catalogue)]
     folder = study.catalogue_file.parent
     for row in study.catalogue[study.catalogue["source"] == "folder"].to_dict("records"):
         where = f"{study.catalogue_file}, motion {row['name']}"

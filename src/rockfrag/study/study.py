@@ -38,6 +38,7 @@ class FragilitySettings:
     """How fragility is estimated: in which measures, and at which level the intervals are."""
 
     measures: tuple[str, ...]
+    pairs: tuple[tuple[str, str], ...]
     confidence: float
 
 

@@ -22,7 +22,13 @@ from rockfrag.plausibility import LARGEST_SIZE, MEAN_DENSITIES
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 
-MESH_ENDINGS = (".obj", ".ply", ".stl")
+MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
+
+Y_UP = (".glb", ".gltf")
+"""Formats whose specification says that y points up (glTF 2.0, section 3.4)."""
+
+FEWEST_CARRY = 3
+"""Points that make a polygon to stand on."""
 
 Array = NDArray[np.float64]
 
@@ -115,9 +121,18 @@ class Shape:
         except (QhullError, ValueError) as error:
             raise InputError(
                 f"{self.name}: within {1000 * tolerance:g} mm of its lowest point the mesh has "
-                f"{len(low)} point(s), which make no polygon to stand on; give a larger contact tolerance."
+                f"{len(low)} point(s), which make no polygon to stand on; {self._way_out(tolerance)}"
             ) from error
         return np.asarray(low[hull.vertices])
+
+    def _way_out(self, tolerance: float) -> str:
+        """What to do with a body that stands on too few points: it may lie on its side."""
+        for axis, up in ((1, "y"), (0, "x")):
+            heights = self.points[:, axis]
+            carry = int((heights <= heights.min() + tolerance).sum())
+            if carry >= FEWEST_CARRY:
+                return f"with {up} up it stands on {carry} points: give up='{up}'."
+        return "give a larger contact tolerance (contact_tolerance)."
 
     def edges(self, direction_deg: float, tolerance: float) -> Edges:
         """Return the edge distances for shaking along a direction.
@@ -211,17 +226,24 @@ def read_shape(
     mass: float | None = None,
     density: float | None = None,
     metres_per_unit: float = 1.0,
+    up: str | None = None,
+    hull: bool = False,
 ) -> Shape:
     """Read a closed surface and derive its mass properties.
 
     Parameters
     ----------
     path
-        Mesh as OBJ, PLY or STL with z up, standing on its lowest points.
+        Mesh as OBJ, PLY, STL or GLB, standing on its lowest points.
     mass, density
         Mass [kg] or density [kg/m³] of the body, taken as homogeneous; one of them.
     metres_per_unit
         Length of the mesh's unit [m].
+    up
+        Axis of the mesh that points up, ``"x"``, ``"y"`` or ``"z"``; by default z, and y in glTF files.
+    hull
+        Take the convex hull of the vertices, which closes a surface with holes and a cloud of points, and fills
+        what is hollow or undercut.
 
     Raises
     ------
@@ -231,7 +253,8 @@ def read_shape(
     """
     if (mass is None) == (density is None):
         raise InputError(f"{path}: give either the mass or the density of the body.")
-    mesh = _closed_mesh(Path(path))
+    mesh = _closed_mesh(Path(path), hull)
+    mesh.vertices = _standing(np.asarray(mesh.vertices), _up_axis(Path(path), up))
     mesh.apply_scale(metres_per_unit)
     size = float(np.ptp(mesh.bounds, axis=0).max())
     if size > LARGEST_SIZE:
@@ -262,7 +285,20 @@ def _positive(path: str | os.PathLike[str], name: str, value: float | None) -> f
     return float(value)
 
 
-def _closed_mesh(path: Path) -> Any:
+def _up_axis(path: Path, up: str | None) -> str:
+    if up is None:
+        return "y" if path.suffix.lower() in Y_UP else "z"
+    if up not in ("x", "y", "z"):
+        raise InputError(f"{path}: up must be x, y or z, got {up!r:.20}.")
+    return up
+
+
+def _standing(vertices: Array, up: str) -> Array:
+    """Vertices turned so that z points up; a turn, so that nothing is mirrored."""
+    return vertices[:, {"x": [1, 2, 0], "y": [2, 0, 1], "z": [0, 1, 2]}[up]]
+
+
+def _closed_mesh(path: Path, hull: bool) -> Any:
     """Read a mesh with trimesh and turn it outside out; refuse one with holes."""
     import trimesh
 
@@ -271,23 +307,44 @@ def _closed_mesh(path: Path) -> Any:
     if not path.is_file():
         raise InputError(f"{path}: there is no such file; correct the path.")
     try:
-        mesh: Any = trimesh.load(path, process=False, force="mesh")
-        # the triangles of an STL file do not know their neighbours
-        if path.suffix.lower() == ".stl":
-            mesh.merge_vertices()
-        faces, vertices = np.asarray(mesh.faces), np.asarray(mesh.vertices)
+        mesh: Any = trimesh.load(path, process=False)
+        if not isinstance(mesh, trimesh.PointCloud):
+            mesh = trimesh.load(path, process=False, force="mesh")
+        vertices = np.asarray(mesh.vertices, dtype=np.float64)
+        faces = np.asarray(getattr(mesh, "faces", ()))
     except Exception as error:
         raise InputError(f"{path}: cannot be read as a mesh ({type(error).__name__}).") from error
-    if len(faces) == 0 or not np.isfinite(vertices).all():
-        raise InputError(f"{path}: the mesh has no triangles or a vertex that is not finite.")
+    if not np.isfinite(vertices).all():
+        raise InputError(f"{path}: the mesh has a vertex that is not finite.")
+    if hull:
+        return _hull(path, vertices)
+    if len(faces) == 0:
+        raise InputError(
+            f"{path}: is a cloud of {len(vertices)} points without triangles; make a closed mesh of it, or take "
+            "its "
+            "convex hull (hull=True)."
+        )
+    if not mesh.is_watertight:
+        # triangles of an STL file do not know their neighbours, and seams of a texture part vertices
+        mesh.merge_vertices(merge_tex=True, merge_norm=True)
     if not mesh.is_watertight:
         _, count = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
         raise InputError(
             f"{path}: the surface is not closed ({int((count % 2).sum())} edges belong to one triangle only), "
-            "so it has no volume; close its holes first."
+            "so it has no volume; close its holes, or take its convex hull (hull=True)."
         )
     if mesh.volume < 0:
         mesh.invert()
     if not mesh.volume > 0:
         raise InputError(f"{path}: the surface encloses no volume.")
+    return mesh
+
+
+def _hull(path: Path, vertices: Array) -> Any:
+    import trimesh
+
+    try:
+        mesh: Any = trimesh.convex.convex_hull(vertices)
+    except (QhullError, ValueError, IndexError) as error:
+        raise InputError(f"{path}: its {len(vertices)} points enclose no volume.") from error
     return mesh

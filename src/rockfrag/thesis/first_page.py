@@ -42,7 +42,6 @@ def first_page(
     effects: pd.DataFrame,
     claims: pd.DataFrame,
     explanation: pd.DataFrame | None = None,
-    wide: pd.DataFrame | None = None,
     inversion: pd.DataFrame | None = None,
     wanted_percent: Mapping[str, float] | None = None,
 ) -> list[Finding]:
@@ -57,8 +56,6 @@ def first_page(
         The ledger of the study, columns of `rockfrag.thesis.statements.COLUMNS`.
     explanation
         Effects of departures from the ideal model, see `rockfrag.pedestal.explanation.explain`.
-    wide
-        Effects in a study of many more earthquakes, to be set beside.
     inversion
         Departures that come closest to an effect that was asked for, see `rockfrag.pedestal.inversion.invert`.
     wanted_percent
@@ -73,8 +70,6 @@ def first_page(
             found[-1] = Finding(
                 last.headline, f"{last.text} {_inverted(inversion, wanted_percent)}"
             )
-    if wide is not None and len(wide):
-        found.append(_beside(wide[wide["reading"] == READING]))
     return found
 
 
@@ -165,23 +160,6 @@ _ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above 
 
 def _both(row: Mapping[Any, Any], wanted: Mapping[str, float]) -> str:
     return listed([f"{row[name]:.3f}" for name in wanted])
-
-
-def _beside(wide: pd.DataFrame) -> Finding:
-    """Say what the same model gives for many more earthquakes."""
-    row = _rows(wide, "whole")[0]
-    within = bool(row["equivalent"])
-    headline = (
-        "With many more earthquakes the model’s pedestal still makes no difference"
-        if within
-        else "With many more earthquakes the model’s pedestal makes a difference"
-    )
-    return Finding(
-        headline,
-        f"In the wide study, whose results lie beside this one’s, over {counted(int(row['pairs']), 'pair')} from "
-        f"{counted(int(row['units']), 'earthquake')} on the ground P/NP is {_ratio(row)}"
-        + (", so a change of 10 % or more is excluded." if within else "."),
-    )
 
 
 def _rows(effects: pd.DataFrame, scope: str) -> list[dict[Any, Any]]:

@@ -1,31 +1,11 @@
 """What a study does beyond its own when it is compared with the thesis: one stage."""
 
-from pathlib import Path
-
 import pandas as pd
 
-from rockfrag.stages.stage import Job, Results, Stage
+from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 
-WIDE = "wide"
-"""Study of many more earthquakes (config/wide.yaml), whose result the report sets beside where it has been run."""
-
 TABLES = ("table_3_1", "table_3_3", "table_4_1")
-
-
-def wide_effects(study: Study, results: Path) -> list[Path]:
-    """File of the pedestal's effects in the study of many more earthquakes, where there is one.
-
-    Parameters
-    ----------
-    study
-        The study whose report would set it beside.
-    results
-        Folder of all studies' results.
-    """
-    found = results / WIDE / "pedestal" / "effects.parquet"
-    wanted = study.compare_with == "thesis" and study.has_pairs and study.name != WIDE
-    return [found] if wanted and found.is_file() else []
 
 
 def run(job: Job[Study]) -> Results:
@@ -110,33 +90,3 @@ def _measured_statements(job: Job[Study]) -> pd.DataFrame:
 
     tests, measures = job.table("measured/tests"), job.table("measures")
     return ledger(Evidence(tests, "measured", measures, job.study.tested_blocks))
-
-
-def _inputs(study: Study) -> list[str]:
-    names = ["motions/ground.parquet", "motions/floors.parquet", "tests", "validity", "measures"]
-    if study.more.measured_tests is not None:
-        names.append("measured/tests")
-    if study.more.sensitivity is not None:
-        names.append("building_sensitivity/tests")
-    return names
-
-
-def _outputs(study: Study) -> list[str]:
-    names = [*TABLES, "claims_theory", "standing"]
-    if study.has_pairs:
-        names += ["claims", "contradictions"]
-    if study.more.measured_tests is not None:
-        names.append("measured/claims")
-    if study.more.sensitivity is not None:
-        names.append("building_sensitivity/margins")
-    return names
-
-
-STAGE = Stage(
-    name="thesis",
-    run=run,
-    inputs=_inputs,
-    files=lambda study: study.body_files,
-    outputs=_outputs,
-    settings=("bodies", "seed", "amplitudes", "protocol", "measured_tests", "building_sensitivity"),
-)

@@ -45,6 +45,8 @@ class HazardCurve:
         Where it comes from, in a few words.
     quantiles
         Curves of the same measure by their quantile, such as 0.16 and 0.84; empty where none are known.
+    is_read
+        Whether it was read; False where one level was continued with an assumed slope.
     """
 
     measure: Measure
@@ -52,6 +54,7 @@ class HazardCurve:
     rates: Floats
     source: str
     quantiles: dict[float, "HazardCurve"] = field(default_factory=dict)
+    is_read: bool = True
 
     __repr__ = short_repr
 
@@ -197,7 +200,8 @@ def curve_of_one_level(
 
     def curve(k: float, source: str) -> HazardCurve:
         factors = np.array([0.1, 1.0, 10.0])
-        return HazardCurve(measure, level * factors, factors**-k / years, source)
+        rates = factors**-k / years
+        return HazardCurve(measure, level * factors, rates, source, is_read=False)
 
     source = (
         f"{measure.name} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "

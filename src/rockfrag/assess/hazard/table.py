@@ -19,6 +19,7 @@ _EXPECTED = (
     "as poe_50_years"
 )
 _POE = re.compile(r"poe_(\d+(?:\.\d+)?)_?y(?:ears)?")
+_RETURN_PERIOD = re.compile(r"(?:tr|return_period)(?:_(?:years?|yrs?|a|anni))?")
 _LEVEL = re.compile(r"(pga|pgv|sa_(\d+(?:_\d+)?)s)_(g|cm_s|m_s|m_s2|cm_s2)")
 
 
@@ -33,7 +34,7 @@ def read(text: str, path: str) -> list[Found]:
     if len(lines) < 3:
         raise InputError(f"{path}: expected a header and two rows or more, with {_EXPECTED}.")
     (_, header), body = lines[0], lines[1:]
-    titles = [title.strip().lower() for title in header]
+    titles = [_plain(title) for title in header]
     places = [i for i, title in enumerate(titles) if level_column(title)]
     others = [i for i, title in enumerate(titles) if i not in places]
     if len(places) != 1 or len(others) != 1:
@@ -51,6 +52,12 @@ def read(text: str, path: str) -> list[Found]:
     levels = [level * factor for level, _ in rows]
     rates = annual_rates(titles[others[0]], [value for _, value in rows], path)
     return [Found(make_curve(measure, levels, rates, path), "mean")]
+
+
+def _plain(title: str) -> str:
+    """A title as this table calls it: ``PGA (g)`` is ``pga_g``, ``Tr (anni)`` is ``return_period_years``."""
+    words = re.sub(r"[\s()\[\]/]+", "_", title.strip().lower().replace("²", "2")).strip("_")
+    return "return_period_years" if _RETURN_PERIOD.fullmatch(words) else words
 
 
 def level_column(title: str) -> bool:

@@ -25,23 +25,26 @@ ensemble).
 import gc
 import hashlib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import cache
 from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 import numba
-from filelock import FileLock
 from numba import types
 from numba.extending import intrinsic, register_jitable
 
 from rockfrag import elementary
+from rockfrag.lock import locked
 from rockfrag.machine_code import cached_njit
 from rockfrag.system import geometry
 
 TESTED_NUMBA = ("0.68.",)
 """Versions of numba whose private parts are known to be as this module takes them to be."""
+
+PATIENCE_S = 300.0
+"""How long a process waits for another one that compiles the same [s]."""
 
 KNOWN = numba.__version__.startswith(TESTED_NUMBA)
 
@@ -95,8 +98,7 @@ def _digest() -> str:
     """Digest of all kernels' sources: those of every engine, of the arithmetic and of bodies as they stand."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[2]
-    folders = ("engines", "rocking/contact")
-    sources = [path for folder in folders for path in sorted((package / folder).rglob("*.py"))]
+    sources = sorted((package / "engines").rglob("*.py"))
     for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
         digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -106,13 +108,14 @@ def _digest() -> str:
 def compiling_alone(entry: Any) -> Iterator[None]:
     """Hold other processes off while this one calls an entry kernel for the first time.
 
-    The first of several processes that start together compiles; the others wait and read its cache.
+    The first of several processes that start together compiles; the others wait and read its cache, or compile
+    too if it takes longer than ``PATIENCE_S``.
     """
     folder = getattr(getattr(entry, "_cache", None), "cache_path", None)
     if entry.signatures:
         yield
         return
-    with _locked(folder, entry.__name__):
+    with _alone_in(folder, entry.__name__):
         # looking for garbage in what a compiler builds takes a tenth of its time
         collects = gc.isenabled()
         gc.disable()
@@ -126,22 +129,8 @@ def compiling_alone(entry: Any) -> Iterator[None]:
                 gc.enable()
 
 
-@contextmanager
-def _locked(folder: str | None, name: str) -> Iterator[None]:
-    """Hold the lock ``name`` of a folder; of one that cannot be written to, no lock is needed."""
-    lock = None
-    if folder is not None:
-        try:
-            Path(folder).mkdir(parents=True, exist_ok=True)
-            lock = FileLock(Path(folder) / f"{name}.lock")
-            lock.acquire()
-        except (OSError, NotImplementedError):
-            lock = None
-    try:
-        yield
-    finally:
-        if lock is not None:
-            lock.release()
+def _alone_in(folder: str | None, name: str) -> AbstractContextManager[object]:
+    return nullcontext() if folder is None else locked(Path(folder) / f"{name}.lock", PATIENCE_S)
 
 
 @intrinsic

@@ -1,5 +1,6 @@
 """Central Weather Administration of Taiwan (CWA, formerly CWB): ``#Key: value`` lines, four columns.
 
+Files of 1999 begin with ``#StationCode``, later ones with ``#Earthquake Information``.
 The columns are time and, in the order of ``#DataSequence``, up, north and east in gal; times are
 local (UTC+8) where the key says ``GMT+08``.
 """
@@ -38,7 +39,7 @@ def _header(lines: list[str]) -> tuple[dict[str, tuple[str, str]], int]:
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    if not re.match(r"^\s*#\s*Earthquake Information", lines[0], re.IGNORECASE):
+    if not re.match(r"^\s*#\s*(?:Earthquake Information|StationCode)", lines[0], re.IGNORECASE):
         return False
     facts, _ = _header(lines)
     return "stationcode" in facts and "samplerate" in facts

@@ -1,6 +1,7 @@
 """ESM/ITACA ASCII (header format DYNA): lines ``KEY: value``, then one sample a line.
 
-The Turkish networks write the same header with other notations of date and time.
+The Turkish networks write the same header with other notations of date and time, and AFAD's TADAS a
+line without a key above it.
 """
 
 import re
@@ -40,6 +41,8 @@ def _header(lines: list[str]) -> tuple[dict[str, str], int]:
     facts: dict[str, str] = {}
     for number, line in enumerate(lines):
         match = _KEY.match(line)
+        if match is None and not facts and re.match(r"\s*[A-Za-z]|\s*$", line):
+            continue
         if match is None:
             return facts, number
         facts[match["key"]] = match["value"].strip()

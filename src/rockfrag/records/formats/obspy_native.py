@@ -1,4 +1,4 @@
-"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, Kinemetrics EVT, SLIST, TSPAIR"""
+"""Records that ObsPy reads itself: MiniSEED with StationXML, SAC, K-NET, EVT, SLIST, TSPAIR, SeismicHandler."""
 
 import glob
 import gzip
@@ -32,7 +32,7 @@ from rockfrag.records.parsing.text_file import (
     read_head,
 )
 
-_READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR")
+_READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR", "SH_ASC")
 """Formats left to ObsPy. Of its others PICKLE would run what a file says, GSE ends the process on a
 damaged file, and the rest are of other fields."""
 
@@ -41,6 +41,7 @@ _SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})
 
 _SAC_QUANTITIES = {6: "displacement", 7: "velocity"}
 _WATER_LEVEL = 60.0
+_SHOWN = 60
 
 
 def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Channel]]:
@@ -122,9 +123,11 @@ def _refuse_unknown(path: Path) -> None:
         raise InputError(
             f"{path}, line {odd + 1}: not a row of numbers like those above; the file is damaged."
         )
+    lines = [line.strip() for line in head_lines(path) if line.strip()]
+    seen = f"it begins with {lines[0][:_SHOWN]!r}" if lines else "it is no text"
     raise InputError(
-        f"{path}: no known record format; plain text needs columns or rows of numbers below at most "
-        "two lines of words or one of titles."
+        f"{path}: no known record format: {seen}, and no rows of numbers go on below to its end; plain text "
+        "needs columns or rows of numbers, and words above them alone."
     )
 
 

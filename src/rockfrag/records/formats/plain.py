@@ -1,14 +1,15 @@
-"""Plain text and CSV: one column of samples, or time and samples, with little or no header.
+"""Plain text and CSV of any layout: one series in a column or in rows, or columns side by side.
 
-Understood are, above the numbers: nothing; comment lines (``#``, ``%``, ``!``, ``//``); a title;
-titles of the columns (``Time [s], Acceleration [g]``); and a line with the number of samples and
-the interval. A unit is known only where the titles state it.
+One reader decides for all of them where the samples begin, and what stands above them says: rows of
+numbers (a count, an interval, or both, on one line or two), words (``DT=``, ``sampling frequency: 100
+Hz``, ``units: cm/s^2``, ``components: E N Z``) and titles of columns (``Time (ms), Acc X (g)``). What
+stands above is never a sample: a row of numbers there that states nothing known is an error. All that is
+stated must agree, with the file and with what the user names; what is not stated is asked for.
 """
 
 import os
 import re
-from dataclasses import dataclass
-from itertools import chain
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,166 +18,527 @@ from obspy import Stream
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
+from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.headed_formats import HEADED
 from rockfrag.records.parsing.channel import Channel
+from rockfrag.records.parsing.column_titles import Column, column_titles
 from rockfrag.records.parsing.format import Format
 from rockfrag.records.parsing.fortran_sections import positive_step
 from rockfrag.records.parsing.number_table import (
-    MAX_HEADER,
+    LOOKED_AT,
     NumberTable,
     are_numbers,
+    is_blank,
+    is_comment,
+    is_damaged_row,
+    is_row,
     number_in,
     number_table,
     numbers_of,
 )
-from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
-from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
+from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import check_rising, step_of_times
 from rockfrag.records.parsing.written_trace import one_trace
 
-_UNIT = re.compile(r"[\[(_\s](?P<unit>[^\[\]()\s,;]+)[\])]?\s*$")
-_OTHERS = re.compile(r"\b(?:veloc\w*|vel|displ\w*|disp)\b", re.IGNORECASE)
-_SPECTRA = re.compile(r"\b(?:period\w*|freq\w*|spectr\w*|[ps]s?[av])\b", re.IGNORECASE)
+_OF_OBSPY = re.compile(
+    r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.IGNORECASE
+)
+"""First words of text formats that ObsPy reads, or that are refused by name."""
+
 _MIN_ROWS = 3
-_MAX_WORDS = 2
-"""Lines of free text that may stand above the numbers where no titles of columns follow them."""
-_SPLIT = re.compile(r"\s*[,;\t]\s*|\s{2,}|\s+(?=[A-Za-z]*acc)", re.IGNORECASE)
+_RISING = 0.9
+"""Share of the rows in which a column without title must rise to be one of times."""
+
+_FEW_ROWS = 20
+
+_SMOOTHER = 0.6
+"""Ratio of steps along columns to steps along rows below which columns are channels side by side."""
+
+_SHOWN = 60
+_LONGEST_ROUND = 3
+"""Significant digits of an interval that stands above samples of more digits."""
 
 
 @dataclass(frozen=True)
 class _Layout:
-    """The numbers of a file and the titles of its two columns, none where it has none."""
+    """All that a file says of its samples, and its rows of numbers."""
 
     table: NumberTable
-    titles: list[str]
+    stop: int
+    facts: StatedFacts
+    titles: list[Column]
+    npts: int | None = None
+    dt: float | None = None
+    steps: list[dict[str, Any]] = field(default_factory=list)
+
+    @property
+    def line(self) -> int:
+        """First row of samples, from zero."""
+        return self.table.start
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    layout = _layout(lines)
-    if layout is None or (layout.table.columns > 2 and layout.table.npts is None):
-        return False
-    rows = [numbers_of(line) for line in lines[layout.table.start :] if line.strip()]
-    if not all(rows) or not are_numbers([*chain.from_iterable(rows)]):
-        return False
-    if any(headed.recognise(lines, name) for headed in HEADED):
-        return False
-    if layout.table.npts is not None:
-        return True
-    if len(rows) < _MIN_ROWS:
-        return False
-    widths = {len(row) for row in rows}
-    if widths == {1}:
-        return True
-    if widths != {2}:
-        return False
-    times = np.array([number_in(row[0]) for row in rows])
-    return bool((np.diff(times) > 0).mean() > 0.5)
-
-
-def _layout(lines: list[str]) -> _Layout | None:
-    """Find the numbers and the titles of two columns above them."""
     table = number_table(lines)
-    if table is None:
-        return None
-    titles: list[str] = []
-    for words in table.words:
-        titles = _titles(words, titles)
-    if table.free > _MAX_WORDS and not _titles(table.words[-1], []):
-        return None
-    return _Layout(table, titles)
-
-
-def _titles(line: str, before: list[str]) -> list[str]:
-    """Return titles of two columns if a line has them, else those found before."""
-    words = [word.strip(' "') for word in _SPLIT.split(line.strip()) if word.strip(' "')]
-    if len(words) == 2 and re.match(r"t(?:ime)?\b|t_|time_|period|freq", words[0], re.IGNORECASE):
-        return words
-    alone = len(words) == 1 and re.match(r"acc\w*\.?\s*[\[(]", words[0], re.IGNORECASE)
-    return ["", words[0]] if alone else before
+    if table is None or any(_OF_OBSPY.match(line) for line in lines[:1]):
+        return False
+    rows = [line for line in lines[table.start :] if not is_blank(line)]
+    while rows and is_remark(rows[-1]):
+        rows.pop()
+    found = [numbers_of(line, table.decimal_comma) for line in rows]
+    widths = {len(row) for row in found[:-1]}
+    return (
+        len(rows) >= (_MIN_ROWS if not table.numbers else 1)
+        and all(are_numbers(row) for row in found)
+        and widths <= {table.columns}
+        and len(found[-1]) <= table.columns
+        and not any(headed.recognise(lines, name) for headed in HEADED)
+    )
 
 
 def _parse(text: TextFile, dt: float | None = None) -> list[Channel]:
-    layout = _layout(text.lines(0, MAX_HEADER + 1))
-    if layout is None:
-        text.fail("no rows of numbers below a short header", 0)
     if dt is not None and not (np.isfinite(dt) and dt > 0):
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
-    _refuse_other_titles(text, layout)
-    steps: tuple[dict[str, Any], ...] = ()
-    if layout.table.npts is not None:
-        values, interval = _counted(text, layout)
-    elif layout.table.columns == 2:
-        table = text.table(layout.table.start, 2)
-        values = table[:, 1].copy()
-        interval, steps = _interval(text, layout, table[:, 0], dt)
-    else:
-        values = text.table(layout.table.start, 1)[:, 0].copy()
-        if layout.table.dt is None and dt is None:
-            text.fail("one column without sampling interval; give it with dt= (in seconds)")
-        interval = layout.table.dt or dt or 0.0
-    return [
-        Channel(
-            npts=layout.table.npts or values.size,
-            dt=positive_step(text, interval, 0),
-            samples=values.copy,
-            unit=_unit(layout.titles),
-            details={"title": layout.table.title, "steps": steps},
+    layout = _layout(text, dt)
+    columns = layout.table.columns
+    if columns == 1:
+        return [_series(text, layout, dt)]
+    first = text.table(layout.line, columns, layout.line + 1, layout.table.decimal_comma)
+    assert first.size == columns
+    values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
+    # only the last row of a series is shorter
+    _check_widths(text, layout, widths, widths.size - 1)
+    filled = widths[widths > 0]
+    if layout.titles or _is_timed(values, columns) or _are_channels(text, layout, values, filled):
+        _check_widths(text, layout, widths)
+        return _channels(text, layout, values.reshape(-1, columns), dt)
+    return [_series(text, layout, dt)]
+
+
+def _layout(text: TextFile, dt: float | None) -> _Layout:
+    """Return what the lines above the samples say of them."""
+    lines = text.lines(0, LOOKED_AT)
+    table = number_table(lines)
+    if table is None:
+        text.fail("no rows of numbers below a header of words", 0)
+    number = next((n for n in range(table.start - 1, -1, -1) if not is_blank(lines[n])), 0)
+    above = lines[number] if table.start else ""
+    if is_damaged_row(above) and not is_comment(above) and not is_row(above):
+        text.fail(f"{above.strip()[:_SHOWN]!r} is no row of numbers", number)
+    facts = stated_facts([words for _, words in table.words])
+    if facts.contradiction:
+        text.fail(f"{facts.contradiction}; mend the header")
+    if facts.factor:
+        text.fail(
+            f"{facts.factor[:_SHOWN]!r} is a factor that is not applied here; apply it and take the line out"
         )
+    titles = column_titles(table, lines[table.start])
+    stop = last_row(text, table.start)
+    layout = _Layout(table, stop, facts, titles, facts.npts, facts.dt)
+    layout = _with_numbers_above(text, layout, lines)
+    if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
+        text.fail(f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt= out")
+    return layout
+
+
+def _refuse_unclear_titles(text: TextFile, table: NumberTable) -> None:
+    """Refuse titles that name several quantities but cannot be told apart into columns."""
+    number, words = table.words[-1] if table.words else (0, "")
+    if len(re.findall(r"\b(?:acc|vel|disp|time)", words, re.IGNORECASE)) > 1:
+        text.fail(
+            f"{words[:_SHOWN]!r} cannot be told apart into {table.columns} titles of columns; "
+            "separate them as the numbers are",
+            number,
+        )
+
+
+def _with_numbers_above(text: TextFile, layout: _Layout, lines: list[str]) -> _Layout:
+    """Return the layout with the count and the interval that rows of numbers above the samples state.
+
+    They are the first two numbers there, or the only one. A first row of samples that cannot be one, as
+    it begins with a count and its time does not come before the next, is such a row too.
+    """
+    table = layout.table
+    above = [(number, word) for number, row in table.numbers for word in row]
+    if not above and table.columns > 1:
+        row = numbers_of(lines[table.start], table.decimal_comma)
+        below = next((x for x in lines[table.start + 1 :] if not is_blank(x)), "")
+        if _is_count_row(row, numbers_of(below, table.decimal_comma), table.columns):
+            above = [(table.start, word) for word in row]
+            table = NumberTable(
+                table.start + 1, table.columns, table.words, table.numbers, table.decimal_comma
+            )
+    if not above:
+        return layout
+    # a row that begins with anything else than a count may have one number of columns before it
+    numbers = [word for _, word in above]
+    if len(numbers) == 3 and numbers[0] == "1":
+        numbers = numbers[1:]
+    npts, dt = _count_and_step(numbers[:2])
+    rows_of_two = len({number for number, _ in above}) > 1 and len(numbers) > 2
+    if (npts is None and dt is None) or rows_of_two:
+        text.fail(
+            f"{' '.join(word for _, word in above)[:_SHOWN]!r} above the samples is neither their number nor "
+            "their interval; take the line out, or write # before it",
+            above[0][0],
+        )
+    return _agreeing(text, layout, table, npts, dt, above[0][0])
+
+
+def _agreeing(
+    text: TextFile,
+    layout: _Layout,
+    table: NumberTable,
+    npts: int | None,
+    dt: float | None,
+    line: int,
+) -> _Layout:
+    """Return the layout with count and interval of numbers above, which must agree with its words."""
+    for what, stated, own in (("samples", layout.npts, npts), ("s as interval", layout.dt, dt)):
+        if stated is not None and own is not None and abs(stated - own) > 1e-6 * own:
+            text.fail(
+                f"{own:g} {what} here, but {stated:g} in the words of the header; mend it", line
+            )
+    return _Layout(
+        table,
+        layout.stop,
+        layout.facts,
+        layout.titles,
+        npts if npts is not None else layout.npts,
+        dt if dt is not None else layout.dt,
+        layout.steps,
+    )
+
+
+def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
+    """Tell a count and an interval from the first row of samples of several columns."""
+    npts, dt = _count_and_step(row[:2])
+    if npts is None or dt is None or not are_numbers(below) or len(below) != columns:
+        return False
+    if columns == 2:
+        # as a time, the first number would not come before the next
+        return number_in(below[0]) <= number_in(row[0])
+    return not any(_is_whole(word) for word in below)
+
+
+def _count_and_step(words: list[str]) -> tuple[int | None, float | None]:
+    """Return the count and the interval [s] that one or two numbers are, in either order."""
+    npts = next((int(number_in(word)) for word in words if _is_count(word)), None)
+    dt = next((number_in(word) for word in words if not _is_whole(word)), None)
+    if dt is not None and not SHORTEST_STEP <= dt <= LONGEST_STEP:
+        return None, None
+    if len(words) == 2 and (npts is None or dt is None):
+        return None, None
+    return npts, dt
+
+
+def _is_count(word: str) -> bool:
+    value = number_in(word)
+    return value >= 2 and value == int(value) and (_is_whole(word) or value < 1e9)
+
+
+def _is_whole(word: str) -> bool:
+    return re.fullmatch(r"[+-]?\d+\.?", word) is not None
+
+
+def _is_timed(values: NDArray[np.float64], columns: int) -> bool:
+    """Tell whether the first numbers of the rows rise, as times do; evenly where the rows are few."""
+    steps = np.diff(values[::columns])
+    even = steps.size >= _FEW_ROWS or (steps.size > 1 and np.ptp(steps) <= steps.mean())
+    return bool(even and (steps > 0).mean() > _RISING)
+
+
+def _are_channels(
+    text: TextFile, layout: _Layout, values: NDArray[np.float64], widths: NDArray[np.int64]
+) -> bool:
+    """Tell columns of channels side by side from one series that goes on row after row.
+
+    Components that are named and a count of rows tell it. Else the samples do: those of one channel
+    differ less from one to the next than those of two.
+    """
+    columns = layout.table.columns
+    if layout.npts in (widths.size, values.size):
+        return layout.npts == widths.size
+    if len(layout.facts.components) == columns:
+        return True
+    if widths[-1] != columns:
+        return False
+    rows = values.reshape(-1, columns)
+    down = float(np.median(np.abs(np.diff(rows, axis=0))))
+    along = float(np.median(np.abs(np.diff(rows, axis=1))))
+    side_by_side = down < _SMOOTHER * along
+    in_rows = along < _SMOOTHER * down or columns > 3
+    if (side_by_side and columns > 3) or not (side_by_side or in_rows):
+        text.fail(
+            f"{columns} numbers a row may be {columns} columns side by side or one series row after row; "
+            "write titles above them, or one number a row",
+            layout.line,
+        )
+    layout.steps.append({"step": "take numbers as " + ("columns" if side_by_side else "rows")})
+    return side_by_side
+
+
+def _check_widths(
+    text: TextFile, layout: _Layout, widths: NDArray[np.int64], stop: int | None = None
+) -> None:
+    """Check that rows which are not blank, up to the row ``stop``, have as many numbers as the first."""
+    wrong = np.flatnonzero((widths[:stop] != layout.table.columns) & (widths[:stop] > 0))
+    if wrong.size:
+        text.fail(
+            f"{widths[wrong[0]]} columns here, {layout.table.columns} in the rows above; "
+            "the file is cut short or damaged",
+            layout.line + int(wrong[0]),
+        )
+
+
+def _series(text: TextFile, layout: _Layout, dt: float | None) -> Channel:
+    """Return the one series of a file, in a column or in rows."""
+    values, widths = text.rows(layout.line, layout.stop, layout.table.decimal_comma)
+    if layout.table.columns == 1:
+        _check_widths(text, layout, widths)
+        values, layout = _without_leading(text, layout, values, dt)
+    stated = next(iter(layout.titles), Column("", "", "", ""))
+    _refuse_other(text, layout, stated.quantity or layout.facts.quantity)
+    _check_count(text, layout, values.size)
+    step = layout.dt if layout.dt is not None else dt
+    if step is None:
+        what = "one column" if layout.table.columns == 1 else "rows of numbers"
+        text.fail(f"{what} without sampling interval; give it with dt= (in seconds)")
+    names = layout.facts.components
+    return Channel(
+        npts=layout.npts or values.size,
+        dt=positive_step(text, step, layout.line),
+        samples=values.copy,
+        unit=_unit(text, layout, stated),
+        component=names[0] if len(names) == 1 else "",
+        station=layout.facts.details.get("station", ""),
+        details={
+            "title": layout.table.title,
+            "event": layout.facts.details.get("event", ""),
+            "steps": tuple(layout.steps),
+        },
+    )
+
+
+def _without_leading(
+    text: TextFile, layout: _Layout, values: NDArray[np.float64], dt: float | None
+) -> tuple[NDArray[np.float64], _Layout]:
+    """Take count and interval, a line each, from the top of one column of numbers.
+
+    They are told by the count, which is that of the numbers below, and by a notation that no sample has.
+    What looks like one and does not fit is an error, not a sample.
+    """
+    if layout.table.numbers:
+        return values, layout
+    words = [
+        word
+        for line in text.lines(layout.line, layout.line + LOOKED_AT)
+        for word in numbers_of(line, layout.table.decimal_comma)
     ]
+    first, body = words[:2], words[2:]
+    whole = [_is_whole(word) for word in first]
+    odd = [_notation(word) not in {_notation(sample) for sample in body} for word in first]
+    count, step = _count_and_step(first) if len(first) == 2 else (None, None)
+    skip = 0
+    if count == values.size - 2 and step is not None:
+        skip = 2
+    elif _is_count(words[0]) and values[0] == values.size - 1:
+        skip, count, step = 1, int(values[0]), None
+    elif whole[0] and odd[0] and values[0] >= 1:
+        count = int(values[0]) if values[0] > 1 else None
+        skip = 2 if len(first) == 2 and _is_interval(first[1], odd[1], body) else 1
+        step = float(values[1]) if skip == 2 else None
+        if values[0] == 1 and skip == 1:
+            text.fail(
+                f"{words[0]!r} above the samples looks like no sample; take the line out, or write it as they are",
+                layout.line,
+            )
+    elif _is_interval(words[0], odd[0], body) and (odd[0] or values[0] == dt):
+        skip, count, step = 1, None, float(values[0])
+        if len(first) == 2 and whole[1] and odd[1] and values[1] > 1:
+            skip, count = 2, int(values[1])
+    if not skip:
+        return values, layout
+    layout = _agreeing(text, layout, layout.table, count, step, layout.line)
+    if dt is not None and step is not None and abs(dt - step) > 1e-6 * dt:
+        text.fail(f"states an interval of {step:g} s, not {dt:g} s; leave dt= out", layout.line)
+    layout.steps.append({"step": "take first lines as header", "lines": " ".join(words[:skip])})
+    return values[skip:], layout
 
 
-def _counted(text: TextFile, layout: _Layout) -> tuple[NDArray[np.float64], float]:
-    """Return samples and interval [s] of a file with a line ``npts dt``."""
-    npts, dt = layout.table.npts, layout.table.dt
-    assert npts is not None and dt is not None
-    if layout.table.columns == 2:
-        table = text.table(layout.table.start, 2)
-        if table.shape[0] == npts:
-            check_rising(table[:, 0], text, layout.table.start)
-            measured = step_of_times(table[:, 0], text, layout.table.start)
-            if abs(measured - dt) > 1e-6 * dt:
-                text.fail(f"the header gives dt = {dt:g} s, but times step by {measured:g} s")
-            return table[:, 1].copy(), dt
-    return text.counted(layout.table.start, None, npts), dt
+def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
+    """Tell whether a number is an interval that recorders have, rounder than the samples below it."""
+    value = number_in(word)
+    if _is_whole(word) or not SHORTEST_STEP <= value <= LONGEST_STEP:
+        return False
+    digits = [_digits(sample) for sample in body]
+    return odd or (
+        _digits(word) <= _LONGEST_ROUND and _digits(word) < float(np.median(digits or [0]))
+    )
+
+
+def _digits(word: str) -> int:
+    """Return the number of significant digits of a number as it is written, but for zeros at its end."""
+    mantissa = re.split("[EeDd]", word)[0]
+    return len(re.sub(r"\D", "", mantissa).strip("0"))
+
+
+def _notation(word: str) -> tuple[bool, int]:
+    """Return whether a number has an exponent, and its decimals, -1 for whole numbers."""
+    mantissa = re.split("[EeDd]", word)[0]
+    decimals = re.split("[.,]", mantissa)
+    return mantissa != word, len(decimals[1]) if len(decimals) > 1 else -1
+
+
+def _check_count(text: TextFile, layout: _Layout, found: int) -> None:
+    promised = layout.npts
+    if promised is not None and promised != found and not (text.cut_short and 0 < found < promised):
+        text.fail(
+            f"the header promises {promised} samples but {found} follow; "
+            "the file is cut short, or its header is wrong",
+            layout.line,
+        )
+
+
+def _refuse_other(text: TextFile, layout: _Layout, quantity: str) -> None:
+    """Refuse samples that are stated to be of another quantity than acceleration."""
+    if quantity not in ("", "acceleration"):
+        text.refuse(
+            f"the lines above the samples say that they are {quantity}, not acceleration", 0
+        )
+
+
+def _channels(
+    text: TextFile, layout: _Layout, table: NDArray[np.float64], dt: float | None
+) -> list[Channel]:
+    """Return the columns of acceleration of a file, each with the times left of it."""
+    columns = layout.titles or _untitled(text, layout, table)
+    _refuse_spectra(text, layout, columns)
+    chosen = [i for i, column in enumerate(columns) if column.quantity == "acceleration"]
+    if not chosen:
+        _refuse_other(text, layout, layout.facts.quantity)
+        known = {column.quantity for column in columns} - {""}
+        unnamed = [i for i, column in enumerate(columns) if not column.quantity]
+        # beside a depth what has no name is no acceleration in time
+        chosen = unnamed if not known or known & {"time", "index"} else []
+    if not chosen:
+        text.refuse(
+            f"none of the columns {', '.join(column.title for column in columns)} is acceleration; if one "
+            "is, write the word or the unit into its title",
+            layout.line - 1,
+        )
+    _check_count(text, layout, table.shape[0])
+    names = [columns[i].component for i in chosen]
+    channels = []
+    for n, i in enumerate(chosen):
+        step, notes = _interval(text, layout, columns, table, i, dt)
+        channels.append(
+            Channel(
+                npts=layout.npts or table.shape[0],
+                dt=positive_step(text, step, layout.line),
+                samples=table[:, i].copy,
+                unit=_unit(text, layout, columns[i]),
+                component=names[n] if names.count(names[n]) == 1 else columns[i].title,
+                station=layout.facts.details.get("station", ""),
+                details={
+                    "title": columns[i].title if layout.titles else layout.table.title,
+                    "event": layout.facts.details.get("event", ""),
+                    "steps": (*layout.steps, *notes),
+                },
+            )
+        )
+    return channels
+
+
+def _untitled(text: TextFile, layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
+    """Return columns without titles: times that rise, and channels by their number or stated name."""
+    count = table.shape[1]
+    timed = _is_timed(table.ravel(), count)
+    if timed and count > 2:
+        _refuse_unclear_titles(text, layout.table)
+    stated = layout.facts.components
+    named = list(stated) if len(stated) == count - timed else []
+    if not named:
+        named = [""] if count - timed == 1 else [f"column {i + 1}" for i in range(timed, count)]
+    channels = [Column(name, "acceleration", "", name) for name in named]
+    return [*([Column("", "time", "", "")] if timed else []), *channels]
+
+
+def _refuse_spectra(text: TextFile, layout: _Layout, columns: list[Column]) -> None:
+    if columns[0].quantity == "spectrum" or (
+        len(columns) == 2 and any(column.quantity == "spectrum" for column in columns)
+    ):
+        titles = ", ".join(column.title for column in columns)
+        text.refuse(
+            f"the columns {titles} are a spectrum, not acceleration in time", layout.line - 1
+        )
+
+
+def _unit(text: TextFile, layout: _Layout, column: Column) -> str:
+    """Return the unit of a column, by its title or by the lines above, which must not contradict it."""
+    stated = layout.facts.unit
+    if column.unit and stated and column.unit != stated:
+        text.fail(
+            f"column {column.title!r} is in {column.unit}, but the lines above it say {stated}; mend the header",
+            layout.line - 1,
+        )
+    return column.unit or stated
 
 
 def _interval(
-    text: TextFile, layout: _Layout, times: NDArray[np.float64], dt: float | None
+    text: TextFile,
+    layout: _Layout,
+    columns: list[Column],
+    table: NDArray[np.float64],
+    column: int,
+    dt: float | None,
 ) -> tuple[float, tuple[dict[str, Any], ...]]:
-    """Return the interval [s] of a time column, or the user's in its place and a note of that."""
-    if dt is None:
-        return step_of_times(times, text, layout.table.start), ()
-    check_rising(times, text, layout.table.start)
+    """Return the interval [s] of a column: that of the times left of it, which what is stated must fit.
+
+    The user's replaces a column of times that was printed wrongly; a note says so.
+    """
+    timed = [i for i, one in enumerate(columns) if one.quantity == "time"]
+    left = [i for i in timed if i < column] or timed[:1]
+    stated = layout.dt if layout.dt is not None else dt
+    if not left:
+        if stated is None:
+            text.fail(
+                "no column is titled as time; give the sampling interval with dt= (in seconds)"
+            )
+        return stated, ()
+    title, times = columns[left[-1]], table[:, left[-1]]
+    seconds = title.seconds
+    if seconds is None:
+        text.fail(
+            f"{title.unit!r} of column {title.title!r} is no unit of time known here; write s or ms",
+            layout.line - 1,
+        )
+    if dt is not None:
+        return _replacing(text, layout, times * seconds, dt)
+    if not title.title and (np.diff(times) == 1).all():
+        text.fail(
+            "the first column counts by ones, as numbers of samples do; give the sampling interval with dt= "
+            "(in seconds)",
+            layout.line,
+        )
+    measured = step_of_times(times, text, layout.line, seconds)
+    if layout.dt is not None and abs(measured - layout.dt) > 1e-6 * layout.dt:
+        text.fail(f"the header gives dt = {layout.dt:g} s, but times step by {measured:g} s")
+    return measured, ()
+
+
+def _replacing(
+    text: TextFile, layout: _Layout, times: NDArray[np.float64], dt: float
+) -> tuple[float, tuple[dict[str, Any], ...]]:
+    """Return the user's interval in place of a column of times [s], and a note where they differ."""
+    check_rising(times, text, layout.line)
     mean = float((times[-1] - times[0]) / max(times.size - 1, 1))
     if abs(mean - dt) <= 1e-6 * dt:
         return dt, ()
     return dt, ({"step": "replace time column", "dt_s": dt, "mean_step_in_file_s": mean},)
 
 
-def _unit(titles: list[str]) -> str:
-    """Return the unit that the title of the samples states, or an empty string."""
-    match = _UNIT.search(titles[1]) if len(titles) == 2 else None
-    unit = canonical_unit(match["unit"].replace("_", "/")) if match else ""
-    unit = "cm/s2" if unit in {"cm/s/s2"} else unit
-    return unit if unit in TO_SI else ""
-
-
-def _refuse_other_titles(text: TextFile, layout: _Layout) -> None:
-    if len(layout.titles) != 2:
-        return
-    match = _UNIT.search(layout.titles[1])
-    unit = canonical_unit(match["unit"]) if match else ""
-    held = _OTHERS.search(layout.titles[1])
-    if any(_SPECTRA.search(title) for title in layout.titles):
-        titles = " and ".join(layout.titles)
-        text.refuse(f"the columns {titles!r} are a spectrum, not acceleration in time")
-    if held or quantity_of(unit) in ("velocity", "displacement"):
-        text.refuse(
-            f"the second column is {layout.titles[1]!r}, not acceleration", layout.table.start - 1
-        )
-
-
-FORMAT = Format("PLAINTEXT", _recognise, _parse, wants_dt=True)
+FORMAT = Format("PLAINTEXT", _recognise, _parse, wants_dt=True, encoding="latin-1")
 is_format, read = FORMAT.is_format, FORMAT.read
 
 

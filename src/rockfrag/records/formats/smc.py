@@ -28,7 +28,7 @@ _KINDS = re.compile(
 )
 _FIRST_FIELD = re.compile(rb"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
 _HIGH_PRECISION = 8
-_PER_LINE = 8
+_PER_LINE, _SURPLUS_LINES = 8, 2
 
 # places in the headers, counted from zero
 _MISSING, _YEAR, _VERTICAL, _HORIZONTAL, _COMMENTS, _COUNT, _PRECISION = 0, 1, 12, 13, 15, 16, 46
@@ -60,15 +60,14 @@ def _parse(text: TextFile) -> list[Channel]:
     start = _FIRST_DATA + comments
     section = Section("acceleration", count, start, len(text), _width(text, start, whole))
     rate = numbers[_RATE]
+    samples, left_out = _without_surplus_lines(section, text)
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
-        samples, left_out = _without_surplus_lines(section, text)
         values = pairs_of(samples, "cm/s2", text, start, count // 2).channel()
-        values = _noting(values, left_out)
     else:
         step = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
-        dt = positive_step(text, step, at_reals)
-        values = Channel(count, dt, lambda: section.samples(text), "cm/s2")
+        values = Channel(count, positive_step(text, step, at_reals), samples.copy, "cm/s2")
+    values = _noting(values, left_out)
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.IGNORECASE)
     missing = whole[_MISSING]
     return [
@@ -92,16 +91,27 @@ def _parse(text: TextFile) -> list[Channel]:
 
 
 def _without_surplus_lines(section: Section, text: TextFile) -> tuple[NDArray[np.float64], int]:
-    """Return the values, and how many whole lines of values stand below the last one counted.
+    """Return the values that the header counts, and how many stand below the last of them.
 
-    Old digitised records have a line of scattered points at the end that their header does not
+    Old digitised records have a line or two of scattered points at the end that their header does not
     count; a count that ends within a line is a wrong one.
     """
     values = text.numbers(section.start, section.stop, section.width)
     surplus = values.size - section.count
-    if 0 < surplus <= _PER_LINE and section.count % _PER_LINE == 0:
+    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and _ends_a_line(section, text):
         return values[: section.count], surplus
     return section.samples(text), 0
+
+
+def _ends_a_line(section: Section, text: TextFile) -> bool:
+    """Tell whether the last value that the header counts is the last one of its line."""
+    width = section.width or 1
+    found = 0
+    for line in range(section.start, section.stop):
+        found += -(-len(text.raw(line).rstrip()) // width)
+        if found >= section.count:
+            break
+    return found == section.count
 
 
 def _noting(channel: Channel, left_out: int) -> Channel:

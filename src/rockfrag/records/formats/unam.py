@@ -60,8 +60,13 @@ def _parse(text: TextFile) -> list[Channel]:
             unit=unit,
             start_time=_start(facts),
             station=facts.get("clave de la estacion", ""),
-            component=orientation,
-            details={**_details(facts), "steps": (step,) if extra > 0 else ()},
+            # "rumbo;orientacion": the sense of a vertical stands behind it
+            component=orientation.split(";")[0].strip(),
+            details={
+                **_details(facts),
+                "sense": orientation.partition(";")[2].strip(),
+                "steps": (step,) if extra > 0 else (),
+            },
         )
         for column, orientation in enumerate(orientations)
     ]

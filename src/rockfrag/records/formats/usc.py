@@ -44,7 +44,7 @@ def place_of(words: list[str], values: Channel) -> Channel:
     lines = [line[: _LENGTH.start].strip() for line in words]
     station = component = name = ""
     for number, line in enumerate(lines):
-        found = re.match(r"STATION\s+(?:\w+\s*#)?\s*(\d+)", line, re.IGNORECASE)
+        found = re.match(r"STATION\s+(?:NO\.?|\w+\s*#)?\s*(\d+)", line, re.IGNORECASE)
         if found and not station:
             station, name = found[1], lines[number + 1] if lines[number + 1 :] else ""
         found = re.match(r"COMP\w*\s+(\S+)", line, re.IGNORECASE)

@@ -1,11 +1,15 @@
-"""University of Southern California volume 2: corrected acceleration in cm/s², equally spaced.
+"""Volume 2 of Caltech (EERL) and of the University of Southern California: corrected acceleration in cm/s².
 
 A text header that repeats the one of volume 1, 100 integers, 100 reals, then sections below lines
 such as ``1887 POINTS OF ACC DATA EQUALLY SPACED AT   .020 SEC.  IN UNITS CM/SEC/SEC`` (8F10.3). Where that
-line states no unit, the line ``PEAK ACCELERATION = … CMS/SEC/SEC`` does.
+line states no unit, the line ``PEAK ACCELERATION = … CMS/SEC/SEC`` does; where there is no such line, the
+words above state count and interval. The largest value must be the peak that the header states.
 """
 
 import re
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rockfrag.records.formats.usc import place_of
 from rockfrag.records.parsing.channel import Channel
@@ -14,7 +18,7 @@ from rockfrag.records.parsing.fortran_sections import Section, positive_step, re
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 
-_FIRST = re.compile(r"^\s*CORRECTED\s+ACCELEROGRAM\b.*\bFILE\s+\d+", re.IGNORECASE)
+_FIRST = re.compile(r"^\s*CORRECTED\s+ACCELEROGRAM\b(?P<code>\s+II[A-Z]+\d+)?", re.IGNORECASE)
 _SECOND = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME", re.IGNORECASE)
 _HEAD = re.compile(rb"^[ \t]*CORRECTED[ \t]+ACCELEROGRAM\b", re.I | re.M)
 _VALUES = re.compile(
@@ -23,17 +27,31 @@ _VALUES = re.compile(
 _END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M)
 _VALUES_LINE = re.compile(
     r"^\s*(?P<count>\d+)\s+POINTS\s+OF\s+(?P<quantity>ACC|VEL|DIS)\w*\s+DATA\s+EQUALLY[\s-]+SPACED\s+"
-    r"AT\s+(?P<dt>[\d.]+)\s*SEC\.?(?:\s*IN\s+UNITS?\s+(?:OF\s+)?(?P<unit>\S+))?",
+    r"AT\s+(?P<dt>[\d.]+)\s*SEC\.?(?:\s*(?:\(|IN\s+)?\s*(?:UNITS?\b\s*(?:OF|:)?\s*)?(?P<unit>[A-Z]+/[A-Z/*\d]+))?",
     re.IGNORECASE,
 )
-_PEAK_UNIT = re.compile(r"PEAK\s+ACCELERATION\s*=\s*\S+\s+(?P<unit>[A-Z/]+)", re.IGNORECASE)
+_PEAK = re.compile(
+    r"PEAK\s+ACCELERATION\s*=\s*(?P<value>[-+]?[\d.]+)\s+(?P<unit>[A-Z]+/[A-Z/*\d]+)", re.IGNORECASE
+)
+_COUNT_IN_WORDS = re.compile(r"(?P<count>\d+)\s+INSTRUMENT\s+AND\s+BASELINE\s+CORRECTED", re.I)
+_STEP_IN_WORDS = re.compile(r"SPACED\s+INTERVALS?\s+OF\s+(?P<dt>[\d.]+)\s*SEC", re.IGNORECASE)
+_WHOLE_NUMBERS = re.compile(rb"^[ \t]*(?:-?\d+[ \t]+){9,}-?\d+[ \t]*$", re.M)
+_AS_STATED = 0.01
+"""Share by which the largest value may be off the stated peak."""
+
+_NUMBER_LINES = 7 + 13
+"""Lines of 100 integers (16I5) and of 100 reals (8F10) above the samples."""
 _QUANTITIES = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
 _MAX_HEADER = 60
+_SECOND_LINES = 6
 _WIDTH = 10
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    return len(lines) > 2 and bool(_FIRST.match(lines[0]) and _SECOND.search(lines[1]))
+    first = _FIRST.match(lines[0])
+    return first is not None and bool(
+        first["code"] or any(_SECOND.search(line) for line in lines[1:_SECOND_LINES])
+    )
 
 
 def _parse(text: TextFile) -> list[Channel]:
@@ -44,13 +62,17 @@ def _parse(text: TextFile) -> list[Channel]:
         stop = len(text) if following < 0 else following
         line = text.find(_VALUES, first, stop)
         if line < 0:
-            text.fail("no line with the number of samples below; the file is cut short", first)
+            channels.append(_in_words(text, first, stop))
+            quantities.append("acceleration")
+            first = following
+            continue
         words = text.lines(first, min(line, first + _MAX_HEADER))
         while line >= 0:
             section, dt, unit = _section(text, line, words)
             samples = section.samples(text)
             quantities.append(section.quantity)
             if section.quantity == "acceleration":
+                _check_peak(text, words, samples, line)
                 plain = Channel(section.count, dt, samples.copy, unit)
                 channels.append(place_of(words, plain))
             line = text.find(_VALUES, section.stop, stop)
@@ -59,11 +81,51 @@ def _parse(text: TextFile) -> list[Channel]:
     return channels
 
 
+def _in_words(text: TextFile, first: int, stop: int) -> Channel:
+    """Return the acceleration of a file whose words alone state count and interval."""
+    start = text.find(_WHOLE_NUMBERS, first, stop)
+    words = text.lines(first, start if start >= 0 else first + _MAX_HEADER)
+    count = next((m for word in words if (m := _COUNT_IN_WORDS.search(word))), None)
+    step = next((m for word in words if (m := _STEP_IN_WORDS.search(word))), None)
+    peak = next((m for word in words if (m := _PEAK.search(word))), None)
+    if start < 0 or count is None or step is None or peak is None:
+        text.fail(
+            "no number of samples, interval or peak is stated below; the file is cut short", first
+        )
+    promised, line = int(count["count"]), start + _NUMBER_LINES
+    values = text.numbers(line, stop, _WIDTH)
+    if values.size == 3 * promised:
+        # velocity and displacement follow
+        values = values[:promised]
+    if values.size != promised and not (text.cut_short and 0 < values.size < promised):
+        text.fail(
+            f"the header promises {promised} samples but {values.size} follow; "
+            "the file is cut short, or its header is wrong",
+            line,
+        )
+    _check_peak(text, words, values, line)
+    unit = canonical_unit(peak["unit"].upper().replace("CMS", "CM"))
+    dt = positive_step(text, float(step["dt"]), first)
+    return place_of(words, Channel(promised, dt, values.copy, unit))
+
+
+def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], line: int) -> None:
+    """Check the largest value against the peak that the header states, in the same unit."""
+    peak = next((m for word in words if (m := _PEAK.search(word))), None)
+    stated, found = abs(float(peak["value"])) if peak else 0.0, float(np.abs(samples).max())
+    if stated and not text.cut_short and abs(found - stated) > _AS_STATED * stated:
+        text.fail(
+            f"the largest value is {found:g}, but the header states a peak of {stated:g}; mend the header or "
+            "the values",
+            line,
+        )
+
+
 def _section(text: TextFile, line: int, words: list[str]) -> tuple[Section, float, str]:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)
-    peak = next((found for word in words if (found := _PEAK_UNIT.search(word))), None)
+    peak = next((found for word in words if (found := _PEAK.search(word))), None)
     unit = match["unit"] or (peak["unit"] if peak else "")
     section = Section(
         _QUANTITIES[match["quantity"].upper()],

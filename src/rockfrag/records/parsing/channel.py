@@ -10,6 +10,7 @@ from obspy import Trace, UTCDateTime
 from obspy.core import AttribDict
 
 from rockfrag.errors import InputError
+from rockfrag.plain_text import printable
 from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
 
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
@@ -59,6 +60,11 @@ class Channel:
     details: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        # what a file says goes to terminals and tables, and may hold anything
+        for name in ("network", "station", "location", "code", "component", "member"):
+            object.__setattr__(self, name, printable(getattr(self, name)))
+        shown = {k: printable(v) if isinstance(v, str) else v for k, v in self.details.items()}
+        object.__setattr__(self, "details", shown)
         if self.start_time is not None and not _FIRST < self.start_time < _LAST:
             object.__setattr__(self, "start_time", None)
 

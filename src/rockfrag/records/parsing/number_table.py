@@ -1,80 +1,91 @@
-"""Rows of numbers below a short header of words, as plain text files have them."""
+"""Rows of numbers of a text file: where they begin, how they are separated, what stands above them."""
 
 import re
 from dataclasses import dataclass
 
 _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[EeDd][+-]?\d+)?"
 _NUMBERS = re.compile(rf"(?>{_NUMBER} )*+")
-_COUNT_AND_STEP = re.compile(rf"^\s*(?P<npts>\d+)[\s,;]+(?P<dt>{_NUMBER})\s*$")
-_STEP = re.compile(
-    rf"\bdt\s*[=:]\s*(?P<dt>{_NUMBER})(?:\s*(?:s|sec|seconds?)\b|\s*$|\s*[,;])", re.IGNORECASE
+_COMMENT = re.compile(r"^\s*(?:#|%|!|//)")
+_BLANK = re.compile(r"^[\s,;\"]*$")
+_TOUCHING = re.compile(r"(?<=[\d.])([+-])(?=\d*\.)")
+_WITH_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[EeDd][+-]?\d+)?$")
+_NEARLY_A_NUMBER = re.compile(
+    r"[+-]?(?:nan|inf(?:inity)?)$|\*{3,}$|(?=\D*\d)[\d.+\-eEdDxXp_*]+$", re.I
 )
-_COMMENT = re.compile(r"^\s*(?:#|%|!|//|\"?\s*$)")
-_MARKS = " \t#%!/"
+_DATE = re.compile(r"\d{1,4}-\d{1,2}-\d{1,4}")
+_MARKS = " \t#%!/\"'"
+_RUN = 4
+"""Rows of one width, one below the other, that are samples and not a header of numbers."""
 
-MAX_HEADER = 20
-"""Lines that may stand above the numbers."""
+LOOKED_AT = 300
+"""First lines of a file from which its layout is told."""
 
 
 @dataclass(frozen=True)
 class NumberTable:
-    """Where the numbers of a text file start and what stands above them.
+    """Where the samples of a text file start and what stands above them.
 
     Attributes
     ----------
     start
-        First row of numbers, from zero.
+        First row of samples, from zero.
     columns
         Numbers in it.
-    npts, dt
-        Number of samples and interval [s] that the header states, None where it does not.
     words
-        Lines of words above the numbers, without the marks of comments, the uppermost first.
-    free
-        How many of these are not marked as comments.
+        Number (from zero) and words of each line of words above, without the marks of comments.
+    numbers
+        Number (from zero) and numbers of each row of numbers above that is not one of the samples.
+    decimal_comma
+        Whether a comma is the decimal sign although no semicolon separates.
     """
 
     start: int
     columns: int
-    npts: int | None
-    dt: float | None
-    words: tuple[str, ...]
-    free: int
+    words: tuple[tuple[int, str], ...]
+    numbers: tuple[tuple[int, tuple[str, ...]], ...]
+    decimal_comma: bool
 
     @property
     def title(self) -> str:
         """First line of words, or an empty string."""
-        return self.words[0] if self.words else ""
+        return self.words[0][1] if self.words else ""
 
 
 def number_table(lines: list[str]) -> NumberTable | None:
-    """Find the first row of numbers and read the header above it; None if there is no such row."""
-    words: list[str] = []
-    free = 0
-    step = None
-    for number, line in enumerate(lines[:MAX_HEADER]):
-        if _COMMENT.match(line) or not is_row(line):
-            plain = line.strip(_MARKS)
-            stated = _STEP.search(line)
-            step = number_in(stated["dt"]) if stated else step
-            words += [plain] if plain else []
-            free += bool(plain) and not _COMMENT.match(line)
+    """Find the first row of samples and what stands above it; None if there is no such row."""
+    comma = has_decimal_commas(lines)
+    rows = {
+        number: numbers
+        for number, line in enumerate(lines)
+        if (numbers := numbers_of(line, comma)) and are_numbers(numbers)
+    }
+    start = _first_run(lines, rows)
+    if start is None:
+        return None
+    words = tuple(
+        (number, line.strip(_MARKS))
+        for number, line in enumerate(lines[:start])
+        if number not in rows and line.strip(_MARKS)
+    )
+    above = tuple((number, tuple(found)) for number, found in rows.items() if number < start)
+    return NumberTable(start, len(rows[start]), words, above, comma)
+
+
+def _first_run(lines: list[str], rows: dict[int, list[str]]) -> int | None:
+    """Return the first of some rows of one width, one below the other, or of those that go on to the last."""
+    last = max(rows, default=-1)
+    run: list[int] = []
+    for number in range(last + 1):
+        if is_blank(lines[number]):
             continue
-        counted = _COUNT_AND_STEP.match(line)
-        below = next((text for text in lines[number + 1 :] if text.strip()), "")
-        if counted and _is_count_line(counted, below):
-            npts, dt = int(counted["npts"]), number_in(counted["dt"])
-            return NumberTable(number + 1, width_of(below), npts, dt, tuple(words), free)
-        return NumberTable(number, width_of(line), None, step, tuple(words), free)
-    return None
-
-
-def _is_count_line(match: re.Match[str], below: str) -> bool:
-    """Tell ``npts dt`` from the first row of two columns: the next row is no time 0 + dt."""
-    npts, dt = int(match["npts"]), number_in(match["dt"])
-    if npts < 2 or not 0 < dt <= 1 or not is_row(below):
-        return False
-    return width_of(below) != 2 or number_in(numbers_of(below)[0]) < npts
+        if run and number in rows and len(rows[run[0]]) != len(rows[number]):
+            if number == last and len(run) > 1:
+                break
+            run = []
+        run = [*run, number] if number in rows else []
+        if len(run) == _RUN:
+            break
+    return run[0] if run else None
 
 
 def first_odd_row(lines: list[str]) -> int | None:
@@ -82,9 +93,28 @@ def first_odd_row(lines: list[str]) -> int | None:
     table = number_table(lines)
     if table is None:
         return None
-    filled = [i for i in range(table.start, len(lines)) if lines[i].strip()]
+    filled = [i for i in range(table.start, len(lines)) if not is_blank(lines[i])]
     odd = [i for i in filled if not is_row(lines[i]) or width_of(lines[i]) != table.columns]
     return odd[0] if odd and 2 * len(odd) < len(filled) else None
+
+
+def is_blank(line: str) -> bool:
+    """Tell whether a line has nothing but blanks and separators, as spreadsheets leave."""
+    return bool(_BLANK.match(line))
+
+
+def is_comment(line: str) -> bool:
+    """Tell whether a line is marked as a comment."""
+    return bool(_COMMENT.match(line))
+
+
+def is_damaged_row(line: str) -> bool:
+    """Tell whether a line is a row of numbers of which some are none: ``0.02 nan``, ``*****``."""
+    words = numbers_of(line)
+    return bool(words) and all(
+        are_numbers([word]) or (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word))
+        for word in words
+    )
 
 
 def is_row(line: str) -> bool:
@@ -102,9 +132,29 @@ def width_of(line: str) -> int:
     return len(numbers_of(line))
 
 
-def numbers_of(line: str) -> list[str]:
-    """Split a line at blanks and semicolons, or at blanks and commas where it has no semicolon."""
-    return line.replace(";" if ";" in line else ",", " ").split()
+def numbers_of(line: str, decimal_comma: bool = False) -> list[str]:
+    """Split a line at blanks and semicolons, or at blanks and commas where it has no semicolon.
+
+    Fortran's fields that touch, as in ``-.12E-01-.13E-01``, are told apart by their signs.
+    """
+    separator = ";" if ";" in line or decimal_comma else ","
+    return _TOUCHING.sub(r" \1", line.replace(separator, " ")).split()
+
+
+def has_decimal_commas(lines: list[str]) -> bool:
+    """Tell whether the commas of rows without semicolons can only be decimal signs.
+
+    So they are where blanks separate numbers that all have one, or where a number such as ``0,012``
+    would begin with a zero if the comma separated.
+    """
+    rows = [line.split() for line in lines if "," in line and is_row(line)]
+    if not rows or any("." in word or ";" in word for row in rows for word in row):
+        return False
+    with_comma = [word for row in rows for word in row if "," in word]
+    if not all(_WITH_DECIMAL_COMMA.match(word) for word in with_comma):
+        return False
+    several = all(len(row) > 1 for row in rows)
+    return several or any(re.search(r",0\d", word) for word in with_comma)
 
 
 def number_in(word: str) -> float:

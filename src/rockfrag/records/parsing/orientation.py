@@ -9,8 +9,8 @@ _VERTICAL = re.compile(r"^(?:V|Z|U|UD|DU|UP|DOWN|DN|DWN|VERT(?:ICAL)?|VRT|UPDO|U
 
 
 def plain_name(words: str) -> str:
-    """Return a name in capitals without blanks, points, hyphens and underscores."""
-    return re.sub(r"[\s_.-]+", "", words).upper()
+    """Return a name in capitals without blanks, marks of punctuation and the sign of a direction."""
+    return re.sub(r"[\s_.,;:+-]+", "", words).upper()
 
 
 def azimuth_of(words: str) -> float | None:

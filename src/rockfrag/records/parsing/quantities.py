@@ -8,6 +8,7 @@ from rockfrag.units import GRAVITY
 TO_SI = {
     "g": GRAVITY,
     "g/10": GRAVITY / 10,
+    "%g": GRAVITY / 100,
     "mg": GRAVITY / 1e3,
     "ug": GRAVITY / 1e6,
     "m/s2": 1.0,
@@ -30,17 +31,30 @@ _SYNONYMS = {
     "micro-g": "ug",
     "inch/s2": "in/s2",
     "inches/s2": "in/s2",
+    "%ofg": "%g",
+    "percentg": "%g",
+    "count": "counts",
 }
-_OTHER_QUANTITIES = {
-    "m/s": "velocity",
-    "cm/s": "velocity",
-    "mm/s": "velocity",
-    "in/s": "velocity",
-    "m": "displacement",
-    "cm": "displacement",
-    "mm": "displacement",
-    "in": "displacement",
+_OTHER_UNITS = {
+    "velocity": "m/s cm/s mm/s in/s km/h",
+    "displacement": "m cm mm in km inch inches ft um µm",
+    "force": "kn mn lbf kip kips kgf tf",
+    "pressure": "pa kpa mpa gpa bar psi ksi kn/m2 n/mm2",
+    "temperature": "°c degc celsius °f degf kelvin",
+    "voltage": "mv uv µv volt volts",
+    "current": "ma amp",
+    "resistance": "ohm ohms kohm mohm ω kω",
+    "frequency": "hz khz",
+    "angle": "deg ° rad mrad rad/s deg/s °/s rad/s2",
+    "strain": "µε microstrain mm/m",
+    "mass": "kg",
+    "moment": "knm kn.m kn-m nm n.m",
+    "energy": "kj kwh",
+    "level": "db dba",
+    "raw counts": "counts",
 }
+_OTHER_QUANTITIES = {unit: name for name, units in _OTHER_UNITS.items() for unit in units.split()}
+"""Units that no acceleration has; single letters are left out, which may name a direction."""
 
 
 def canonical_unit(words: str) -> str:
@@ -57,7 +71,7 @@ def canonical_unit(words: str) -> str:
 
 
 def quantity_of(unit: str) -> str:
-    """Return ``acceleration``, ``velocity`` or ``displacement`` for a canonical unit, or ``""``."""
+    """Return ``acceleration``, ``velocity``, ``force``, … for a canonical unit, or ``""`` for an unknown one."""
     if unit in TO_SI:
         return "acceleration"
     return _OTHER_QUANTITIES.get(unit, "")

@@ -31,6 +31,9 @@ _BLOCK = 2**20
 _MOST_ZEROS = 4 * _BLOCK
 """Bytes after which a file that has only zeros is given up."""
 
+_TOUCHING = re.compile(rb"(?<=[\d.])([+-])(?=\d*\.)")
+"""A sign that begins a number right behind another one, as in Fortran's ``-.12E-01-.13E-01``."""
+
 _REMARK = re.compile(r"[ \t]*(?:\*\*|#)[^\d\nA-Za-z]*[A-Za-z][^\d\n]*$")
 
 
@@ -222,11 +225,10 @@ class TextFile:
         whole = self.data[: self.data.rfind(b"\n") + 1]
         return replace(self, data=whole, cut_short=True)
 
-    def table(self, start: int, columns: int, stop: int | None = None) -> NDArray[np.float64]:
-        """Parse lines as rows of numbers, shape (rows, columns); blank lines at the end do not count.
-
-        Columns are separated by blanks, tabs, commas or semicolons; a comma beside semicolons is a
-        decimal comma.
+    def table(
+        self, start: int, columns: int, stop: int | None = None, decimal_comma: bool = False
+    ) -> NDArray[np.float64]:
+        """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`.
 
         Raises
         ------
@@ -234,20 +236,8 @@ class TextFile:
             Naming the line of the first thing that is not a number or the first row that has
             another number of columns.
         """
-        stop = len(self) if stop is None else min(stop, len(self))
-        body = self.data[self.offset(start) : self.offset(stop)].rstrip()
-        if not body:
-            self.fail("no data below the header; the file is cut short", start)
-        body = body.replace(b",", b".") if b";" in body else body.replace(b",", b" ")
-        body = body.replace(b";", b" ").replace(b"\t", b" ")
-        widths = _tokens_by_line(body)
+        values, widths = self.rows(start, stop, decimal_comma, columns)
         wrong = np.flatnonzero(widths != columns)
-        try:
-            values = parse_separated(body)
-        except NumberError as error:
-            if not wrong.size or error.line <= int(wrong[0]):
-                self.fail(str(error), start + error.line)
-            values = np.empty(0)
         if wrong.size:
             first = int(wrong[0])
             self.fail(
@@ -256,6 +246,51 @@ class TextFile:
                 start + first,
             )
         return values.reshape(-1, columns)
+
+    def rows(
+        self,
+        start: int,
+        stop: int | None = None,
+        decimal_comma: bool = False,
+        columns: int | None = None,
+    ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Parse lines as rows of numbers: all of them, shape (n,), and how many each line has.
+
+        Numbers are separated by blanks, tabs, commas or semicolons, or touch where a sign tells them
+        apart; a comma beside semicolons is a decimal comma. Lines at the end that have only separators,
+        as spreadsheets leave, do not count.
+
+        Parameters
+        ----------
+        start, stop
+            First line, and the one after the last.
+        decimal_comma
+            Whether a comma is the decimal sign although no semicolon separates.
+        columns
+            Numbers that each row should have; a row of another width above what is no number is
+            left to the caller to tell, and the values are then empty.
+
+        Raises
+        ------
+        InputError
+            Naming the line of the first thing that is not a number.
+        """
+        stop = len(self) if stop is None else min(stop, len(self))
+        body = self.data[self.offset(start) : self.offset(stop)].rstrip(b" \t\r\n,;")
+        if not body:
+            self.fail("no data below the header; the file is cut short", start)
+        separator = b";" if b";" in body or decimal_comma else b","
+        body = body.replace(separator, b" ").replace(b",", b".").replace(b"\t", b" ")
+        if _TOUCHING.search(body):
+            body = _TOUCHING.sub(rb" \1", body)
+        widths = _tokens_by_line(body)
+        try:
+            return parse_separated(body), widths
+        except NumberError as error:
+            wrong = np.flatnonzero(widths != columns) if columns else widths[:0]
+            if not wrong.size or error.line <= int(wrong[0]):
+                self.fail(str(error), start + error.line)
+        return np.empty(0), widths
 
 
 def last_row(text: TextFile, start: int) -> int:

@@ -42,12 +42,23 @@ _HOURS_BEHIND = {
 _LAST_YEAR_OF_2000S = 30
 
 
-def step_of_times(times: NDArray[np.float64], text: TextFile, first_line: int) -> float:
+def step_of_times(
+    times: NDArray[np.float64], text: TextFile, first_line: int, seconds: float = 1.0
+) -> float:
     """Return the sampling interval [s] of a column of equally spaced times.
 
     The times may be rounded to the digits they are printed with, be that decimals or significant
     digits: each must be within half a unit of its last digit (and a ten-thousandth of a step) of
     ``t0 + i dt``.
+
+    Parameters
+    ----------
+    times
+        Times as the file has them, in units of ``seconds`` [s].
+    text, first_line
+        The file and the line (from zero) of the first time, for messages.
+    seconds
+        Seconds of a unit of the times: 0.001 for milliseconds.
 
     Raises
     ------
@@ -67,21 +78,22 @@ def step_of_times(times: NDArray[np.float64], text: TextFile, first_line: int) -
     if wrong.size:
         bad, steps = int(wrong[0]), np.diff(times)
         text.fail(
-            f"times are not equally spaced: {times[bad]:g} s stands where "
-            f"{times[0] + bad * dt:g} s is expected (steps of {steps.min():g} to "
-            f"{steps.max():g} s)",
+            f"times are not equally spaced: {times[bad] * seconds:g} s stands where "
+            f"{(times[0] + bad * dt) * seconds:g} s is expected (steps of {steps.min() * seconds:g} to "
+            f"{steps.max() * seconds:g} s)",
             first_line + bad,
         )
-    rate = 1 / dt
-    if dt < 9.5 * resolution and abs(rate - round(rate)) > 1e-6 * rate:
+    rate = 1 / (dt * seconds)
+    whole = any(abs(r - round(r)) <= 1e-6 * r for r in (rate, 1 / dt))
+    if dt < 9.5 * resolution and not whole:
         text.fail(
-            f"the time column steps by {dt:g} s, which is {rate:.2f} samples a second and looks "
-            f"like a step rounded to {resolution:g} s (from anything between "
-            f"{dt - resolution / 2:g} and {dt + resolution / 2:g} s); give the true interval "
-            "with dt=",
+            f"the time column steps by {dt * seconds:g} s, which is {rate:.2f} samples a second and looks "
+            f"like a step rounded to {resolution * seconds:g} s (from anything between "
+            f"{(dt - resolution / 2) * seconds:g} and {(dt + resolution / 2) * seconds:g} s); "
+            "give the true interval with dt=",
             first_line,
         )
-    return dt
+    return dt if seconds == 1 else float(f"{dt * seconds:.12g}")
 
 
 def even_step(times: NDArray[np.float64]) -> float:

@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import IO
 
 from rockfrag.errors import InputError
+from rockfrag.plain_text import printable
 from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
 
 MAX_MEMBERS = 5_000
@@ -44,7 +45,7 @@ _UNREADABLE = (
 
 @dataclass(frozen=True)
 class Member:
-    """A file of an archive: its name there and where it lies unpacked."""
+    """A file of an archive: its name there, as far as it can be shown, and where it lies unpacked."""
 
     name: str
     path: Path
@@ -107,7 +108,7 @@ class _Room:
                         f"{archive}: it unpacks to more than {MAX_TOTAL // 2**20} MiB."
                     )
                 out.write(block)
-        return Member(name, target)
+        return Member(printable(name), target)
 
 
 def _kind(path: str | os.PathLike[str]) -> str:

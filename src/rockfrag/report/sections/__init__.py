@@ -17,6 +17,7 @@ from rockfrag.report.sections.measures import MEASURES
 from rockfrag.report.sections.motions import MOTIONS
 from rockfrag.report.sections.pedestal import PEDESTAL
 from rockfrag.report.sections.shaker import SHAKER
+from rockfrag.report.sections.two_measures import TWO_MEASURES
 from rockfrag.report.sections.validity import VALIDITY
 
 PARTS: tuple[Part, ...] = (
@@ -26,6 +27,7 @@ PARTS: tuple[Part, ...] = (
     COMPARISONS,
     PEDESTAL,
     FRAGILITY,
+    TWO_MEASURES,
     FLOOR_CURVES,
     MEASURES,
     VALIDITY,

@@ -4,7 +4,7 @@ const root = document.getElementById("live");
 const find = (name) => root.querySelector("." + name);
 const data = JSON.parse(document.getElementById("live-data").textContent);
 const CHEAP = 60; // amplitudes of a bar that is not of the study's table
-const SIZES = [["width", "Width", "cm"], ["height", "Height", "cm"], ["mass", "Mass", "kg"]];
+const SIZES = [["width", "Width", "cm"], ["height", "Height", "cm"], ["cgHeight", "Centre of gravity", "cm"], ["mass", "Mass", "kg"]];
 
 function bytesOf(text) {
   const found = atob(text);
@@ -379,7 +379,9 @@ function fillSizes() {
       const factor = unit === "cm" ? 100 : 1;
       input.type = "number";
       input.step = "any";
-      input.value = String(+(spec()[part][key] * factor).toPrecision(8));
+      // half the height, where the centre of gravity was not given
+      const value = spec()[part][key] ?? spec()[part].height / 2;
+      input.value = String(+(value * factor).toPrecision(8));
       input.addEventListener("input", () => {
         const value = Number(input.value) / factor;
         if (!(value > 0)) return;

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.engines.kernels.jit import compiling_alone
-from rockfrag.rocking.contact._body import BODY, OUTCOME, contact_body, posed, working_memory
-from rockfrag.rocking.contact._march import EVENT, HISTORY, Book, Cases, march_cases
-from rockfrag.rocking.contact.friction import Friction
+from rockfrag.engines.planar.integrate import Book, Cases, integrate_cases
+from rockfrag.engines.planar.records import BODY, MOST, OUTCOME, posed, working_memory
+from rockfrag.rocking.contact.friction import contact_record
 from rockfrag.rocking.inputs import free_samples, step_count
 from rockfrag.system.blocks import Body
+from rockfrag.system.contact import Friction
 
 Array = NDArray[np.float64]
 
@@ -59,12 +59,12 @@ def contact_outcomes(
     step: float,
     threads: int,
 ) -> NDArray[np.void]:
-    """March the ``wanted`` cases of bodies × motions × scales.
+    """Integrate the ``wanted`` cases of bodies × motions × scales.
 
     Parameters
     ----------
     wanted
-        Which cases to march, shape (bodies, motions, scales); the others are left zero.
+        Which cases to integrate, shape (bodies, motions, scales); the others are left zero.
     g, step, threads
         As in :func:`rockfrag.rocking.overturns`.
 
@@ -74,9 +74,9 @@ def contact_outcomes(
     """
     bodies, dts = standing.bodies, moving.dts
     table = np.zeros(len(bodies), BODY)
-    starts = np.zeros((len(bodies), 2, 6))
+    starts = np.zeros((len(bodies), 2, 3 * MOST))
     for i, (body, friction, *start) in enumerate(zip(*standing, strict=True)):
-        table[i] = contact_body(body, friction, g)
+        table[i] = contact_record(body, friction, g)
         starts[i] = posed(table[i], *start)
     cases = Cases(
         bodies=table,
@@ -91,13 +91,12 @@ def contact_outcomes(
     )
     outcome = np.zeros(wanted.size, OUTCOME)
     numbers = np.flatnonzero(wanted)
-    book = Book(np.zeros((0, HISTORY)), np.zeros((0, EVENT)))
+    book = Book(np.zeros((0, 0)), np.zeros((0, 0)))
 
     def work(first: int, last: int) -> None:
-        march_cases(numbers[first:last], cases, COARSE_CLOSING, book, working_memory(), outcome)
+        integrate_cases(numbers[first:last], cases, COARSE_CLOSING, book, working_memory(), outcome)
 
-    with compiling_alone(march_cases):
-        work(0, 0)
+    work(0, 0)
     with ThreadPoolExecutor(threads) as pool:
         firsts = range(0, numbers.size, CHUNK)
         list(pool.map(work, firsts, [first + CHUNK for first in firsts]))

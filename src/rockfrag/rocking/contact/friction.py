@@ -3,25 +3,15 @@
 import math
 import numbers
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
+from rockfrag.engines.planar.records import system_record
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
-from rockfrag.system.blocks import Block, Body
-
-
-class Friction(NamedTuple):
-    """Coefficients of friction of one interface [-], at most ``ROUGHEST``."""
-
-    static: float
-    kinetic: float
-
-
-ROUGHEST = 1e6
-"""Larger coefficients, infinite ones too, are taken as this one: a contact that is about to lift off while it
-carries a shear then slides off, as in the limit, and no case of its own is needed."""
+from rockfrag.system.blocks import Block, Body, as_system
+from rockfrag.system.contact import BY_MOMENTUM, ROUGHEST, Friction, ImpactLaw
 
 FrictionInput = float | Sequence[float | tuple[float, float]]
 """A number for a lone block; (ground, interface) for a stack; a pair (static, kinetic) in place of a number."""
@@ -82,6 +72,20 @@ def listed_frictions(bodies: Sequence[Body], friction: object) -> list[tuple[Fri
         interface_frictions(body, one, f"friction[{i}]")
         for i, (body, one) in enumerate(zip(bodies, friction, strict=True))
     ]
+
+
+def contact_record(
+    body: Body, frictions: Sequence[Friction], g: float, laws: Sequence[ImpactLaw] | None = None
+) -> np.void:
+    """Return the record of a body, with friction and laws of impacts of its contacts, that kernels read."""
+    system = as_system(body)
+    contacts = tuple(
+        replace(contact, friction=friction, law=law)
+        for contact, friction, law in zip(
+            system.contacts, frictions, laws or (BY_MOMENTUM,) * system.count, strict=True
+        )
+    )
+    return system_record(replace(system, contacts=contacts), g)
 
 
 def check_impacts_follow(restitution: object, linear: bool) -> None:

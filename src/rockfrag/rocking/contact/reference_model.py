@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.rocking.contact.friction import Friction
 from rockfrag.system.blocks import Block, Body, Vector
+from rockfrag.system.contact import Friction
 
 Array = NDArray[np.float64]
 

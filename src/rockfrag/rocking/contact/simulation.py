@@ -8,23 +8,26 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.kernels.single import GRAZING_SPEED
-from rockfrag.input_checks import positive_number
-from rockfrag.rocking.contact._body import contact_body, posed, working_memory
-from rockfrag.rocking.contact._march import (
+from rockfrag.engines.planar.integrate import (
     CHANGE,
-    EVENT,
     FALLEN,
-    HISTORY,
     IMPACT,
     PARADOX,
     PASSING,
     Book,
     Shaking,
-    march,
+    event_columns,
+    history_columns,
+    integrate,
 )
-from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
+from rockfrag.engines.planar.records import posed, working_memory
+from rockfrag.input_checks import positive_number
+from rockfrag.rocking.contact.friction import (
+    FrictionInput,
+    contact_record,
+    interface_frictions,
+)
 from rockfrag.rocking.inputs import (
     STEP,
     MotionLike,
@@ -36,6 +39,7 @@ from rockfrag.rocking.inputs import (
 )
 from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
 from rockfrag.system.blocks import Block, Body
+from rockfrag.system.contact import ImpactLaw
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -56,6 +60,7 @@ def simulate_with_friction(
     dt: float,
     *,
     friction: FrictionInput,
+    laws: Sequence[ImpactLaw] | None = None,
     vertical: MotionLike | None = None,
     theta0: float | Sequence[float] | None = None,
     omega0: float | Sequence[float] | None = None,
@@ -69,6 +74,8 @@ def simulate_with_friction(
     ----------
     body, acceleration, dt, friction, vertical, theta0, omega0, g
         As in :func:`rockfrag.rocking.simulate`.
+    laws
+        Laws of the impacts of each contact, from below; momentum if None.
     step
         Largest product of the frequency parameter and the step [-].
     closing
@@ -83,26 +90,27 @@ def simulate_with_friction(
     values, interval = checked_motion(acceleration, dt)
     up = checked_vertical(vertical, values, interval)
     positive_number("g", g, "m/s²")
-    p = contact_body(body, interface_frictions(body, friction), g)
+    p = contact_record(body, interface_frictions(body, friction), g, laws)
     blocks = int(p["count"])
     start = posed(p, checked_start(body, theta0, "theta0"), checked_start(body, omega0, "omega0"))
     substeps, free = int(step_count(body, interval, g, step)), int(free_samples(body, interval, g))
     shaking = Shaking(values, up, interval, 1.0, substeps, free)
-    history = np.zeros((values.size + free, HISTORY))
+    history = np.zeros((values.size + free, history_columns(blocks)))
     work = working_memory()
     capacity = 4096
     while True:
-        events = np.zeros((capacity, EVENT))
-        with compiling_alone(march):
-            done, count, fall = march(p, shaking, start, closing, Book(history, events), work)
+        events = np.zeros((capacity, event_columns(blocks)))
+        done, count, fall = integrate(p, shaking, start, closing, Book(history, events), work)
         if count <= capacity:
             break
         capacity = count
     history, events = history[:done], events[:count]
     time = np.arange(done, dtype=np.float64) * interval
-    centres = history[:, :6].reshape(done, 2, 3)[:, :blocks]
-    speeds = history[:, 6:12].reshape(done, 2, 3)[:, :blocks]
-    modes = [_modes(number, blocks) for number in history[:, 21]]
+    centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).transpose(1, 0, 2, 3)
+    slips, normal, shear, alpha = (
+        history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks).transpose(1, 0, 2)
+    )
+    modes = [_modes(number, blocks) for number in history[:, -1]]
     fallen = int(work["fallen"])
     names = ("", "block") if isinstance(body, Block) else ("", "pedestal", "statue")
     table = _event_table(events, blocks)
@@ -115,22 +123,22 @@ def simulate_with_friction(
         position=centres[:, :, :2],
         theta=centres[:, :, 2],
         omega=speeds[:, :, 2],
-        alpha=history[:, 22 : 22 + blocks],
+        alpha=alpha,
         state=np.array([[state for state, _ in mode] for mode in modes]),
         slides=np.array([[slides for _, slides in mode] for mode in modes]),
-        slip=history[:, 12 : 12 + blocks],
+        slip=slips,
         events=table,
         overturned=fallen > 0,
         overturned_body=names[fallen],
         overturning_time=float(fall),
         energy=_energy_table(p, time, history, events),
-        normal_force=history[:, 14 : 14 + blocks],
-        friction_force=history[:, 16 : 16 + blocks],
+        normal_force=normal,
+        friction_force=shear,
         impacts=int(work["impacts"]),
         grazings=_grazings(table),
-        given_way=0,
-        friction_demand=sampled_demand(history[:, 14 : 14 + blocks], history[:, 16 : 16 + blocks]),
-        least_normal_force=np.asarray(history[:, 14 : 14 + blocks].min(axis=0)),
+        given_way=int(work["given_way"]),
+        friction_demand=sampled_demand(normal, shear),
+        least_normal_force=np.asarray(normal.min(axis=0)),
         lost_contact=math.nan,
         paradoxes=int(work["paradoxes"]),
         forced=int(work["forced"]),
@@ -148,19 +156,20 @@ def _event_table(events: Array, blocks: int) -> pd.DataFrame:
     rows: list[dict[str, Any]] = []
     for event in events:
         before, after = _modes(event[2], blocks), _modes(event[3], blocks)
+        slips, theta, old, new = event[6:].reshape(4, blocks).tolist()
         rows.append(
             {
                 "time": event[0],
                 "kind": _KINDS.get(int(event[1])) or _kind_of_change(before, after),
                 "from": _pattern(before),
                 "to": _pattern(after),
-                "omega_before": tuple(event[10 : 10 + blocks].tolist()),
-                "omega_after": tuple(event[12 : 12 + blocks].tolist()),
-                "theta": tuple(event[8 : 8 + blocks].tolist()),
-                "energy_before": event[6],
-                "energy_after": event[7],
+                "omega_before": tuple(old),
+                "omega_after": tuple(new),
+                "theta": tuple(theta),
+                "energy_before": event[4],
+                "energy_after": event[5],
                 "modes": tuple(mode_name(*mode) for mode in after),
-                "slip": tuple(event[4 : 4 + blocks].tolist()),
+                "slip": tuple(slips),
             }
         )
     columns = [
@@ -199,10 +208,10 @@ def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.
     blocks = int(p["count"])
     coordinates = slice(0, 3 * blocks)
     inertia = 1.0 / p["inverse"][coordinates]
-    kinetic = (inertia * history[:, 6:12][:, coordinates] ** 2).sum(axis=1) / 2
-    potential = float(p["g"]) * (p["mass"] * history[:, [1, 4]]).sum(axis=1)
+    kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
+    potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(axis=1)
     struck = np.isin(events[:, 1], (IMPACT, PARADOX))
-    loss = np.where(struck, events[:, 6] - events[:, 7], 0.0)
+    loss = np.where(struck, events[:, 4] - events[:, 5], 0.0)
     # an impact closes the ground if the pedestal's contact changed, the interface otherwise
     by_ground = np.array([_meets_ground(event, blocks) for event in events], dtype=bool)
     at = np.searchsorted(time, events[:, 0] - 1e-12 * max(1.0, time[-1]))
@@ -210,7 +219,7 @@ def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.
     for row, mine in enumerate((by_ground, ~by_ground)):
         np.add.at(lost[row], at, loss * mine)
     ground, interface = np.cumsum(lost, axis=1)[:, : time.size]
-    work, rubbed = history[:, 18], history[:, 19]
+    work, rubbed = history[:, -4], history[:, -3]
     start = kinetic[0] + potential[0] + ground[0] + interface[0]
     return pd.DataFrame(
         {

@@ -15,19 +15,17 @@ REPORTED_SIDE = {GROUND: 1, THIRD: -1, FIFTH: -1}
 """Whether the thesis reports a ratio above (1) or below one (-1) on a floor (sections 4.3 and 4.4)."""
 
 
-def ratios_figure(effects: pd.DataFrame, wide: pd.DataFrame | None) -> Figure:
-    """Draw the ratio P/NP over all pairs, on each floor, and of a study of more earthquakes where there is one.
+def ratios_figure(effects: pd.DataFrame) -> Figure:
+    """Draw the ratio P/NP over all pairs and on each floor.
 
     Parameters
     ----------
-    effects, wide
+    effects
         Rows of one reading of :func:`rockfrag.pedestal.effects_table`.
     """
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
     rows = [("all floors", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
-    if wide is not None:
-        rows += [("wide study", row) for row in wide[wide["scope"] == "whole"].to_dict("records")]
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 1.0 + 0.33 * len(rows))
         axes = figure.subplots()

@@ -1,7 +1,5 @@
 """What stands first on the page of a study that is compared with the thesis."""
 
-import pandas as pd
-
 from rockfrag.report.answer import could_overturn, questions, rests_on, study_answer
 from rockfrag.report.part import Answer, FigureSpec, Results
 from rockfrag.report.sections.explanation import asks_explanation
@@ -9,7 +7,6 @@ from rockfrag.report.sections.inversion import asks_inversion
 from rockfrag.shaketable.readings import READING
 from rockfrag.thesis.figures.answer import ratios_figure
 from rockfrag.thesis.first_page import first_page
-from rockfrag.thesis.stages import wide_effects
 
 
 def thesis_answer(results: Results) -> Answer:
@@ -19,12 +16,10 @@ def thesis_answer(results: Results) -> Answer:
         return study_answer(results)
     effects = results.table("pedestal/effects")
     explanation = results.table("explanation/effects") if asks_explanation(study) else None
-    beside = wide_effects(study, results.folder.parent)
-    wide = pd.read_parquet(beside[0]) if beside else None
     inversion = results.table("explanation/inversion") if asks_inversion(study) else None
     settings = study.more.explanation
     wanted = {} if settings is None else settings.wanted_percent
-    found = first_page(effects, results.table("claims"), explanation, wide, inversion, wanted)
+    found = first_page(effects, results.table("claims"), explanation, inversion, wanted)
     here = effects[effects["reading"] == READING]
     return Answer(
         asked="Does a pedestal make a statue overturn later on the ground and earlier on upper floors, as the "
@@ -35,7 +30,7 @@ def thesis_answer(results: Results) -> Answer:
             f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
             "Overturning amplitude with over that without pedestal, with 95 % intervals over earthquakes; grey is "
             "±10 %. Arrows show on which side of 1 the thesis reports each floor.",
-            lambda: ratios_figure(here, None if wide is None else wide[wide["reading"] == READING]),
+            lambda: ratios_figure(here),
         ),
         rests_on=rests_on(results),
         could_overturn=could_overturn(results),

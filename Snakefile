@@ -1,4 +1,0 @@
-include: "workflow/Snakefile"
-
-
-workflow.default_target = "all"

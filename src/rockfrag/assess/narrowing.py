@@ -1,0 +1,98 @@
+"""What measurement would narrow an interval most, and to what."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from scipy import special
+
+from rockfrag.assess.risk import Estimate
+
+LIKELY, UNLIKELY = 0.5, 0.01
+"""An interval of a share that holds both tells nothing."""
+
+LEAST_GAIN = 0.15
+"""Share of the variance that a measurement must take away to be worth naming."""
+
+MOST_NAMED = 2
+"""Measurements that are named together."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Something that a user could measure or find out.
+
+    Attributes
+    ----------
+    words
+        What it is.
+    left
+        What it leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care.
+    """
+
+    words: str
+    left: float
+
+
+MEASUREMENTS: Mapping[str, Measurement] = {
+    "conversion": Measurement("the ground velocity (PGV) of the site", 0.0),
+    "period": Measurement("the building's first period to 5 %", 1 / 6),
+    "damping": Measurement("the building's damping to 15 %", 0.4),
+    "width": Measurement("the width on which it stands to 0.5 %", 0.25),
+    "cg_height": Measurement("the height of its centre of gravity to 1 %", 0.2),
+    "restitution": Measurement("its restitution to 1 %", 0.2),
+    "mass": Measurement("its mass to 2 %", 0.1),
+    "hazard": Measurement("a hazard curve of the site", 0.5),
+}
+"""Measurements by the source of uncertainty that they narrow."""
+
+
+@dataclass(frozen=True)
+class Narrowed:
+    """An interval as it would be with more known.
+
+    Attributes
+    ----------
+    known
+        Sources that were measured, the most helpful first.
+    estimate
+        The same value with the narrower interval.
+    """
+
+    known: tuple[str, ...]
+    estimate: Estimate
+
+
+def is_wide(estimate: Estimate) -> bool:
+    """Whether an interval reaches from unlikely to likely."""
+    return estimate.lower < UNLIKELY and estimate.upper > LIKELY
+
+
+def narrowed(estimate: Estimate) -> Narrowed | None:
+    """Return the interval with the measurements that narrow it most; None where none is worth it.
+
+    Parameters
+    ----------
+    estimate
+        A probability or share with its sources.
+    """
+    variances = {name: value**2 for name, value in estimate.sources.items()}
+    total = sum(variances.values())
+    if not (0 < estimate.value < 1 and math.isfinite(total) and total > 0):
+        return None
+    gains = {
+        name: variances.get(name, 0.0) * (1 - measurement.left**2) / total
+        for name, measurement in MEASUREMENTS.items()
+    }
+    known = sorted((n for n in gains if gains[n] >= LEAST_GAIN), key=lambda n: -gains[n])
+    known = known[:MOST_NAMED]
+    if not known:
+        return None
+    left = {
+        name: value * (MEASUREMENTS[name].left if name in known else 1.0)
+        for name, value in estimate.sources.items()
+    }
+    ratio = math.sqrt(sum(value**2 for value in left.values()) / total)
+    middle, low, high = special.logit([estimate.value, estimate.lower, estimate.upper])
+    lower, upper = (float(special.expit(middle + ratio * (end - middle))) for end in (low, high))
+    return Narrowed(tuple(known), Estimate(estimate.value, lower, upper, left))

@@ -1,0 +1,1 @@
+"""Columns of planar bodies that stick, slide, rock, fly and land, event by event (``docs/contact.md``)."""

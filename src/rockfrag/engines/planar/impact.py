@@ -1,0 +1,171 @@
+"""Impacts: impulses at touching ends, Coulomb's law on them, and each contact's own law (``docs/contact.md``)."""
+
+from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.planar.modes import (
+    approach,
+    kinetic_energy,
+    project,
+    remember_slides,
+    slip_speed,
+)
+from rockfrag.engines.planar.search import search
+from rockfrag.engines.planar.solve import bias, end_of, rate, solve
+from rockfrag.system.geometry import COUPLE, MOMENTUM, POSITION
+
+NO_GAIN = 1e-12
+"""Fraction of the kinetic energy below which a gain is rounding."""
+HALVINGS = 40
+"""Halvings of the interval in which a law that gives way keeps the energy."""
+CROWD = 100
+"""Events within a sample after which speeds below the closing speed count as none, whatever pulls."""
+UNREACHED = 1e-7
+"""Violation above which an impact has no outcome under a law."""
+
+
+@kernel
+def strike(p, w, ah, av, closing, push):
+    """Impulses at the touching ends; sets mode and velocities.
+
+    ``closing``: speed [m/s] below which a contact that parts and would fall shut again stays closed.  ``push``:
+    nothing approaches, but no mode was consistent; see ``docs/contact.md``, 7.
+    """
+    before = kinetic_energy(p, w.v)
+    lawful = _read_laws(p, w, push)
+    for k in range(p.count):
+        w.moves[k] = 0
+        w.limit[k] = p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
+        if push:
+            w.v[3 * k + 1] -= 1e-7 * p.speed
+    scale = 1e-300
+    mass = 0.0
+    for k in range(p.count):
+        mass += p.mass[k]
+        scale = max(scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2]))
+    search(p, w, ah, av, True, mass * scale, scale, -1)
+    solve(p, w, w.q, w.v, ah, av, True)
+    if lawful:
+        _obey(p, w, ah, av, mass * scale, scale)
+    lift_laws(p, w)
+    remember_slides(p, w)
+    for d in range(3 * p.count):
+        w.v[d] = w.out[d]
+    while _shut_weak(p, w, ah, av, closing):
+        solve(p, w, w.q, w.v, ah, av, True, False)
+        for d in range(3 * p.count):
+            w.v[d] = w.out[d]
+    project(p, w)
+    w.struck += before - kinetic_energy(p, w.v)
+    w.impacts += 1
+
+
+@kernel
+def lift_laws(p, w):
+    """Let impulses be plastic."""
+    for k in range(p.count):
+        w.share[k, 0] = w.share[k, 1] = 0.0
+        w.drive[k] = -1
+
+
+@kernel
+def _read_laws(p, w, push):
+    """Note which interfaces come down on one end while the other is closed; whether any of them has a law."""
+    lawful = False
+    for k in range(p.count):
+        w.falls[k] = -1
+        for end in range(2):
+            if push or w.touching[k, end] == 0 or w.touching[k, 1 - end] == 0:
+                continue
+            if w.old_closed[k, 1 - end] == 0 or w.old_closed[k, end] == 1:
+                continue
+            speed = approach(p, w, k, end)
+            if speed < 0.0 and p.law[k, end] != MOMENTUM:
+                w.falls[k] = end
+                w.goal[k, 1] = -speed
+                lawful = True
+    return lawful
+
+
+@kernel
+def _obey(p, w, ah, av, force, motion):
+    """Let the laws of the contacts act on the plastic outcome that is in ``w``, as far as no energy is gained."""
+    before = kinetic_energy(p, w.v)
+    for k in range(p.count):
+        end = w.falls[k]
+        if end < 0:
+            continue
+        x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, 1 - end, w.kind[k, 1 - end])
+        w.goal[k, 0] = max(0.0, rate(p, w.q, w.out, k, x, y, -ty, tx))
+        if p.law[k, end] == COUPLE:
+            w.goal[k, 1] = w.goal[k, 0] * p.number[k, end]
+        else:
+            w.goal[k, 1] *= p.number[k, end]
+        if p.law[k, end] == COUPLE and (w.closed[k, end] == 0 or w.closed[k, 1 - end] == 1):
+            # it stays shut, or leaves altogether: nothing to multiply
+            w.falls[k] = -1
+    if _outcome(p, w, ah, av, force, motion, 1.0, before):
+        return
+    w.given_way += 1
+    low, high = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if _outcome(p, w, ah, av, force, motion, middle, before):
+            low = middle
+        else:
+            high = middle
+    _outcome(p, w, ah, av, force, motion, low, before)
+
+
+@kernel
+def _outcome(p, w, ah, av, force, motion, part, before):
+    """Outcome of an impact that obeys a ``part`` of the laws; whether there is one that gains no energy."""
+    lift_laws(p, w)
+    for k in range(p.count):
+        end = w.falls[k]
+        if end < 0 or part == 0.0:
+            continue
+        if p.law[k, end] == POSITION:
+            place = p.number[k, end]
+            w.share[k, end] = part * (1.0 - place) / (1.0 + place)
+        else:
+            w.drive[k] = 1 - end
+            w.depart[k] = w.goal[k, 0] + part * (w.goal[k, 1] - w.goal[k, 0])
+            w.closed[k, end], w.closed[k, 1 - end] = 1, 0
+    wrong = search(p, w, ah, av, True, force, motion, -1)
+    solve(p, w, w.q, w.v, ah, av, True)
+    return wrong <= UNREACHED and kinetic_energy(p, w.out) <= before * (1.0 + NO_GAIN)
+
+
+@kernel
+def _shut_weak(p, w, ah, av, closing):
+    """Close the ends that part so slowly after an impact that they would only chatter; whether there are any.
+
+    Where events accumulate all that part slowly are closed, and all that slide slowly stick: what pulls depends on
+    the sign of a slip that is as good as none.
+    """
+    crowd = w.met > CROWD
+    weak = False
+    for k in range(p.count):
+        for end in range(2):
+            if w.touching[k, end] == 1 and w.closed[k, end] == 0:
+                weak = weak or approach(p, w, k, end) < closing
+        if crowd and w.slides[k] != 0:
+            weak = weak or abs(slip_speed(p, w, w.v, k, False)) < closing
+    if not weak:
+        return False
+    solve(p, w, w.q, w.v, ah, av, False)
+    found = False
+    for k in range(p.count):
+        for end in range(2):
+            if w.touching[k, end] == 1 and w.closed[k, end] == 0:
+                x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
+                pull = rate(p, w.q, w.out, k, x, y, -ty, tx) + bias(
+                    w.q, w.v, k, x, y, -ty, tx, kind
+                )
+                slow = rate(p, w.q, w.v, k, x, y, -ty, tx) < closing
+                if (pull < 0.0 or crowd) and slow:
+                    w.closed[k, end] = 1
+                    found = True
+        if crowd and w.slides[k] != 0 and abs(slip_speed(p, w, w.v, k, False)) < closing:
+            w.slides[k] = 0
+            found = True
+    return found

@@ -1,0 +1,589 @@
+"""Integrating one column through one motion, event by event, with friction and flight."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.engines.planar.compile import entry_kernel, kernel
+from rockfrag.engines.planar.impact import lift_laws, strike
+from rockfrag.engines.planar.modes import approach, kinetic_energy, project, settle
+from rockfrag.engines.planar.search import mode_number
+from rockfrag.engines.planar.solve import end_of, look_at, solve
+from rockfrag.engines.planar.step import (
+    EDGE,
+    FALL,
+    FRICTION,
+    GAP,
+    Stretch,
+    beginning,
+    comes_near,
+    first_failure,
+    ground_at,
+    least_margin,
+    margin_at,
+    start_step,
+    take_step,
+)
+
+MOST_EVENTS = 300
+"""Events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
+
+MOST_IDLE = 30
+"""Events on the spot after which a step is taken without looking for more."""
+
+
+def history_columns(count: int) -> int:
+    """Columns of a history: q (3 n), v (3 n), slip, normal force, shear and angular acceleration (n each), and
+    work, rubbed, struck, mode.
+    """  # noqa: D205
+    return 10 * count + 4
+
+
+def event_columns(count: int) -> int:
+    """Columns of the events: time, kind, mode before and after, kinetic energy before and after [J], and of each
+    body or interface the slip [m], the rotation, the angular velocity before and after.
+    """  # noqa: D205
+    return 6 + 4 * count
+
+
+CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
+"""Kinds of events: the last is a corner that passes an edge while nothing else changes."""
+
+
+Array = NDArray[np.float64]
+
+
+class Shaking(NamedTuple):
+    """One motion, and in what steps it is integrated.
+
+    Attributes
+    ----------
+    horizontal, vertical : samples [m/s²], zero after the last; an empty ``vertical`` is zero throughout
+    dt : sampling interval [s]
+    scale : factor on the samples
+    substeps : steps per sample
+    free_samples : samples that the integration goes on after the last one at most
+    """
+
+    horizontal: Array
+    vertical: Array
+    dt: float
+    scale: float
+    substeps: int
+    free_samples: int
+
+
+class Book(NamedTuple):
+    """What is written down on the way.
+
+    Attributes
+    ----------
+    history : (samples, history_columns), or of no rows
+    events : (capacity, event_columns), or of no rows
+    """
+
+    history: Array
+    events: Array
+
+
+class Cases(NamedTuple):
+    """Bodies × motions × scales, the scale running fastest.
+
+    Attributes
+    ----------
+    bodies : (bodies,) BODY
+    starts : (bodies, 2, 3 MOST) coordinates and velocities
+    horizontal, vertical : all motions end to end; ``vertical`` may be empty
+    offsets : (motions + 1,) where each begins
+    dts : (motions,) sampling intervals [s]
+    factors : (motions, scales)
+    substeps, free_samples : (bodies, motions)
+    """
+
+    bodies: NDArray[Any]
+    starts: Array
+    horizontal: Array
+    vertical: Array
+    offsets: NDArray[np.int64]
+    dts: Array
+    factors: Array
+    substeps: NDArray[np.int64]
+    free_samples: NDArray[np.int64]
+
+
+class Instant(NamedTuple):
+    """A time [s], and the accelerations of the ground then [m/s²]."""
+
+    time: float
+    ah: float
+    av: float
+
+
+@entry_kernel
+def integrate_cases(numbers, cases, closing, book, w, outcome):
+    """Integrate the cases of some ``numbers``, and keep their outcomes.
+
+    Parameters
+    ----------
+    numbers : of the cases to integrate
+    cases : Cases
+    closing : as of integrate
+    book : Book, of no rows
+    w : WORK
+    outcome : (all cases,) OUTCOME
+    """
+    motions, scales = cases.factors.shape
+    for number in numbers:
+        b = number // (motions * scales)
+        m = number // scales - b * motions
+        begin, end = cases.offsets[m], cases.offsets[m + 1]
+        up = cases.vertical[begin:end] if cases.vertical.size > 0 else cases.vertical
+        shaking = Shaking(
+            cases.horizontal[begin:end],
+            up,
+            cases.dts[m],
+            cases.factors[m, number % scales],
+            cases.substeps[b, m],
+            cases.free_samples[b, m],
+        )
+        _, _, fall = integrate(cases.bodies[b], shaking, cases.starts[b], closing, book, w)
+        out = outcome[number]
+        out.fallen = w.fallen
+        out.time = fall
+        out.impacts = w.impacts
+        out.paradoxes = w.paradoxes
+        out.forced = w.forced
+        out.several = w.several
+        out.given_way = w.given_way
+        out.parted = w.parted
+        look_at(cases.bodies[b], w, w.q)
+        for k in range(cases.bodies[b].count):
+            out.peak[k] = w.peak[k]
+            out.peak_speed[k] = w.peak_speed[k]
+            out.peak_slip[k] = w.peak_slip[k]
+            out.slid[k] = w.slid[k]
+            out.flights[k] = w.flights[k]
+            out.hits[k] = w.hits[k]
+            out.slip[k] = slip(cases.bodies[b], w, k)
+
+
+@entry_kernel
+def integrate(p, shaking, start, closing, book, w):
+    """Integrate one column through ``scale`` × the motion and on until it rests or has fallen.
+
+    Parameters
+    ----------
+    p : BODY
+    shaking : Shaking
+    start : (2, 3 MOST) coordinates and velocities
+    closing : speed over √(g b) below which a contact stays closed after an impact
+    book : Book
+    w : WORK
+
+    Returns
+    -------
+    Samples done, events met, and the time of the fall [s] (NaN if none; ``w.fallen`` says which).
+    """
+    _begin(p, w, start)
+    dt, substeps = shaking.dt, shaking.substeps
+    n = shaking.horizontal.size
+    ledger = book.history.shape[0] > 0
+    now = _now(shaking, 0)
+    count = _handle(p, w, now, closing, True, False, book.events, 0)
+    fresh = True  # the acceleration in w.a is not that of this state and mode
+    if ledger:
+        _keep(p, w, 0, now, book.history)
+    known_rest = False
+    done = 1
+    fall = math.nan
+    idle = 0
+    for i in range(n - 1 + shaking.free_samples):
+        late = _now(shaking, i + 1)
+        sample = Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
+        tau = 0.0
+        w.met = 0
+        while tau < 1.0:
+            if w.resting == 1:
+                if not known_rest:
+                    _rest_margins(p, w)
+                    known_rest = True
+                tau = _rest_ends(p, w, tau, now, late)
+                if tau > 1.0:
+                    break
+                known_rest = False
+                fresh = True
+                ah, av = ground_at(sample, tau)
+                count = _handle(
+                    p, w, Instant((i + tau) * dt, ah, av), closing, True, True, book.events, count
+                )
+                w.met += 1
+                if w.resting == 1:
+                    # it failed by rounding only
+                    tau += 1e-9
+                continue
+            known_rest = False
+            step = (math.floor(tau * substeps + 1e-9) + 1.0) / substeps - tau
+            ah, av = ground_at(sample, tau)
+            stretch = Stretch(step * dt, ah, av, step * sample.rise_h, step * sample.rise_v)
+            if fresh:
+                look_at(p, w, w.q)
+                solve(p, w, w.q, w.v, ah, av, False)
+                for d in range(3 * p.count):
+                    w.a[d] = w.out[d]
+            start_step(p, w)
+            work, rubbed = take_step(p, w, stretch, ledger)
+            at_end = least_margin(p, w, w.q1, w.v1)
+            when = 2.0
+            if idle <= MOST_IDLE:
+                when = _event_in_step(p, w, at_end, stretch)
+            else:
+                # events that do not let time go on: leave them behind
+                idle = 0
+                w.forced += 1
+            if when > 1.0:
+                for d in range(3 * p.count):
+                    w.q[d] = w.q1[d]
+                    w.v[d] = w.v1[d]
+                    w.a[d] = w.a1[d]
+                fresh = False
+                project(p, w)
+                tau += step
+                if 1.0 - tau < 1e-12:
+                    tau = 1.0
+            else:
+                margin_at(p, w, when, stretch)  # sets what fails
+                if when > 0.0:
+                    work, rubbed = take_step(p, w, beginning(stretch, when), ledger)
+                    for d in range(3 * p.count):
+                        w.q[d] = w.q1[d]
+                        w.v[d] = w.v1[d]
+                else:
+                    work = 0.0
+                    rubbed = 0.0
+                    for d in range(3 * p.count):
+                        w.q[d] = w.q0[d]
+                        w.v[d] = w.v0[d]
+                project(p, w)
+                tau += when * step
+                idle = idle + 1 if when < 1e-9 else 0
+                w.met += 1
+                coarser = closing * 10.0 ** (w.met // MOST_EVENTS)
+                if w.met >= MOST_EVENTS:
+                    w.forced += 1
+                ah, av = ground_at(sample, tau)
+                count = _handle(
+                    p, w, Instant((i + tau) * dt, ah, av), coarser, False, False, book.events, count
+                )
+                fresh = True
+                if w.met > 10 * MOST_EVENTS:
+                    tau = 1.0
+            w.work += work
+            w.rubbed += rubbed
+            _track(p, w)
+            if w.fallen > 0:
+                fall = (i + tau) * dt
+                break
+        done = i + 2
+        now = late
+        if ledger:
+            _keep(p, w, i + 1, now, book.history)
+        if w.fallen > 0:
+            break
+        if i >= n - 1 and w.resting == 1:
+            break
+    return done, count, fall
+
+
+@kernel
+def _now(shaking, i):
+    """Sample i of a motion."""
+    ah, av = 0.0, 0.0
+    if i < shaking.horizontal.size:
+        ah = shaking.horizontal[i] * shaking.scale
+        if shaking.vertical.size > 0:
+            av = shaking.vertical[i] * shaking.scale
+    return Instant(i * shaking.dt, ah, av)
+
+
+@kernel
+def _begin(p, w, start):
+    for d in range(3 * p.count):
+        w.q[d] = start[0, d]
+        w.v[d] = start[1, d]
+        w.a[d] = 0.0
+    look_at(p, w, w.q)
+    lift_laws(p, w)
+    for k in range(p.count):
+        w.slides[k] = 0
+        for end in range(2):
+            w.touching[k, end] = 0
+            _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
+            w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
+    w.work = w.rubbed = w.struck = 0.0
+    for k in range(p.count):
+        w.peak[k] = w.peak_speed[k] = w.peak_slip[k] = 0.0
+        w.slid[k] = w.flights[k] = w.hits[k] = 0
+    w.impacts = w.slips = w.paradoxes = w.forced = w.fallen = w.parted = w.resting = 0
+    w.met = w.several = w.searches = w.given_way = 0
+
+
+@kernel
+def _track(p, w):
+    """Keep the largest rotations, angular velocities and slips."""
+    for k in range(p.count):
+        theta = w.q[3 * k + 2]
+        limit = p.critical[k, 1] if theta > 0.0 else p.critical[k, 0]
+        w.peak[k] = max(w.peak[k], abs(theta) / limit)
+        w.peak_speed[k] = max(w.peak_speed[k], abs(w.v[3 * k + 2]))
+        w.peak_slip[k] = max(w.peak_slip[k], abs(slip(p, w, k)))
+
+
+@kernel
+def _event_in_step(p, w, at_end, stretch):
+    """Fraction of the step at which something fails first; 2.0 if nothing does."""
+    high = 2.0
+    at_high = at_end
+    if at_end < 0.0:
+        high = 1.0
+    near = comes_near(p, w)
+    if near or at_end < 0.02:
+        for quarter in range(1, 4):
+            if not near and quarter != 2:
+                continue
+            tau = 0.25 * quarter
+            value = margin_at(p, w, tau, stretch)
+            if value < 0.0:
+                high = tau
+                at_high = value
+                break
+    if high > 1.0:
+        return 2.0
+    at_low = margin_at(p, w, 0.0, stretch)
+    if at_low < 0.0:
+        return 0.0
+    return first_failure(p, w, at_low, high, at_high, stretch)
+
+
+@kernel
+def _handle(p, w, now, closing, all_ends, exclude, events, count):
+    """Change the mode at an event, whose failing channels are in ``w.fails``.
+
+    ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
+    mode is known to fail.
+
+    Returns
+    -------
+    Number of events so far.
+    """
+    for d in range(3 * p.count):
+        w.old_v[d] = w.v[d]
+    for k in range(p.count):
+        w.old_slides[k] = w.slides[k]
+        for end in range(2):
+            w.old_closed[k, end] = w.closed[k, end]
+    passes = False
+    if not all_ends:
+        for k in range(p.count):
+            if w.fails[k, FALL] == 1:
+                w.fallen = k + 1
+                w.parted = _parted(p, w, k)
+                return _note(p, w, now.time, FALLEN, events, count)
+    look_at(p, w, w.q)
+    for k in range(p.count):
+        leaves0, leaves1 = 0, 0
+        if not all_ends:
+            for end in range(2):
+                if w.closed[k, end] == 1 and w.fails[k, GAP + end] == 1:
+                    exclude = True
+                if w.closed[k, end] == 1 and w.fails[k, EDGE + end] == 1:
+                    passes = True
+                    if w.closed[k, 1 - end] == 1:
+                        w.kind[k, end] = 1 - w.kind[k, end]
+                    elif end == 0:
+                        leaves0 = 1
+                    else:
+                        leaves1 = 1
+            if w.fails[k, FRICTION] == 1:
+                if w.slides[k] == 0:
+                    exclude = True
+                else:
+                    w.slides[k] = 0
+                    # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
+                    solve(p, w, w.q, w.v, now.ah, now.av, True, False)
+                    for d in range(3 * p.count):
+                        w.v[d] = w.out[d]
+                    project(p, w)
+                    w.resting = 0
+        for end in range(2):
+            touches = w.closed[k, end] == 1
+            if not touches:
+                _, _, _, _, gap, _, kind = end_of(p, w, w.q, k, end, -1)
+                touches = gap < 1e-11 * p.size
+                if not all_ends and w.fails[k, GAP + end] == 1:
+                    touches = True
+                if touches:
+                    w.kind[k, end] = kind
+            w.touching[k, end] = 1 if touches else 0
+        if leaves0 == 1:
+            w.touching[k, 0] = 0
+        if leaves1 == 1:
+            w.touching[k, 1] = 0
+    _shut(p, w)
+    kind = PASSING if passes else CHANGE
+    hit = False
+    for k in range(p.count):
+        for end in range(2):
+            if w.touching[k, end] == 1 and approach(p, w, k, end) < -1e-13 * p.speed:
+                hit = True
+                w.hits[k] += 1
+    if hit:
+        strike(p, w, now.ah, now.av, closing * p.speed, False)
+        _touch_closed(p, w)
+        kind = IMPACT
+        exclude = False
+    if not settle(p, w, now.ah, now.av, exclude):
+        w.paradoxes += 1
+        strike(p, w, now.ah, now.av, closing * p.speed, True)
+        _touch_closed(p, w)
+        settle(p, w, now.ah, now.av, False)
+        kind = PARADOX
+    for k in range(p.count):
+        if w.slides[k] != 0 and w.old_slides[k] == 0:
+            w.slips += 1
+        if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
+            w.flights[k] += 1
+    return _note(p, w, now.time, kind, events, count)
+
+
+@kernel
+def _touch_closed(p, w):
+    """Let the ends that an impact has closed be those that touch."""
+    for k in range(p.count):
+        for end in range(2):
+            w.touching[k, end] = w.closed[k, end]
+
+
+@kernel
+def _shut(p, w):
+    """Set the gaps of touching ends to zero."""
+    for k in range(p.count):
+        if w.touching[k, 0] == 0 and w.touching[k, 1] == 0:
+            continue
+        if w.touching[k, 0] == 1 and w.touching[k, 1] == 1:
+            w.q[3 * k + 2] = w.q[3 * k - 1] if k > 0 else 0.0
+        end = 0 if w.touching[k, 0] == 1 else 1
+        look_at(p, w, w.q)
+        _, _, tx, ty, gap, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
+        for body in range(k, p.count):
+            w.q[3 * body] += gap * ty
+            w.q[3 * body + 1] -= gap * tx
+    look_at(p, w, w.q)
+
+
+@kernel
+def _rest_margins(p, w):
+    """Margins of rest as linear functions of the two accelerations of the ground."""
+    look_at(p, w, w.q)
+    for load in range(3):
+        ah = 1.0 if load == 1 else 0.0
+        av = 1.0 if load == 2 else 0.0
+        solve(p, w, w.q, w.v, ah, av, False)
+        for k in range(p.count):
+            pressed = w.normal[k, 0] + w.normal[k, 1]
+            hold = p.static[k] * pressed
+            unit = 1.0 / (p.weight * max(p.static[k], 1.0))
+            w.rest[4 * k, load] = w.normal[k, 0] / p.weight
+            w.rest[4 * k + 1, load] = w.normal[k, 1] / p.weight
+            w.rest[4 * k + 2, load] = (hold - w.shear[k]) * unit
+            w.rest[4 * k + 3, load] = (hold + w.shear[k]) * unit
+    for row in range(4 * p.count):
+        w.rest[row, 1] -= w.rest[row, 0]
+        w.rest[row, 2] -= w.rest[row, 0]
+
+
+@kernel
+def _rest_ends(p, w, tau, early, late):
+    """Fraction of the sample interval, from ``tau`` on, at which rest ends; 2.0 if it lasts."""
+    when = 2.0
+    for row in range(4 * p.count):
+        margin = w.rest[row, 0] + w.rest[row, 1] * late.ah + w.rest[row, 2] * late.av
+        if margin < 0.0:
+            slope = w.rest[row, 1] * (late.ah - early.ah) + w.rest[row, 2] * (late.av - early.av)
+            if slope < 0.0:
+                when = min(when, max(tau, 1.0 - margin / slope))
+    return when
+
+
+@kernel
+def _note(p, w, time, kind, events, count):
+    """Write an event, if there is room; return the number of events so far."""
+    before = mode_number(p, w.old_closed, w.old_slides)
+    after = mode_number(p, w.closed, w.slides)
+    if kind == CHANGE and before == after:
+        return count
+    if count < events.shape[0]:
+        event = events[count]
+        event[0] = time
+        event[1] = kind
+        event[2] = before
+        event[3] = after
+        event[4] = kinetic_energy(p, w.old_v)
+        event[5] = kinetic_energy(p, w.v)
+        for k in range(p.count):
+            event[6 + k] = slip(p, w, k)
+            event[6 + p.count + k] = w.q[3 * k + 2]
+            event[6 + 2 * p.count + k] = w.old_v[3 * k + 2]
+            event[6 + 3 * p.count + k] = w.v[3 * k + 2]
+    return count + 1
+
+
+@kernel
+def slip(p, w, k):
+    """Displacement along interface k of the corner that carries, from where it stood at first [m].
+
+    ``look_at`` must have been called with ``w.q``.
+    """
+    relative = w.q[3 * k + 2] - (w.q[3 * k - 1] if k > 0 else 0.0)
+    end = 1 if relative >= 0.0 else 0
+    x, _, _, _, _, beyond, _ = end_of(p, w, w.q, k, end, 1)
+    if k == 0:
+        return x - p.standing[0] - p.corner[0, end, 0]
+    side = 2 * end - 1
+    # as it stood: corner and face in the standing configuration
+    at = 3 * k
+    dx = p.standing[at] + p.corner[k, end, 0] - p.standing[at - 3] - p.face[k, 0]
+    dy = p.standing[at + 1] + p.corner[k, end, 1] - p.standing[at - 2] - p.face[k, 1]
+    along = dx * p.tilt_cos[k] - dy * p.tilt_sin[k]
+    return side * (beyond + p.half[k]) - along
+
+
+@kernel
+def _parted(p, w, body):
+    """Interface, from 1, that is open furthest under a body that falls."""
+    widest, parted = -1.0, 0
+    for k in range(body + 1):
+        turned = abs(w.q[3 * k + 2] - (w.q[3 * k - 1] if k > 0 else 0.0))
+        if turned > widest:
+            widest, parted = turned, k + 1
+    return parted
+
+
+@kernel
+def _keep(p, w, i, now, history):
+    look_at(p, w, w.q)
+    solve(p, w, w.q, w.v, now.ah, now.av, False)
+    n = p.count
+    for d in range(3 * n):
+        history[i, d] = w.q[d]
+        history[i, 3 * n + d] = w.v[d]
+    for k in range(n):
+        history[i, 6 * n + k] = slip(p, w, k)
+        history[i, 7 * n + k] = w.normal[k, 0] + w.normal[k, 1]
+        history[i, 8 * n + k] = w.shear[k]
+        history[i, 9 * n + k] = w.out[3 * k + 2]
+    history[i, 10 * n] = w.work
+    history[i, 10 * n + 1] = w.rubbed
+    history[i, 10 * n + 2] = w.struck
+    history[i, 10 * n + 3] = mode_number(p, w.closed, w.slides)

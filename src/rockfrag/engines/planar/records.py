@@ -1,0 +1,306 @@
+"""From a body and its friction to the records of numbers that the contact kernels read and write.
+
+Bodies are numbered from below; interface k lies under body k.  Ends of an interface are 0 (left) and 1 (right).
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.elementary import atan2, sin_cos
+from rockfrag.system import geometry
+from rockfrag.system.body import Interval
+from rockfrag.system.contact import ROUGHEST, ImpactLaw
+from rockfrag.system.system import System
+
+F, INT = np.float64, np.int64
+Array = NDArray[np.float64]
+
+MOST = 12
+"""Bodies of the longest column."""
+
+TRIES = 1024
+"""Modes that a search tries at most: more than three interfaces have."""
+
+BODY = np.dtype(
+    [
+        ("count", INT),  # bodies: 1 to MOST
+        ("g", F),
+        ("mass", F, (MOST,)),
+        ("inertia", F, (MOST,)),
+        ("inverse", F, (3 * MOST,)),  # 1/m, 1/m, 1/I of each body
+        ("corner", F, (MOST, 2, 2)),  # [body, end] of its base from its centre, x and y [m]
+        # [interface] middle of the face below from the centre of the body below
+        ("face", F, (MOST, 2)),
+        ("half", F, (MOST,)),  # [interface] half width of the face below; infinite for the ground
+        ("tilt_cos", F, (MOST,)),  # [interface] tilt of face and base as all stand
+        ("tilt_sin", F, (MOST,)),
+        ("static", F, (MOST,)),
+        ("kinetic", F, (MOST,)),
+        ("law", INT, (MOST, 2)),  # [interface, corner that comes down] law of the impact ...
+        ("number", F, (MOST, 2)),  # ... and its number
+        (
+            "critical",
+            F,
+            (MOST, 2),
+        ),  # [body, side] its critical angle to the left, to the right [rad]
+        ("standing", F, (3 * MOST,)),  # x, y, θ of each body as it stands
+        ("weight", F),  # of everything [N]: unit of forces
+        ("size", F),  # half width of the uppermost body [m]: unit of lengths
+        ("speed", F),  # √(g size) [m/s]: unit of speeds
+    ]
+)
+
+WORK = np.dtype(
+    [
+        ("q", F, (3 * MOST,)),  # x, y, θ of each body relative to the ground
+        ("v", F, (3 * MOST,)),
+        ("a", F, (3 * MOST,)),
+        ("closed", INT, (MOST, 2)),  # [interface, end] the mode: closed ends ...
+        ("slides", INT, (MOST,)),  # ... and the sign of slip, 0 where an interface sticks
+        # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
+        ("kind", INT, (MOST, 2)),
+        ("normal", F, (MOST, 2)),  # forces, or impulses
+        ("shear", F, (MOST,)),
+        ("out", F, (3 * MOST,)),  # accelerations, or velocities after an impact
+        # geometry of the configuration that was looked at last
+        ("cos", F, (MOST,)),
+        ("sin", F, (MOST,)),
+        # one row per closed end and per interface that sticks: what it takes of the body below (3) and above (3)
+        ("row", F, (3 * MOST, 6)),
+        ("column", F, (3 * MOST, 6)),
+        ("light", F, (6,)),
+        ("matrix", F, (3 * MOST, 3 * MOST)),
+        ("right", F, (3 * MOST,)),
+        ("owner", INT, (3 * MOST,)),  # 3 k + end, or 3 k + 2 for shear
+        ("upto", INT, (MOST + 2,)),  # number of unknowns of the interfaces up to this one
+        # a step: start, stages, interpolation
+        ("q0", F, (3 * MOST,)),
+        ("v0", F, (3 * MOST,)),
+        ("a0", F, (3 * MOST,)),
+        ("q1", F, (3 * MOST,)),
+        ("v1", F, (3 * MOST,)),
+        ("a1", F, (3 * MOST,)),
+        ("kv", F, (7, 3 * MOST)),
+        ("ka", F, (7, 3 * MOST)),
+        ("early", F, (MOST, 2)),  # speeds at which open ends part at the start of a step
+        ("fails", INT, (MOST, 6)),  # [interface, channel] what has become negative
+        # search for a mode
+        ("touching", INT, (MOST, 2)),
+        ("moves", INT, (MOST,)),
+        ("limit", F, (MOST,)),
+        # normal and tangent of each touching end: motions along them per coordinate, bodies below and above
+        ("arm", F, (4 * MOST, 6)),
+        ("free", F, (4 * MOST,)),  # acceleration or velocity along these without any contact
+        # ... and what a unit force along one of the interfaces below, here and above gives along it
+        ("give", F, (4 * MOST, 12)),
+        ("along", INT, (3 * MOST,)),  # of each unknown of a mode: its row in the three above ...
+        ("rub", F, (3 * MOST,)),  # ... and the fraction of the tangent after it that friction adds
+        ("old_v", F, (3 * MOST,)),
+        ("old_closed", INT, (MOST, 2)),
+        ("old_slides", INT, (MOST,)),
+        ("best_closed", INT, (MOST, 2)),
+        ("best_slides", INT, (MOST,)),
+        ("other_closed", INT, (MOST, 2)),
+        ("other_slides", INT, (MOST,)),
+        ("flip", INT, (3,)),  # interface, what and how: the change that mends the worst of a mode
+        ("tried", INT, (TRIES,)),  # numbers of the modes that a search has tried ...
+        ("wrong", F, (TRIES,)),  # ... and how far each is from consistent
+        # laws of an impact: fraction of an end's impulse that the other end gets too, end that leaves at a given
+        # speed (-1: none), and that speed
+        ("share", F, (MOST, 2)),
+        ("drive", INT, (MOST,)),
+        ("depart", F, (MOST,)),
+        ("falls", INT, (MOST,)),  # end that comes down while the other is closed, -1: none
+        ("goal", F, (MOST, 2)),  # speed at which the other end departs: without the law, with it
+        ("hit_v", F, (3 * MOST,)),  # velocities that an impact finds
+        # margins of rest, linear in the two accelerations
+        ("rest", F, (4 * MOST, 3)),
+        # ledgers [J] and counts
+        ("work", F),
+        ("rubbed", F),  # lost to friction
+        ("struck", F),  # lost in impacts
+        ("peak", F, (MOST,)),  # largest |θ| over the critical angle of its sign, and ...
+        ("peak_speed", F, (MOST,)),  # ... largest |θ'| [rad/s] of each body
+        ("peak_slip", F, (MOST,)),  # largest |slip| of each interface [m]
+        ("impacts", INT),
+        ("slips", INT),  # times that an interface began to slide
+        ("flights", INT, (MOST,)),  # times that an interface opened at both ends
+        ("hits", INT, (MOST,)),  # impacts of each interface
+        ("slid", INT, (MOST,)),  # whether an interface has ever reached its limit, in impacts too
+        ("paradoxes", INT),
+        ("forced", INT),
+        ("met", INT),  # events within the sample
+        ("several", INT),  # times that more than one mode was found consistent
+        ("searches", INT),
+        ("given_way", INT),  # impacts in which a law would have gained energy
+        ("fallen", INT),
+        ("parted", INT),  # interface that is open furthest as a body falls, from 1
+        ("resting", INT),
+    ]
+)
+
+OUTCOME = np.dtype(
+    [
+        ("fallen", INT),  # 0 none, or the body that fell first, from 1 below
+        ("parted", INT),  # 0 none, or the interface at which the column parted, from 1 below
+        ("time", F),  # of the fall [s]
+        ("impacts", INT),
+        ("paradoxes", INT),
+        ("forced", INT),
+        ("several", INT),
+        ("given_way", INT),
+        ("peak", F, (MOST,)),
+        ("peak_speed", F, (MOST,)),
+        ("peak_slip", F, (MOST,)),
+        ("slip", F, (MOST,)),
+        ("slid", INT, (MOST,)),
+        ("flights", INT, (MOST,)),
+        ("hits", INT, (MOST,)),
+    ]
+)
+
+
+class Part(NamedTuple):
+    """A planar body as it stands on what is below.
+
+    Attributes
+    ----------
+    shape : the body by itself, from the middle of its base
+    height : of its face above its base [m]
+    lean : by which its uneven base turns it, and its face [rad]
+    offset : of the middle of its base from the middle of the face below [m]
+    face : middle and half width of its face, from the middle of its base [m]
+    """
+
+    shape: geometry.Shape
+    height: float
+    lean: float
+    offset: float
+    face: tuple[float, float]
+
+
+def parts_of(system: System) -> list[Part]:
+    """Return the bodies of a planar system from below, each as it stands on what is below."""
+    found = []
+    below = 0.0
+    for body, contact, shape in zip(
+        system.in_plane().bodies, system.contacts, system.shapes, strict=True
+    ):
+        base, face = body.base, body.face or body.base
+        assert isinstance(base, Interval)
+        assert isinstance(face, Interval)
+        middle = (base.left + base.right) / 2
+        own = ((face.left + face.right) / 2 - middle, (face.right - face.left) / 2)
+        offset = contact.offset[0] + middle - below
+        found.append(Part(shape, body.height, contact.tilt, offset, own))
+        below = own[0] + middle
+    return found
+
+
+def fill_record(p: np.void, parts: Sequence[Part], g: float) -> None:
+    """Fill geometry and masses of a column into its record.
+
+    A base that reaches beyond the face below is as wide as what lies on it: the two corners of the contact.
+    """
+    p["count"], p["g"] = len(parts), g
+    p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
+    middle, tilt = np.zeros(2), 0.0  # of the face under a body, from the middle of the lowest base
+    for k, part in enumerate(parts):
+        shape, foot, base = part.shape, middle, middle
+        if k > 0:
+            below = parts[k - 1]
+            pile = geometry.pile_of(
+                below.shape._replace(b=below.face[1]),
+                part.shape,
+                below.height,
+                below.lean,
+                part.offset,
+            )
+            shape = pile.statue
+            aside = np.array(geometry.turned(below.face[0], 0.0, below.lean))
+            top = np.array(geometry.turned(0.0, below.height, below.lean)) + aside
+            foot = middle + _turned(np.array(pile.right) + aside, tilt)
+            p["face"][k] = _turned(top - (below.shape.x, below.shape.y), tilt)
+            p["half"][k] = below.face[1]
+            beside = np.array(geometry.turned(part.offset, below.height, below.lean)) + aside
+            base = middle + _turned(beside, tilt)
+            tilt += below.lean
+            p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
+        p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia
+        p["inverse"][3 * k : 3 * k + 3] = 1 / shape.mass, 1 / shape.mass, 1 / shape.inertia
+        for end, pole in enumerate((-1, 1)):
+            x, y = geometry.turned(*geometry.arm(shape, pole), tilt)
+            p["corner"][k, end] = -x, -y
+            p["critical"][k, end] = atan2(-pole * x, y)
+        x, y = geometry.turned(*geometry.arm(shape, 1), tilt)
+        p["standing"][3 * k : 3 * k + 2] = (
+            (shape.x, shape.y) if k == 0 else (foot[0] + x, foot[1] + y)
+        )
+        middle = base
+    p["weight"] = g * sum(part.shape.mass for part in parts)
+    p["size"] = shape.b
+    p["speed"] = math.sqrt(g * shape.b)
+
+
+def _turned(vector: Array, angle: float) -> Array:
+    return np.array(geometry.turned(float(vector[0]), float(vector[1]), angle))
+
+
+def system_record(system: System, g: float) -> np.void:
+    """Return the record ``BODY`` of a planar system; a contact without friction is as rough as can be."""
+    p: np.void = np.zeros(1, BODY)[0]
+    fill_record(p, parts_of(system), g)
+    for k, (contact, shape) in enumerate(zip(system.contacts, system.carried, strict=True)):
+        p["static"][k], p["kinetic"][k] = contact.friction or (ROUGHEST, ROUGHEST)
+        for end, pivot in enumerate((-1, 1)):
+            p["law"][k, end], p["number"][k, end] = impact_of(contact.law, shape, pivot)
+    return p
+
+
+def impact_of(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> tuple[int, float]:
+    """Law, as kernels number it, and number of the impacts of a contact that end on a pivot."""
+    measured = law.right if pivot > 0 else law.left
+    if law.name == "momentum":
+        return geometry.MOMENTUM, 1.0
+    if law.name == "ratio":
+        return geometry.RATIO, measured
+    if law.name == "position":
+        return geometry.by_position(shape, measured, pivot)
+    return geometry.COUPLE, measured / geometry.momentum_restitution(shape, pivot)
+
+
+def working_memory() -> np.void:
+    """Return the record ``WORK`` that the integration of a case needs."""
+    work: np.void = np.zeros(1, WORK)[0]
+    return work
+
+
+def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray[np.float64]:
+    """Coordinates and velocities, shape (2, 3 MOST), of bodies turned about the corners that this leaves them."""
+    start = np.zeros((2, 3 * MOST))
+    standing = p["standing"]
+
+    def turned(x: float, y: float, angle: float) -> NDArray[np.float64]:
+        s, c = sin_cos(angle)
+        return np.array([x * c + y * s, -x * s + y * c])
+
+    for k in range(int(p["count"])):
+        below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
+        end = 1 if ((theta[k] - below[0]) or (omega[k] - below[1])) >= 0 else 0
+        corner = p["corner"][k, end]
+        pole = standing[3 * k : 3 * k + 2] + corner
+        speed = np.zeros(2)
+        if k:
+            at = slice(3 * k - 3, 3 * k - 1)
+            arm = turned(pole[0] - standing[at][0], pole[1] - standing[at][1], below[0])
+            pole = start[0, at] + arm
+            speed = start[1, at] + below[1] * np.array([arm[1], -arm[0]])
+        arm = -turned(corner[0], corner[1], theta[k])
+        start[0, 3 * k : 3 * k + 2] = pole + arm
+        start[1, 3 * k : 3 * k + 2] = speed + omega[k] * np.array([arm[1], -arm[0]])
+        start[0, 3 * k + 2], start[1, 3 * k + 2] = theta[k], omega[k]
+    return start

@@ -1,0 +1,476 @@
+"""Where contacts are, and what accelerations, forces and impulses a mode has (``docs/contact.md``, 1 to 6)."""
+
+import math
+
+from rockfrag.elementary import sin_cos
+from rockfrag.engines.planar.compile import kernel
+
+AT_EDGE = 1e-9
+"""A corner counts as over the face until it is this share of the half width beyond the edge: bases as wide as
+their face stand on it and not on its edges."""
+
+
+@kernel
+def look_at(p, w, q):
+    """Take sines and cosines of the rotations in ``q``."""
+    for k in range(p.count):
+        w.sin[k], w.cos[k] = sin_cos(q[3 * k + 2])
+
+
+@kernel
+def face_axis(p, w, k):
+    """Tangent of the face below interface k (its normal is (-ty, tx))."""
+    if k == 0:
+        return 1.0, 0.0
+    c = w.cos[k - 1] * p.tilt_cos[k] - w.sin[k - 1] * p.tilt_sin[k]
+    s = w.sin[k - 1] * p.tilt_cos[k] + w.cos[k - 1] * p.tilt_sin[k]
+    return c, -s
+
+
+@kernel
+def end_of(p, w, q, k, end, kind):
+    """End of interface k in the configuration ``q``.
+
+    ``kind``: 1 a corner on the face, 0 the face's edge against the base, -1 whichever it is.
+
+    Returns
+    -------
+    Point (x, y), tangent (tx, ty), gap [m], how far the corner is beyond the edge [m], kind.
+    """
+    cx, cy = p.corner[k, end, 0], p.corner[k, end, 1]
+    c, s = w.cos[k], w.sin[k]
+    x = q[3 * k] + cx * c + cy * s
+    y = q[3 * k + 1] - cx * s + cy * c
+    if k == 0:
+        return x, y, 1.0, 0.0, y, -math.inf, 1
+    tx, ty = face_axis(p, w, k)
+    fx, fy = p.face[k, 0], p.face[k, 1]
+    ox = q[3 * k - 3] + fx * w.cos[k - 1] + fy * w.sin[k - 1]
+    oy = q[3 * k - 2] - fx * w.sin[k - 1] + fy * w.cos[k - 1]
+    side = 2 * end - 1
+    beyond = side * ((x - ox) * tx + (y - oy) * ty) - p.half[k]
+    if kind < 0:
+        kind = 1 if beyond <= AT_EDGE * p.size else 0
+    if kind == 1:
+        return x, y, tx, ty, -ty * (x - ox) + tx * (y - oy), beyond, 1
+    ex = ox + side * p.half[k] * tx
+    ey = oy + side * p.half[k] * ty
+    tx = c * p.tilt_cos[k] - s * p.tilt_sin[k]
+    ty = -(s * p.tilt_cos[k] + c * p.tilt_sin[k])
+    return ex, ey, tx, ty, -ty * (x - ex) + tx * (y - ey), beyond, 0
+
+
+@kernel
+def rate(p, q, v, k, x, y, dx, dy):
+    """Velocity of body k relative to what is below it, at (x, y) along (dx, dy) [m/s].
+
+    With accelerations for ``v`` the part of the relative acceleration that is linear in them.
+    """
+    found = dx * (v[3 * k] + v[3 * k + 2] * (y - q[3 * k + 1]))
+    found += dy * (v[3 * k + 1] - v[3 * k + 2] * (x - q[3 * k]))
+    if k > 0:
+        found -= dx * (v[3 * k - 3] + v[3 * k - 1] * (y - q[3 * k - 2]))
+        found -= dy * (v[3 * k - 2] - v[3 * k - 1] * (x - q[3 * k - 3]))
+    return found
+
+
+@kernel
+def bias(q, v, k, x, y, dx, dy, kind):
+    """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish."""
+    turn = v[3 * k + 2]
+    rx, ry = x - q[3 * k], y - q[3 * k + 1]
+    ax, ay = -turn * turn * rx, -turn * turn * ry
+    ux, uy = v[3 * k] + turn * ry, v[3 * k + 1] - turn * rx
+    owner = 0.0 if kind == 1 else turn
+    if k > 0:
+        below = v[3 * k - 1]
+        rx, ry = x - q[3 * k - 3], y - q[3 * k - 2]
+        ax += below * below * rx
+        ay += below * below * ry
+        ux -= v[3 * k - 3] + below * ry
+        uy -= v[3 * k - 2] - below * rx
+        if kind == 1:
+            owner = below
+    ax -= 2.0 * owner * uy
+    ay += 2.0 * owner * ux
+    return dx * ax + dy * ay
+
+
+@kernel
+def fill_row(q, k, x, y, dx, dy, row):
+    """Motion of body k relative to what is below it, at (x, y) along (dx, dy), per coordinate of both bodies."""
+    row[3] = dx
+    row[4] = dy
+    row[5] = dx * (y - q[3 * k + 1]) - dy * (x - q[3 * k])
+    if k > 0:
+        row[0] = -dx
+        row[1] = -dy
+        row[2] = dy * (x - q[3 * k - 3]) - dx * (y - q[3 * k - 2])
+    else:
+        row[0] = 0.0
+        row[1] = 0.0
+        row[2] = 0.0
+
+
+@kernel
+def solve(p, w, q, v, ah, av, impact, rough=True):
+    """Accelerations of the mode in ``w``, or velocities after an ``impact``, into ``w.out``.
+
+    Without ``rough`` sliding contacts have no friction: the velocities nearest to ``v`` in kinetic energy that
+    keep the mode.
+
+    Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.  ``look_at``
+    must have been called with ``q``.
+
+    Returns
+    -------
+    Whether the equations had a solution.
+    """
+    if p.count == 1 and not impact:
+        return _solve_lone(p, w, q, v, ah, av)
+    standing = 0
+    if not impact:
+        standing = _standing(p, w)
+    if p.count == 2:
+        flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
+        if standing > 0 and not (flat and w.slides[1] == 0):
+            return _solve_statue(p, w, q, v, ah, av)
+        standing = 0
+    if not solve_generally(p, w, q, v, ah, av, impact, rough, standing):
+        return False
+    if standing > 0:
+        _carry(p, w, q, ah, av, standing)
+    return True
+
+
+@kernel
+def _standing(p, w):
+    """Number of bodies, from the ground up, that stand on what stands."""
+    for k in range(p.count):
+        if w.closed[k, 0] == 0 or w.closed[k, 1] == 0 or w.slides[k] != 0:
+            return k
+    return p.count
+
+
+@kernel
+def _fill_equations(p, w, q, v, impact, rough, standing):
+    """Rows, columns and right-hand sides of the mode of the bodies above those that stand; their number."""
+    m = 0
+    for k in range(standing, p.count):
+        friction = w.slides[k] * p.kinetic[k] if rough else 0.0
+        first = True
+        for end in range(2):
+            if w.closed[k, end] == 0:
+                continue
+            x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
+            fill_row(q, k, x, y, -ty, tx, w.row[m])
+            w.owner[m] = 3 * k + end
+            right = -bias(q, v, k, x, y, -ty, tx, kind) if not impact else 0.0
+            if w.slides[k] != 0:
+                fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
+            else:
+                for d in range(6):
+                    w.column[m, d] = w.row[m, d]
+            if impact and w.share[k, end] > 0.0:
+                _add_share(p, w, q, k, end, friction, w.column[m])
+            w.right[m] = right
+            m += 1
+            if first and w.slides[k] == 0:
+                fill_row(q, k, x, y, tx, ty, w.row[m])
+                for d in range(6):
+                    w.column[m, d] = w.row[m, d]
+                w.owner[m] = 3 * k + 2
+                w.right[m] = -bias(q, v, k, x, y, tx, ty, kind) if not impact else 0.0
+                m += 1
+            first = False
+        if impact and w.drive[k] >= 0:
+            end = w.drive[k]
+            x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+            fill_row(q, k, x, y, -ty, tx, w.row[m])
+            _fill_couple(k, w.column[m])
+            w.owner[m] = -1 - k
+            w.right[m] = w.depart[k]
+            m += 1
+        w.upto[k] = m
+    return m
+
+
+@kernel
+def _add_share(p, w, q, k, end, friction, column):
+    """Add what an end's impulse brings about at the other end."""
+    share = w.share[k, end]
+    x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
+    fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.light)
+    for d in range(6):
+        column[d] += share * w.light[d]
+
+
+@kernel
+def _fill_couple(k, column):
+    """Fill what a couple between body k and what is below it turns."""
+    for d in range(6):
+        column[d] = 0.0
+    column[5] = 1.0
+    if k > 0:
+        column[2] = -1.0
+
+
+@kernel
+def _interface_of(w, i):
+    """Interface of an equation."""
+    return w.owner[i] // 3 if w.owner[i] >= 0 else -1 - w.owner[i]
+
+
+@kernel
+def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
+    """Solve any mode by elimination, as :func:`solve` does those that it has no formulas for.
+
+    The first ``standing`` bodies are known to stand still; what they carry is not computed.
+    """
+    m = _fill_equations(p, w, q, v, impact, rough, standing)
+    for k in range(p.count):
+        if impact:
+            w.out[3 * k] = v[3 * k]
+            w.out[3 * k + 1] = v[3 * k + 1]
+            w.out[3 * k + 2] = v[3 * k + 2]
+        elif k < standing:
+            w.out[3 * k] = 0.0
+            w.out[3 * k + 1] = 0.0
+            w.out[3 * k + 2] = 0.0
+        else:
+            w.out[3 * k] = -ah
+            w.out[3 * k + 1] = -(p.g + av)
+            w.out[3 * k + 2] = 0.0
+        w.normal[k, 0] = 0.0
+        w.normal[k, 1] = 0.0
+        w.shear[k] = 0.0
+    for i in range(m):
+        k = _interface_of(w, i)
+        total = w.right[i]
+        begin = 3 if k == standing else 0
+        for d in range(begin, 6):
+            total -= w.row[i, d] * w.out[3 * k - 3 + d]
+            w.light[d] = w.row[i, d] * p.inverse[3 * k - 3 + d]
+        w.right[i] = total
+        low = w.upto[k - 2] if k - 2 >= standing else 0
+        high = w.upto[k + 2] if k + 2 < p.count else m
+        for j in range(low, high):
+            other = _interface_of(w, j)
+            total = 0.0
+            if other == k:
+                for d in range(begin, 6):
+                    total += w.light[d] * w.column[j, d]
+            elif other == k - 1:
+                for d in range(3):
+                    total += w.light[d] * w.column[j, d + 3]
+            elif other == k + 1:
+                for d in range(3):
+                    total += w.light[d + 3] * w.column[j, d]
+            w.matrix[i, j] = total
+    if not eliminate(p, w, m, standing):
+        return False
+    for i in range(m):
+        force = w.right[i]
+        k = _interface_of(w, i)
+        if w.owner[i] >= 0:
+            end = w.owner[i] - 3 * k
+            if end == 2:
+                w.shear[k] += force
+            else:
+                share = w.share[k, end] if impact else 0.0
+                w.normal[k, end] += force
+                w.normal[k, 1 - end] += share * force
+                w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + share * force)
+        for d in range(3 if k == standing else 0, 6):
+            w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * w.column[i, d] * force
+    return True
+
+
+@kernel
+def _carry(p, w, q, ah, av, standing):
+    """Forces under the bodies that stand still: what they carry, and what the ground's acceleration asks for."""
+    push_x, push_y, moment = (
+        0.0,
+        0.0,
+        0.0,
+    )  # of what is above on the body, the moment clockwise about its centre
+    for k in range(standing, 0, -1):
+        body = k - 1
+        push_x, push_y, moment = 0.0, 0.0, 0.0
+        if k < p.count:
+            first = True
+            for end in range(2):
+                if w.closed[k, end] == 0:
+                    continue
+                x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+                fx, fy = -w.normal[k, end] * ty, w.normal[k, end] * tx
+                if first:
+                    fx += w.shear[k] * tx
+                    fy += w.shear[k] * ty
+                first = False
+                push_x += fx
+                push_y += fy
+                moment -= fx * (y - q[3 * body + 1]) - fy * (x - q[3 * body])
+        push_x += p.mass[body] * ah
+        push_y += p.mass[body] * (p.g + av)
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, body, 0, w.kind[body, 0])
+        far_x, far_y, _, _, _, _, _ = end_of(p, w, q, body, 1, w.kind[body, 1])
+        rx, ry = x - q[3 * body], y - q[3 * body + 1]
+        shear = push_x * tx + push_y * ty
+        push = push_y * tx - push_x * ty
+        near = -ty * ry - tx * rx
+        far = -ty * (far_y - q[3 * body + 1]) - tx * (far_x - q[3 * body])
+        w.shear[body] = shear
+        w.normal[body, 1] = -(moment + shear * (tx * ry - ty * rx) + push * near) / (far - near)
+        w.normal[body, 0] = push - w.normal[body, 1]
+
+
+@kernel
+def _solve_lone(p, w, q, v, ah, av):
+    """Accelerations and forces of a lone block, whose equations are solved by hand: those of :func:`solve`."""
+    fx, fy = -ah, -(p.g + av)
+    turn = v[2]
+    light, slow = p.inverse[0], p.inverse[2]
+    slides = w.slides[0]
+    w.normal[0, 0] = 0.0
+    w.normal[0, 1] = 0.0
+    push, shear, twist = 0.0, 0.0, 0.0
+    if w.closed[0, 0] == 1 and w.closed[0, 1] == 1:
+        left, _, _, _, _, _, _ = end_of(p, w, q, 0, 0, 1)
+        right, y, _, _, _, _, _ = end_of(p, w, q, 0, 1, 1)
+        rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
+        push = -fy / light
+        shear = -slides * p.kinetic[0] * push if slides != 0 else -fx / light
+        # no turning: N0 rx0 + N1 rx1 = T ry
+        w.normal[0, 1] = (shear * ry - push * rx0) / (rx1 - rx0)
+        w.normal[0, 0] = push - w.normal[0, 1]
+    elif w.closed[0, 0] == 1 or w.closed[0, 1] == 1:
+        end = 0 if w.closed[0, 0] == 1 else 1
+        x, y, _, _, _, _, _ = end_of(p, w, q, 0, end, 1)
+        rx, ry = x - q[0], y - q[1]
+        across = light + rx * rx * slow
+        both = -rx * ry * slow
+        need = turn * turn * ry - fy
+        if slides != 0:
+            push = need / (across - slides * p.kinetic[0] * both)
+            shear = -slides * p.kinetic[0] * push
+        else:
+            along = light + ry * ry * slow
+            also = turn * turn * rx - fx
+            whole = across * along - both * both
+            push = (need * along - also * both) / whole
+            shear = (also * across - need * both) / whole
+        w.normal[0, end] = push
+        twist = ry * shear - rx * push
+    w.shear[0] = shear
+    w.out[0] = fx + shear * light
+    w.out[1] = fy + push * light
+    w.out[2] = twist * slow
+    return True
+
+
+@kernel
+def _solve_statue(p, w, q, v, ah, av):
+    """Accelerations and forces where the pedestal stands and the statue does not: those of :func:`solve`."""
+    fx, fy = -ah, -(p.g + av)
+    light, slow = p.inverse[3], p.inverse[5]
+    w.normal[1, 0] = 0.0
+    w.normal[1, 1] = 0.0
+    w.shear[1] = 0.0
+    pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0
+    if w.closed[1, 0] == 1 and w.closed[1, 1] == 1:
+        # it slides flat: what accelerates it apart vanishes, and it does not turn
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, 1, 0, w.kind[1, 0])
+        rx, ry = x - q[3], y - q[4]
+        one, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        x1, y1, _, _, _, _, _ = end_of(p, w, q, 1, 1, w.kind[1, 1])
+        other = -ty * (y1 - q[4]) - tx * (x1 - q[3])
+        push = (ty * fx - tx * fy) / light
+        shear = -w.slides[1] * p.kinetic[1] * push
+        w.normal[1, 1] = (two * shear + one * push) / (one - other)
+        w.normal[1, 0] = push - w.normal[1, 1]
+        w.shear[1] = shear
+        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+        moment += w.normal[1, 1] * (tx * (x1 - x) + ty * (y1 - y))
+    elif w.closed[1, 0] == 1 or w.closed[1, 1] == 1:
+        end = 0 if w.closed[1, 0] == 1 else 1
+        x, y, tx, ty, _, _, kind = end_of(p, w, q, 1, end, w.kind[1, end])
+        rx, ry = x - q[3], y - q[4]
+        # arms of normal (-ty, tx) and tangent (tx, ty)
+        one, two = -ty * ry - tx * rx, tx * ry - ty * rx
+        across = light + one * one * slow
+        both = one * two * slow
+        need = ty * fx - tx * fy - bias(q, v, 1, x, y, -ty, tx, kind)
+        if w.slides[1] != 0:
+            push = need / (across - w.slides[1] * p.kinetic[1] * both)
+            shear = -w.slides[1] * p.kinetic[1] * push
+        else:
+            along = light + two * two * slow
+            also = -tx * fx - ty * fy - bias(q, v, 1, x, y, tx, ty, kind)
+            whole = across * along - both * both
+            push = (need * along - also * both) / whole
+            shear = (also * across - need * both) / whole
+        w.normal[1, end] = push
+        w.shear[1] = shear
+        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        twist = one * push + two * shear
+        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+    left, _, _, _, _, _, _ = end_of(p, w, q, 0, 0, 1)
+    right, y, _, _, _, _, _ = end_of(p, w, q, 0, 1, 1)
+    rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
+    shear = pull_x - p.mass[0] * fx
+    push = pull_y - p.mass[0] * fy
+    w.normal[0, 1] = (shear * ry + moment - push * rx0) / (rx1 - rx0)
+    w.normal[0, 0] = push - w.normal[0, 1]
+    w.shear[0] = shear
+    w.out[0] = 0.0
+    w.out[1] = 0.0
+    w.out[2] = 0.0
+    w.out[3] = fx + pull_x * light
+    w.out[4] = fy + pull_y * light
+    w.out[5] = twist * slow
+    return True
+
+
+@kernel
+def eliminate(p, w, m, standing):
+    """Solve m equations with right-hand sides in ``w.right``, in place; False if they are singular.
+
+    An interface shares bodies with its neighbours alone: what is further than two from the diagonal is zero.
+    ``w.upto`` says where the equations of each interface end.
+    """
+    a, right = w.matrix, w.right
+    k = standing
+    for i in range(m):
+        while w.upto[k] <= i:
+            k += 1
+        rows = w.upto[k + 1] if k + 1 < p.count else m
+        columns = w.upto[k + 2] if k + 2 < p.count else m
+        best = i
+        for j in range(i + 1, rows):
+            if abs(a[j, i]) > abs(a[best, i]):
+                best = j
+        if a[best, i] == 0.0:
+            return False
+        if best != i:
+            for j in range(i, columns):
+                a[i, j], a[best, j] = a[best, j], a[i, j]
+            right[i], right[best] = right[best], right[i]
+        pivot = 1.0 / a[i, i]
+        for j in range(i + 1, rows):
+            factor = a[j, i] * pivot
+            if factor != 0.0:
+                for c in range(i + 1, columns):
+                    a[j, c] -= factor * a[i, c]
+                right[j] -= factor * right[i]
+    k = p.count - 1
+    for i in range(m - 1, -1, -1):
+        while k > standing and w.upto[k - 1] > i:
+            k -= 1
+        columns = w.upto[k + 2] if k + 2 < p.count else m
+        total = right[i]
+        for j in range(i + 1, columns):
+            total -= a[i, j] * right[j]
+        right[i] = total / a[i, i]
+    return True

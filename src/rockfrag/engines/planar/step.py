@@ -1,0 +1,320 @@
+"""One step between events, and the first event in it."""
+
+import math
+from typing import NamedTuple
+
+from rockfrag.engines.planar.compile import kernel
+from rockfrag.engines.planar.solve import AT_EDGE, end_of, look_at, rate, solve
+
+SLACK, TOUCH = 1e-12, 1e-13
+"""Slack before an event is seen, so that what has just begun is not taken for its end: forces over the weight;
+speeds over √(g b) and lengths over b [-]."""
+
+WIDTH = 1e-12
+"""Fraction of a step to which the time of an event is found."""
+
+GAP, EDGE = 0, 2
+"""Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
+FRICTION, FALL = 4, 5
+"""... stick or slip, and the fall of the body above it."""
+
+
+class Stretch(NamedTuple):
+    """A stretch of time over which the accelerations of the ground are linear.
+
+    Attributes
+    ----------
+    length : [s]
+    ah, av : horizontal and vertical acceleration at its beginning [m/s²]
+    rise_h, rise_v : by which they rise over it
+    """
+
+    length: float
+    ah: float
+    av: float
+    rise_h: float
+    rise_v: float
+
+
+@kernel
+def beginning(stretch, part):
+    """First ``part`` of a stretch, a fraction of it."""
+    rise_h, rise_v = part * stretch.rise_h, part * stretch.rise_v
+    return Stretch(part * stretch.length, stretch.ah, stretch.av, rise_h, rise_v)
+
+
+@kernel
+def ground_at(stretch, part):
+    """Accelerations of the ground at a fraction of a stretch."""
+    return stretch.ah + part * stretch.rise_h, stretch.av + part * stretch.rise_v
+
+
+@kernel
+def start_step(p, w):
+    """Take ``q``, ``v`` and ``a`` as the start of a step."""
+    for d in range(3 * p.count):
+        w.q0[d] = w.q[d]
+        w.v0[d] = w.v[d]
+        w.a0[d] = w.a[d]
+
+
+@kernel
+def take_step(p, w, stretch, ledger):
+    """Go on by a stretch of time from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
+
+    With ``ledger`` the work of the ground and of friction is added up.
+    """
+    h = stretch.length
+    size = 3 * p.count
+    for d in range(size):
+        w.kv[0, d] = w.v0[d]
+        w.ka[0, d] = w.a0[d]
+    work, rubbed = 0.0, 0.0
+    if ledger:
+        look_at(p, w, w.q0)
+        solve(p, w, w.q0, w.v0, stretch.ah, stretch.av, False)
+        one, two = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
+        work += 35.0 / 384.0 * one
+        rubbed += 35.0 / 384.0 * two
+    for stage in range(1, 7):
+        if stage == 1:
+            t = 0.2
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * 0.2 * w.ka[0, d]
+                w.q1[d] = w.q0[d] + h * 0.2 * w.kv[0, d]
+        elif stage == 2:
+            t = 0.3
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (0.075 * w.ka[0, d] + 0.225 * w.ka[1, d])
+                w.q1[d] = w.q0[d] + h * (0.075 * w.kv[0, d] + 0.225 * w.kv[1, d])
+        elif stage == 3:
+            t = 0.8
+            b0, b1, b2 = 44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d])
+                w.q1[d] = w.q0[d] + h * (b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d])
+        elif stage == 4:
+            t = 8.0 / 9.0
+            b0, b1 = 19372.0 / 6561.0, -25360.0 / 2187.0
+            b2, b3 = 64448.0 / 6561.0, -212.0 / 729.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (
+                    b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d]
+                )
+                w.q1[d] = w.q0[d] + h * (
+                    b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d]
+                )
+        elif stage == 5:
+            t = 1.0
+            b0, b1, b2 = 9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0
+            b3, b4 = 49.0 / 176.0, -5103.0 / 18656.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (
+                    b0 * w.ka[0, d] + b1 * w.ka[1, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d]
+                    + b4 * w.ka[4, d]
+                )  # fmt: skip
+                w.q1[d] = w.q0[d] + h * (
+                    b0 * w.kv[0, d] + b1 * w.kv[1, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d]
+                    + b4 * w.kv[4, d]
+                )  # fmt: skip
+        else:
+            t = 1.0
+            b0, b2, b3 = 35.0 / 384.0, 500.0 / 1113.0, 125.0 / 192.0
+            b4, b5 = -2187.0 / 6784.0, 11.0 / 84.0
+            for d in range(size):
+                w.v1[d] = w.v0[d] + h * (
+                    b0 * w.ka[0, d] + b2 * w.ka[2, d] + b3 * w.ka[3, d] + b4 * w.ka[4, d]
+                    + b5 * w.ka[5, d]
+                )  # fmt: skip
+                w.q1[d] = w.q0[d] + h * (
+                    b0 * w.kv[0, d] + b2 * w.kv[2, d] + b3 * w.kv[3, d] + b4 * w.kv[4, d]
+                    + b5 * w.kv[5, d]
+                )  # fmt: skip
+        look_at(p, w, w.q1)
+        ah, av = ground_at(stretch, t)
+        solve(p, w, w.q1, w.v1, ah, av, False)
+        for d in range(size):
+            w.kv[stage, d] = w.v1[d]
+            w.ka[stage, d] = w.out[d]
+        if ledger and 2 <= stage <= 5:
+            one, two = _powers(p, w, w.q1, w.v1, ah, av)
+            weight = 500.0 / 1113.0
+            if stage == 3:
+                weight = 125.0 / 192.0
+            elif stage == 4:
+                weight = -2187.0 / 6784.0
+            elif stage == 5:
+                weight = 11.0 / 84.0
+            work += weight * one
+            rubbed += weight * two
+    for d in range(size):
+        w.a1[d] = w.out[d]
+    return work * h, rubbed * h
+
+
+@kernel
+def _powers(p, w, q, v, ah, av):
+    """Power of the ground, and power lost to friction, with the shear in ``w`` [W]."""
+    work = 0.0
+    lost = 0.0
+    for k in range(p.count):
+        work -= p.mass[k] * (ah * v[3 * k] + av * v[3 * k + 1])
+        if w.slides[k] != 0:
+            end = 0 if w.closed[k, 0] == 1 else 1
+            x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+            lost -= w.shear[k] * rate(p, q, v, k, x, y, tx, ty)
+    return work, lost
+
+
+@kernel
+def least_margin(p, w, q, v):
+    """Least of all that must stay positive until the next event; ``w.fails`` says what is negative.
+
+    Contact forces are those in ``w``; ``look_at`` must have been called with ``q``.
+    """
+    least = math.inf
+    for k in range(p.count):
+        pressed = 0.0
+        some = False
+        for end in range(2):
+            w.fails[k, GAP + end] = 0
+            w.fails[k, EDGE + end] = 0
+            if w.closed[k, end] == 1:
+                some = True
+                pressed += w.normal[k, end]
+                margin = w.normal[k, end] / p.weight + SLACK
+                if k > 0 and w.slides[k] != 0:
+                    _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
+                    inside = AT_EDGE - beyond / p.size
+                    inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
+                    if inside < 0.0:
+                        w.fails[k, EDGE + end] = 1
+                    least = min(least, inside)
+            else:
+                _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
+                margin = gap / p.size + TOUCH
+                if beyond < -2.0 * p.half[k]:
+                    least = min(least, (2.0 * p.half[k] + beyond) / p.size)
+            if margin < 0.0:
+                w.fails[k, GAP + end] = 1
+            least = min(least, margin)
+        w.fails[k, FRICTION] = 0
+        if some:
+            if w.slides[k] != 0:
+                end = 0 if w.closed[k, 0] == 1 else 1
+                x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+                margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + TOUCH
+            else:
+                margin = p.static[k] * pressed - abs(w.shear[k])
+                margin = margin / (p.weight * max(p.static[k], 1.0)) + SLACK
+            if margin < 0.0:
+                w.fails[k, FRICTION] = 1
+            least = min(least, margin)
+        turned = abs(q[3 * k + 2])
+        if k > 0:
+            turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
+        margin = 0.5 * math.pi - turned
+        w.fails[k, FALL] = 0
+        if k > 0 and off_the_edge(p, w, q, k):
+            w.fails[k, FALL] = 1
+        if margin < 0.0:
+            w.fails[k, FALL] = 1
+        least = min(least, margin)
+    return least
+
+
+@kernel
+def off_the_edge(p, w, q, k):
+    """Whether the base above interface k no longer reaches over the face below.
+
+    At the far edge a corner meets the edge against its own base, which must not pass for a closed face.
+    """
+    for end in range(2):
+        _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, 1)
+        if beyond < AT_EDGE * p.size - 2.0 * p.half[k]:
+            return True
+    return False
+
+
+@kernel
+def interpolate(p, w, tau, h):
+    """Set ``q`` and ``v`` to the quintic polynomial through the step at its fraction ``tau``."""
+    t2 = tau * tau
+    t3 = t2 * tau
+    for d in range(3 * p.count):
+        q0, v0, a0 = w.q0[d], h * w.v0[d], 0.5 * h * h * w.a0[d]
+        v1, a1 = h * w.v1[d], 0.5 * h * h * w.a1[d]
+        rise = w.q1[d] - q0 - v0 - a0
+        turn = v1 - v0 - 2.0 * a0
+        bend = a1 - a0
+        c3 = 10.0 * rise - 4.0 * turn + bend
+        c4 = -15.0 * rise + 7.0 * turn - 2.0 * bend
+        c5 = 6.0 * rise - 3.0 * turn + bend
+        w.q[d] = q0 + v0 * tau + a0 * t2 + t3 * (c3 + tau * (c4 + tau * c5))
+        w.v[d] = (v0 + 2.0 * a0 * tau + t2 * (3.0 * c3 + tau * (4.0 * c4 + 5.0 * tau * c5))) / h
+
+
+@kernel
+def margin_at(p, w, tau, stretch):
+    """Least margin at the fraction ``tau`` of the step."""
+    interpolate(p, w, tau, stretch.length)
+    look_at(p, w, w.q)
+    ah, av = ground_at(stretch, tau)
+    solve(p, w, w.q, w.v, ah, av, False)
+    return least_margin(p, w, w.q, w.v)
+
+
+@kernel
+def first_failure(p, w, at_low, high, at_high, stretch):
+    """Fraction of the step just after the least margin has become negative, by Chandrupatla's method.
+
+    It is ``at_low`` at the beginning and ``at_high``, which is negative, at the fraction ``high``.  The least of
+    several margins has kinks, and often starts at its slack and rises before it falls: a parabola is trusted only
+    where the last three values allow it, and the interval is halved elsewhere (T. R. Chandrupatla, Advances in
+    Engineering Software 28, 1997, 145-149).
+    """
+    x1, f1, x2, f2 = high, at_high, 0.0, at_low
+    part = 0.5
+    while True:
+        x = x1 + part * (x2 - x1)
+        value = margin_at(p, w, x, stretch)
+        if (value < 0.0) == (f1 < 0.0):
+            x3, f3 = x1, f1
+        else:
+            x3, f3 = x2, f2
+            x2, f2 = x1, f1
+        x1, f1 = x, value
+        width = abs(x2 - x1)
+        if width <= WIDTH:
+            return x1 if f1 < 0.0 else x2
+        part = 0.5
+        xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+        if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
+            part = f1 / (f2 - f1) * (f3 / (f2 - f3))
+            part += (x3 - x1) / (x2 - x1) * (f1 / (f3 - f1)) * (f2 / (f3 - f2))
+        least = 0.5 * WIDTH / width
+        part = min(max(part, least), 1.0 - least)
+
+
+@kernel
+def comes_near(p, w):
+    """Whether a gap has narrowed at the start of the step and widens at its end."""
+    some = False
+    look_at(p, w, w.q0)
+    for k in range(p.count):
+        for end in range(2):
+            w.early[k, end] = 0.0
+            if w.closed[k, end] == 0:
+                x, y, tx, ty, _, _, _ = end_of(p, w, w.q0, k, end, -1)
+                w.early[k, end] = rate(p, w.q0, w.v0, k, x, y, -ty, tx)
+                some = some or w.early[k, end] < 0.0
+    if not some:
+        return False
+    look_at(p, w, w.q1)
+    for k in range(p.count):
+        for end in range(2):
+            if w.early[k, end] < 0.0:
+                x, y, tx, ty, _, _, _ = end_of(p, w, w.q1, k, end, -1)
+                if rate(p, w.q1, w.v1, k, x, y, -ty, tx) > 0.0:
+                    return True
+    return False

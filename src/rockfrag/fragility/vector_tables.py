@@ -1,0 +1,148 @@
+"""Tables of fragilities in two intensity measures: coefficients with what is known of them, contours, cells."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.errors import InputError
+from rockfrag.fragility.observations import Floats, name_and_unit
+from rockfrag.fragility.vector import VectorFragility, fit_vector
+from rockfrag.fragility.vector_checks import VectorChecks, check_vector
+
+PROBABILITIES = (0.1, 0.5, 0.9)
+"""Probabilities of overturning of which contours are given [-]."""
+
+POINTS = 40
+"""Points of a contour, over the values of the second measure."""
+
+MOST_TESTS = 100_000
+"""Tests of one fit; of more every so many-th is taken, which changes limits over earthquakes little."""
+
+FITS = (
+    *("first", "second", "c0", "c1", "c2", "c12", "aic", "tests", "overturned", "earthquakes"),
+    *("p_interaction", "likelihood_ratio", "p_fit", "method", "warnings"),
+)
+CONTOURS = ("first", "second", "probability", "at_second", "value", "lower", "upper")
+CELLS = ("first", "second", "at_first", "at_second", "tests", "overturned", "probability", "fitted")
+
+
+@dataclass(frozen=True)
+class VectorTables:
+    """Tidy tables of fits in two measures.
+
+    Attributes
+    ----------
+    fits
+        A row a fit: the labels given, the columns of the two measures, coefficients of 1, ln first, ln second and
+        their product (0 where it earned no place), AIC, numbers, p values and warnings.
+    contours
+        A row a point: the value of the first measure (``value``, with limits ``lower`` and ``upper``) at which
+        overturning has ``probability``, where the second one is ``at_second``.
+    cells
+        A row a cell of the two measures: tests, those that overturned, the probability that rises in both
+        measures, and the fitted one.
+    """
+
+    fits: pd.DataFrame
+    contours: pd.DataFrame
+    cells: pd.DataFrame
+
+
+def vector_tables(
+    tests: Mapping[str, pd.DataFrame],
+    pairs: tuple[tuple[str, str], ...],
+    *,
+    label: str = "configuration",
+    earthquake: str | None = "event",
+    motion: str | None = "motion",
+    level: float = 0.90,
+    seed: int = 0,
+) -> VectorTables:
+    """Fit every pair of measures to every table of tests.
+
+    Parameters
+    ----------
+    tests
+        Tables with a row a test, by name.
+    pairs
+        Pairs of columns.
+    label
+        Column in which names of the tables stand.
+    earthquake, motion
+        Columns of earthquake and motion; None where each test is one of its own.
+    level
+        Two-sided confidence level of limits [-].
+    seed
+        Of the test of fit.
+
+    Returns
+    -------
+    VectorTables
+        Without rows of fits that the tests do not allow; ``warnings`` of ``fits`` says why.
+    """
+    fits: list[dict[str, object]] = []
+    contours, cells = [], []
+    for name, table in tests.items():
+        used = table.iloc[:: -(-len(table) // MOST_TESTS)]
+        for pair in pairs:
+            about = {label: name, "first": pair[0], "second": pair[1]}
+            try:
+                fit = fit_vector(used, pair, earthquake=earthquake, level=level, source=name)
+            except InputError as error:
+                fits.append({**about, "method": "none", "warnings": str(error)})
+                continue
+            checks = check_vector(fit, used, motion=motion, seed=seed)
+            fits.append({**about, **_fit_row(fit, checks)})
+            contours.append(_contours(fit, used).assign(**about))
+            cells.append(_cells(checks, pair).assign(**about))
+    return VectorTables(
+        pd.DataFrame(fits, columns=[label, *FITS]),
+        _joined(contours, [label, *CONTOURS]),
+        _joined(cells, [label, *CELLS]),
+    )
+
+
+def _joined(parts: list[pd.DataFrame], columns: list[str]) -> pd.DataFrame:
+    if not parts:
+        return pd.DataFrame(columns=columns)
+    return pd.concat(parts, ignore_index=True)[columns]
+
+
+def _fit_row(fit: VectorFragility, checks: VectorChecks) -> dict[str, object]:
+    coefficients = (*fit.surface.coefficients, 0.0)[:4]
+    return {
+        **dict(zip(("c0", "c1", "c2", "c12"), coefficients, strict=True)),
+        "aic": fit.surface.aic,
+        "tests": fit.n,
+        "overturned": fit.n_overturned,
+        "earthquakes": fit.n_earthquakes,
+        "p_interaction": fit.interaction.p,
+        "likelihood_ratio": fit.interaction.likelihood_ratio,
+        "p_fit": checks.p_fit,
+        "method": fit.surface.method,
+        "warnings": " ".join(fit.warnings),
+    }
+
+
+def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
+    values = tests[fit.measures[1]].to_numpy(dtype=np.float64)
+    second = np.geomspace(values.min(), values.max(), POINTS)
+    parts = []
+    for probability in PROBABILITIES:
+        value, lower, upper = fit.contour(probability, second)
+        columns: dict[str, Floats | float] = {
+            "probability": probability, "at_second": second, "value": value, "lower": lower, "upper": upper,
+        }  # fmt: skip
+        parts.append(pd.DataFrame(columns))
+    return pd.concat(parts, ignore_index=True)
+
+
+def _cells(checks: VectorChecks, pair: tuple[str, str]) -> pd.DataFrame:
+    return checks.surface.rename(columns={pair[0]: "at_first", pair[1]: "at_second"})
+
+
+def describe_pair(first: str, second: str) -> str:
+    """Two measures in words: ``PGA and PGV/PGA``."""
+    return f"{name_and_unit(first)[0]} and {name_and_unit(second)[0]}"

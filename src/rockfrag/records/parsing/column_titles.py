@@ -1,0 +1,211 @@
+"""The titles of the columns of a text file: time and its unit, quantities, components."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rockfrag.records.parsing.number_table import NumberTable
+from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
+
+_TIME = re.compile(
+    r"^(?:elapsed\s*|relative\s*)?(?:t|times?|sec|seconds?|ms|msec|millis\w*|min|minutes?|zeit|temps|tiempo|tempo)"
+    r"(?![a-z])",
+    re.IGNORECASE,
+)
+_INDEX = re.compile(
+    r"^(?:no|nr|index|idx|i|samples?|points?|steps?|rows?|counter|line)\W*(?:no|nr|number|index|id)?\W*$"
+    r"|^#$|^number$",
+    re.IGNORECASE,
+)
+_SECONDS = {
+    "": 1.0,
+    "s": 1.0,
+    "sek": 1.0,
+    "ms": 1e-3,
+    "us": 1e-6,
+    "µs": 1e-6,
+    "μs": 1e-6,
+    "min": 60.0,
+    "h": 3600.0,
+}
+_LONG_NAMES = (
+    (re.compile(r"^milli.*|^ms.*"), "ms"),
+    (re.compile(r"^micro.*"), "us"),
+    (re.compile(r"^min.*"), "min"),
+    (re.compile(r"^(?:h|hrs?|hours?)$"), "h"),
+)
+_SPECTRA = re.compile(
+    r"^(?:period|freq|omega)|\bspectr|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b", re.IGNORECASE
+)
+_WORDS = {
+    "acceleration": re.compile(r"(?<![a-z])a(?:cc(?:el\w*|n)?)?(?![a-z])|accel", re.IGNORECASE),
+    "velocity": re.compile(r"(?<![a-z])(?:v|vel(?:oc\w*)?)(?![a-z])", re.IGNORECASE),
+    "displacement": re.compile(r"(?<![a-z])(?:d|u|dis(?:pl?\w*)?)(?![a-z])", re.IGNORECASE),
+}
+_OTHERS = re.compile(
+    r"\b(?P<what>force|load|temp(?:erature)?|resistance|pressure|stress|strain|moment|rotation|angle|volt(?:age)?"
+    r"|current|depth|elevation|height|energy|power|humidity|weight|mass|torque|speed|drift|stiffness|gyro\w*"
+    r"|friction)s?(?![a-z])",
+    re.IGNORECASE,
+)
+_ORIENTATION = re.compile(
+    r"^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTXYH]|UP|VERT\w*|H[12]|[BHE][NLGH][ENZ123]|[NS]\d{1,2}[EW]|\d{1,3}"
+    r"|north\w*|east\w*|radial|transverse|longitudinal|ch(?:annel)?\W?\d+)$",
+    re.IGNORECASE,
+)
+_AMBIGUOUS = frozenset("vud")
+_BRACKETED = re.compile(r"[\[({](?P<unit>[^\[\](){}]*)[\])}]")
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a title says of its column.
+
+    Attributes
+    ----------
+    title
+        The title.
+    quantity
+        ``time``, ``index``, ``spectrum``, ``acceleration``, ``velocity``, ``force``, …; empty if it does not say.
+    unit
+        Canonical unit of acceleration, or of a time.
+    component
+        Name of the component.
+    """
+
+    title: str
+    quantity: str
+    unit: str
+    component: str
+
+    @property
+    def seconds(self) -> float | None:
+        """Seconds of a unit of a time column, None where its unit is not known."""
+        return _SECONDS.get(self.unit)
+
+
+def column_titles(table: NumberTable, row: str) -> list[Column]:
+    """Return the columns that the titles above a table name, none where it has no titles.
+
+    The titles stand directly above the numbers, or have a line of units between.
+
+    Parameters
+    ----------
+    table
+        Where the numbers begin.
+    row
+        The first row of them, which shows how titles are separated.
+    """
+    if not table.words:
+        return []
+    separators = [] if table.decimal_comma else [mark for mark in (";", ",", "\t") if mark in row]
+    above = list(table.words)
+    words = above[-1][1]
+    units = next(iter(_splits(words, separators, table.columns)), [])
+    if len(above) > 1 and units and all(_is_unit(cell) for cell in units):
+        words = above[-2][1]
+    else:
+        units = [""] * table.columns
+    for cells in _splits(words, separators, table.columns):
+        columns = _columns(cells, units)
+        if _are_titles(columns, " " in words.strip() and not any(" " in cell for cell in cells)):
+            return columns
+    return []
+
+
+def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
+    """Tell titles from a sentence that happens to have as many words as there are columns."""
+    known = [column.quantity for column in columns]
+    if len(columns) == 1:
+        # above one column any words may stand; with a unit they are its title
+        return bool(columns[0].unit) and known == ["acceleration"]
+    if not by_blanks:
+        return any(known)
+    return all(known) or known[0] not in ("", "acceleration", "velocity", "displacement")
+
+
+def _splits(words: str, separators: list[str], width: int) -> Iterator[list[str]]:
+    """Yield the ways in which words make as many titles as a row has columns."""
+    patterns = [re.escape(mark) for mark in separators] + [r"\s{2,}|\t", r"\s+(?![\[(])", r"\s+"]
+    if not separators:
+        patterns.append(",")
+    for pattern in patterns:
+        cells = [cell.strip(" \t\"'") for cell in re.split(pattern, words.rstrip(" \t,;"))]
+        if len(cells) == width and all(cells):
+            yield cells
+
+
+def _is_unit(cell: str) -> bool:
+    unit = canonical_unit(cell.strip("[](){}"))
+    return unit in {"s", "ms", "-", "min"} or quantity_of(unit) != ""
+
+
+def _columns(titles: list[str], units: list[str]) -> list[Column]:
+    columns = [
+        _column(title, unit, first=number == 0)
+        for number, (title, unit) in enumerate(zip(titles, units, strict=True))
+    ]
+    directed = any(
+        _ORIENTATION.match(c.title) and c.title.lower() not in _AMBIGUOUS
+        for c in columns
+        if c.quantity != "time"
+    )
+    # beside N and E a V is the vertical, beside a it is the velocity
+    return [
+        Column(c.title, "acceleration", "", c.title)
+        if directed and c.title.lower() in _AMBIGUOUS and not c.unit
+        else c
+        for c in columns
+    ]
+
+
+def _column(title: str, unit_below: str, first: bool) -> Column:
+    bracketed = _BRACKETED.search(title)
+    words = title if bracketed is None else title[: bracketed.start()] + title[bracketed.end() :]
+    unit = canonical_unit(bracketed["unit"] if bracketed else unit_below.strip("[](){}"))
+    if _TIME.match(words) and (first or words.strip().lower() != "t"):
+        return Column(title, "time", _time_unit(words, unit), "")
+    if not unit:
+        # acc_g, NS_cm/s2, accel m/s^2
+        head, _, last = re.sub(r"[_\s]+", " ", words.strip()).rpartition(" ")
+        if head and quantity_of(canonical_unit(last)):
+            words, unit = head, canonical_unit(last)
+    bare = words.strip(" _-.:,")
+    quantity = _quantity(words, unit, bare)
+    pattern = _WORDS.get(quantity)
+    component = pattern.sub("", words.replace("_", " "), count=1) if pattern else words
+    component = " ".join(component.replace("[]", "").split()).strip(" -.:,")
+    return Column(title, quantity, unit if unit in TO_SI else "", component)
+
+
+def _quantity(words: str, unit: str, bare: str) -> str:
+    """Return the quantity that the unit of a title names, else its words, else its direction."""
+    if _SPECTRA.search(bare.replace("_", " ")):
+        return "spectrum"
+    spaced = words.replace("_", " ")
+    if not bare:
+        return ""
+    named = next((name for name, pattern in _WORDS.items() if pattern.search(spaced)), "")
+    other = _OTHERS.search(spaced)
+    if quantity_of(unit):
+        return quantity_of(unit)
+    if len(bare) > 1 and _ORIENTATION.match(bare):
+        return "acceleration"
+    if named:
+        return named
+    if other:
+        return other["what"].lower()
+    if _INDEX.match(bare):
+        return "index"
+    return "acceleration" if _ORIENTATION.match(bare) else ""
+
+
+def _time_unit(words: str, unit: str) -> str:
+    """Return the unit of a time column: in brackets, behind the word (``time_ms``), or the title itself."""
+    if not unit:
+        parts = re.split(r"[\s_/,.:-]+", words.strip().lower())
+        unit = canonical_unit(parts[-1]) if parts[-1] else ""
+        if unit in {"t", "time", "times", "zeit", "temps", "temp", "tiempo", "tempo"}:
+            unit = ""
+    unit = next((short for pattern, short in _LONG_NAMES if pattern.match(unit)), unit)
+    return "" if unit in {"utc", "gmt", "relative", "rel"} else unit

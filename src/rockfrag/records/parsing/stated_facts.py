@@ -1,0 +1,223 @@
+"""What the words above the samples of a text file state: count, interval, unit, quantity, components."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from rockfrag.plausibility import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.records.parsing.number_table import number_in
+from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
+
+_VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[EeDd][+-]?\d+)?"
+_IS = r"[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?[\s\"',]*(?P<sign>[=:]|\bis\b)?[\s\"',]*"
+_STEP = re.compile(
+    r"(?:\b(?:dt|d\.t\.|delta[\s_-]*t|time[\s_-]*(?:step|increment|interval|spacing)|timestep"
+    r"|sampl\w*[\s_-]*(?:step|increment|interval|period|spacing|time)|spaced\s+at|intervals?\s+of)"
+    r"|(?<![\w.])Δt|\b(?P<unsure>delta|interval|step))"
+    rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?",
+    re.IGNORECASE,
+)
+_RATE = re.compile(
+    rf"\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?{_IS}(?P<value>{_VALUE})\s*(?P<unit>k?hz|sps|samples|pts|points)?"
+    r"|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
+    r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)",
+    re.IGNORECASE,
+)
+_COUNT = re.compile(
+    r"(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
+    r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?))|(?P<unsure>\bsamples|\bpoints|\blength|\bn))"
+    rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))",
+    re.IGNORECASE,
+)
+_COUNTED = re.compile(
+    r"^\s*(?P<count>\d+)\s+(?:data\s+)?(?:points?|samples?|values?)\b(?!\s*(?:/|per))", re.I
+)
+_UNIT_WORDS = re.compile(
+    r"\bunits?\b(?:\s*\([^)]*\))?\s*(?:of|are|is|in|for\s+\w+)?\s*[=:]?(?P<rest>.*)$", re.I
+)
+_QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
+_QUANTITY_IN = re.compile(
+    rf"{_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$",
+    re.IGNORECASE,
+)
+_NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.IGNORECASE)
+_IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.IGNORECASE)
+_ONE_VALUE = re.compile(r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter)\b", re.I)
+_UNIT_TOKEN = re.compile(
+    r"[\s\"'=:(\[{]*(?P<unit>(?:[a-z%°µ]+[\w%°^*²-]*(?:\.[a-z-]+\d?)?(?:\s*/\s*\(?\s*[a-z\d]+\)?(?:\^|\*\*)?[\d²]*)*))",
+    re.IGNORECASE,
+)
+_LIST = re.compile(
+    r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(?P<names>.+)$", re.I
+)
+_FACTOR = re.compile(
+    rf"\b(?:scal(?:e|ing)|conversion|calibration)[\s_-]*factor{_IS}(?P<value>[+-]?{_VALUE})", re.I
+)
+_KEYS = {
+    "event": re.compile(r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
+    "station": re.compile(r"^\W*(?:recording\s+)?station\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
+}
+_SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
+
+
+@dataclass(frozen=True)
+class StatedFacts:
+    """What is stated, None or empty where it is not.
+
+    Attributes
+    ----------
+    npts, dt
+        Number of samples and interval [s].
+    unit
+        Canonical unit of acceleration.
+    quantity
+        What the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
+    components
+        Names of the components, in the order of the columns.
+    factor
+        A factor that the samples are still to be multiplied by, with its words.
+    details
+        ``event`` and ``station``.
+    contradiction
+        Two statements that exclude each other, in words.
+    """
+
+    npts: int | None = None
+    dt: float | None = None
+    unit: str = ""
+    quantity: str = ""
+    components: tuple[str, ...] = ()
+    factor: str = ""
+    details: dict[str, str] = field(default_factory=dict)
+    contradiction: str = ""
+
+
+def stated_facts(lines: Sequence[str]) -> StatedFacts:
+    """Return what lines of words, the uppermost first, state about the samples below them."""
+    steps = list(dict.fromkeys(step for line in lines for step in _steps(line)))
+    counts = list(dict.fromkeys(count for line in lines for count in _counts(line)))
+    units = list(dict.fromkeys(unit for line in lines for unit in _explicit_units(line)))
+    contradiction = next(
+        (
+            f"the header states {what} {_both(found)}"
+            for what, found in (("intervals of", steps), ("counts of", counts), ("units of", units))
+            if len(found) > 1 and not _close(found)
+        ),
+        "",
+    )
+    quantity, unit = _quantity_and_unit(lines)
+    return StatedFacts(
+        npts=counts[0] if counts else None,
+        dt=steps[0] if steps else None,
+        unit=units[0] if units else unit,
+        quantity="acceleration" if units else quantity,
+        components=next((tuple(names) for line in lines if (names := _components(line))), ()),
+        factor=next((line for line in lines if _is_factor(line)), ""),
+        details={
+            key: found["value"].strip()
+            for key, pattern in _KEYS.items()
+            if (found := next((m for line in lines if (m := pattern.match(line))), None))
+        },
+        contradiction=contradiction,
+    )
+
+
+def _steps(line: str) -> list[float]:
+    """Return the intervals [s] that a line states, as a step or a rate."""
+    found = []
+    for match in _STEP.finditer(line):
+        unit = (match["unit"] or "").lower()
+        if match["unsure"] and (not match["sign"] or unit.startswith(("d", "k", "°"))):
+            continue
+        note = (match["note"] or match["note2"] or "").strip().lower()
+        factor = next((f for u, f in _SECONDS.items() if (unit or note).startswith(u)), 1.0)
+        factor = 60.0 if (unit or note).startswith("min") else factor
+        found.append(float(f"{number_in(match['value']) * factor:.12g}"))
+    for match in _RATE.finditer(line):
+        words = match["value"] or match["value2"] or match["value3"]
+        note = f"{match['note'] or ''}{match['note2'] or ''}{match['unit'] or ''}".lower()
+        sure = match["named"] or match["unit"] or match["value2"] or match["value3"]
+        rate = number_in(words.rstrip(".")) if sure and words.strip(".") else 0.0
+        if rate > 0:
+            rate *= 1000 if "khz" in note else 1
+            found.append(float(f"{1 / rate:.9g}"))
+    return [step for step in found if SHORTEST_STEP <= step <= LONGEST_STEP]
+
+
+def _counts(line: str) -> list[int]:
+    found = [m for m in _COUNT.finditer(line) if m["sign"] or not m["unsure"]]
+    counted = _COUNTED.match(line)
+    return [int(m["count"]) for m in (*found, *([counted] if counted else [])) if int(m["count"])]
+
+
+def _explicit_units(line: str) -> list[str]:
+    """Return the unit of acceleration that stands behind the word unit, at most one."""
+    match = _UNIT_WORDS.search(line)
+    units = _units_in(match["rest"]) if match else []
+    return [unit for unit in units if unit in TO_SI][:1]
+
+
+def _units_in(words: str) -> list[str]:
+    """Return what may be units in words, canonical, from left to right."""
+    parts = re.split(r"[,;]|\s+and\s+|(?<=[\w)\]])\s+(?![/\d])|[()\[\]]", words, flags=re.I)
+    tokens = (_UNIT_TOKEN.match(part) for part in parts)
+    return [canonical_unit(token["unit"]) for token in tokens if token]
+
+
+def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
+    """Return the quantity and the unit of acceleration that the line nearest the numbers states."""
+    for line in reversed(lines):
+        explicit = _UNIT_WORDS.search(line)
+        held = next(iter(map(quantity_of, _units_in(explicit["rest"])[:1])), "") if explicit else ""
+        if held:
+            return held, ""
+        if _ONE_VALUE.search(line):
+            continue
+        match = _QUANTITY_IN.search(line) or _IN_UNIT.search(line)
+        first = next(iter(_units_in(match["rest"])), "") if match else _sure_unit(line)
+        named = match.groupdict().get("quantity") if match else None
+        if first in TO_SI and (named or first not in ("g", "mg") or not match):
+            return "acceleration", first
+        if named and quantity_of(first):
+            return quantity_of(first), ""
+    last = [m["quantity"].lower() for line in lines[-1:] for m in _NAMED_QUANTITY.finditer(line)]
+    everywhere = any(
+        m["quantity"].lower() == "acc" for x in lines for m in _NAMED_QUANTITY.finditer(x)
+    )
+    if last and not everywhere:
+        return {"vel": "velocity", "dis": "displacement"}[last[0]], ""
+    return "", ""
+
+
+def _sure_unit(line: str) -> str:
+    """Return a unit that only an acceleration has, if a line has one that is not of a value in it."""
+    return next(
+        (
+            unit
+            for part in re.split(r"(?<![\d.])[,;\s]+(?![/\d])", line)
+            if (unit := canonical_unit(part)) in TO_SI and "/s" in unit
+        ),
+        canonical_unit(line),
+    )
+
+
+def _components(line: str) -> list[str]:
+    match = _LIST.match(line)
+    return [word for word in re.split(r"[\s,;]+", match["names"].strip()) if word] if match else []
+
+
+def _is_factor(line: str) -> bool:
+    match = _FACTOR.search(line)
+    return match is not None and number_in(match["value"]) != 1
+
+
+def _close(found: Iterable[float | int | str]) -> bool:
+    values = list(found)
+    if not all(isinstance(value, float) for value in values):
+        return False
+    numbers = [float(value) for value in values]
+    return max(numbers) - min(numbers) <= 1e-4 * max(numbers)
+
+
+def _both(found: Sequence[float | int | str]) -> str:
+    return " and ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2])

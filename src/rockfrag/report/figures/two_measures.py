@@ -1,0 +1,88 @@
+"""Fragility in two intensity measures: contours with limits over what the tests say without a fit."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.ticker import PercentFormatter
+
+from rockfrag.figure_style import (
+    BLUE,
+    COLUMN_WIDTH,
+    figure_style,
+    new_figure,
+    plain_log,
+)
+from rockfrag.fragility.observations import name_and_unit
+
+LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}
+"""How contours of probabilities are drawn."""
+
+MEDIAN = 0.5
+
+
+def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
+    """Draw contours of the fitted probability of overturning over cells of tests.
+
+    Parameters
+    ----------
+    contours, cells
+        Of one fit, as :class:`rockfrag.fragility.vector_tables.VectorTables` has them.
+
+    Returns
+    -------
+    Figure with the first measure across and the second one up; the band holds the median's limits.
+    """
+    first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
+    x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()
+    with figure_style():
+        figure = new_figure(COLUMN_WIDTH, 3.2)
+        axes = figure.subplots()
+        shown = axes.scatter(
+            x,
+            y,
+            c=cells["probability"],
+            s=6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()),
+            cmap="Greys",
+            vmin=0,
+            vmax=1,
+            marker="s",
+            edgecolors="#999999",
+            linewidths=0.3,
+        )
+        reach = (0.8 * x.min(), 1.25 * x.max())
+        for probability, line in LINES.items():
+            part = contours[np.isclose(contours["probability"], probability)]
+            inside = part["value"].between(*reach)
+            axes.plot(
+                part["value"].where(inside),
+                part["at_second"],
+                color=BLUE,
+                linestyle=line,
+                label=f"{probability:.0%}",
+            )
+            if probability == MEDIAN:
+                lower, upper = (part[side].clip(*reach) for side in ("lower", "upper"))
+                axes.fill_betweenx(
+                    part["at_second"], lower, upper, color=BLUE, alpha=0.2, linewidth=0
+                )
+        axes.set(
+            xscale="log",
+            yscale="log",
+            xlim=reach,
+            ylim=(0.9 * y.min(), 1.1 * y.max()),
+            xlabel=_axis(first),
+            ylabel=_axis(second),
+        )
+        plain_log(axes, "x")
+        plain_log(axes, "y")
+        bar = figure.colorbar(shown, ax=axes, format=PercentFormatter(1.0, decimals=0), pad=0.02)
+        bar.set_label("Observed, rising in both measures")
+        figure.legend(
+            loc="outside upper center", ncols=3, title="Fitted probability of overturning"
+        )
+    return figure
+
+
+def _axis(column: str) -> str:
+    name, unit = name_and_unit(column)
+    return f"{name} [{unit}]" if unit else name

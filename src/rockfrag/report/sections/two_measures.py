@@ -1,0 +1,105 @@
+"""Fragility in two intensity measures: contours, coefficients, and whether the fit describes the tests."""
+
+from functools import partial
+
+import pandas as pd
+
+from rockfrag.files import file_name
+from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.fragility.vector import INTERACTION_LEVEL
+from rockfrag.fragility.vector_tables import describe_pair
+from rockfrag.report.figures.two_measures import two_measures_figure
+from rockfrag.report.page import Column, table_html
+from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.study.study import Study
+
+_COLUMNS = (
+    Column("configuration", "Object"),
+    Column("pair", "Measures"),
+    Column("c0", "c0", 2),
+    Column("c1", "c1", 2),
+    Column("c2", "c2", 2),
+    Column("c12", "c12", 2),
+    Column("aic", "AIC", 1),
+    Column("p_interaction", "p of no interaction", 3),
+    Column("p_fit", "p of the fit", 3),
+)
+
+
+def _asked(study: Study) -> bool:
+    return bool(study.fragility.pairs)
+
+
+def _section(results: Results) -> Section | None:
+    fits = results.table("fragility_two_measures")
+    found = fits[fits["method"] != "none"]
+    if found.empty:
+        return None
+    rejected = found[found["p_fit"] < REJECTED]
+    level = f"{100 * results.study.fragility.confidence:g} %"
+    return Section(
+        "two-measures",
+        "Fragility in two measures",
+        _message(found, rejected),
+        [
+            "The probability of overturning is Φ(c0 + c1 ln IM1 + c2 ln IM2 + c12 ln IM1 ln IM2). The product "
+            "stands "
+            f"in it where a score test over earthquakes rejects its absence at {INTERACTION_LEVEL:.0%} and it "
+            f"improves the "
+            f"prediction of held-out earthquakes; c12 is 0 otherwise. Bands are {level} intervals over "
+            f"earthquakes "
+            "(jackknife). The p of the fit is from simulated tests in which each motion has one capacity.",
+            *dict.fromkeys(note for note in fits["warnings"] if note),
+        ],
+        [
+            *_figures(results, found),
+            table_html(
+                found.assign(pair=_pairs(found)),
+                _COLUMNS,
+                "Fits in two measures.",
+                "fragility_two_measures",
+            ),
+        ],
+    )
+
+
+def _pairs(fits: pd.DataFrame) -> list[str]:
+    return [describe_pair(a, b) for a, b in zip(fits["first"], fits["second"], strict=True)]
+
+
+def _message(found: pd.DataFrame, rejected: pd.DataFrame) -> str:
+    pairs = ", ".join(dict.fromkeys(_pairs(found)))
+    if rejected.empty:
+        return f"Fits in {pairs} describe the tests of all {len(found)} objects and measures."
+    return (
+        f"Of {len(found)} fits in {pairs}, {len(rejected)} do not describe their tests; use the observed "
+        f"probabilities "
+        "by cell there."
+    )
+
+
+def _figures(results: Results, found: pd.DataFrame) -> list[FigureSpec]:
+    contours, cells = (results.table(name) for name in ("fragility_contours", "fragility_cells"))
+    keys = ["configuration", "first", "second"]
+    specs = []
+    for row in found[keys].to_dict("records"):
+        own, tests = (t[(t[keys] == pd.Series(row)).all(axis=1)] for t in (contours, cells))
+        pair = describe_pair(str(row["first"]), str(row["second"]))
+        caption = (
+            f"{row['configuration']}: probability of overturning in {pair}. Lines are fitted, the band holds the "
+            "median; squares show the fraction of tests that overturned by cell, rising in both measures."
+        )
+        specs.append(
+            FigureSpec(
+                file_name(f"two_measures_{'_'.join(map(str, row.values()))}"),
+                caption,
+                caption,
+                partial(two_measures_figure, own, tests),
+            )
+        )
+    return specs
+
+
+TWO_MEASURES = Part(
+    ("fragility_two_measures", "fragility_contours", "fragility_cells"), _section, _asked
+)

@@ -1,0 +1,105 @@
+"""A job: one rule of the workflow at work on one study."""
+
+import logging
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import pandas as pd
+
+from rockfrag.files import write_table
+
+if TYPE_CHECKING:
+    from rockfrag.records.motion import Motion
+
+S = TypeVar("S")
+
+Results = Iterator[tuple[str, "pd.DataFrame | list[Motion]"]]
+"""What a stage yields: each of its results by name, as soon as it is there."""
+
+_LIBRARIES_MB = 1500
+"""Memory of a process that has loaded and compiled all that a stage uses [MiB]."""
+
+_BYTES_A_SWEEP = 20_000
+"""Memory for what statistics know of a configuration under a motion, whatever the number of amplitudes."""
+
+
+@dataclass(frozen=True)
+class Job(Generic[S]):
+    """One rule of the workflow at work on one study: what it may read, and where it writes.
+
+    Results are named by their path in the study's folder without an ending: ``tests`` is a table
+    (``tests.csv`` and ``tests.parquet``), ``motions/ground`` a set of motions (``motions/ground.parquet``).
+
+    Attributes
+    ----------
+    study
+        The study.
+    folder
+        Folder of the study's results.
+    threads
+        Threads to use; no result depends on their number.
+    log
+        Log of the job; its last line says what was found.
+    part
+        Number of the part of the motions that the job is for, where parts have jobs of their own.
+    inputs, outputs
+        Paths that its rule declares, as the rule writes them; None where there is no rule.
+    """
+
+    study: S
+    folder: Path
+    threads: int
+    log: logging.Logger
+    part: int = 0
+    inputs: frozenset[Path] | None = None
+    outputs: frozenset[Path] | None = None
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Read a table of another stage by its name."""
+        return pd.read_parquet(self.file(f"{name}.parquet"))
+
+    def motions(self, name: str, part: tuple[int, int] = (0, 1)) -> "list[Motion]":
+        """Read a set of motions of another stage, such as ``motions/ground``, or part k of n of it."""
+        from rockfrag.records.motion import read_motion_set
+
+        return read_motion_set(self.file(f"{name}.parquet"), part)
+
+    def file(self, path: str) -> Path:
+        """Return the whole path of another stage's file.
+
+        Raises
+        ------
+        ValueError
+            If the rule does not declare it as an input: Snakemake would not know when to compute it again.
+        """
+        whole = self.folder / path
+        if self.inputs is not None and whole not in self.inputs:
+            raise ValueError(f"{path} is read, but its rule does not declare it as an input")
+        return whole
+
+    def write(self, name: str, result: "pd.DataFrame | list[Motion]") -> None:
+        """Write a result: a table as CSV and as Parquet, motions as Parquet.
+
+        Raises
+        ------
+        ValueError
+            If the rule does not declare it as an output.
+        """
+        paths = [self.folder / f"{name}.parquet"]
+        if isinstance(result, pd.DataFrame):
+            paths.insert(0, self.folder / f"{name}.csv")
+        if self.outputs is not None and not self.outputs.issuperset(paths):
+            raise ValueError(f"{name} is written, but its rule does not declare it as an output")
+        if isinstance(result, pd.DataFrame):
+            write_table(result, *paths)
+        else:
+            from rockfrag.records.motion import write_motion_set
+
+            write_motion_set(result, *paths)
+
+
+def memory_mb(study: Any) -> int:
+    """Memory that a cluster should lend to a job [MiB]: libraries, and what is known of every sweep."""
+    return _LIBRARIES_MB + int(getattr(study, "sweeps", 0) * _BYTES_A_SWEEP / 2**20)

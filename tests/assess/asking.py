@@ -1,0 +1,217 @@
+"""Random requests of `rockfrag assess`, and what an answer may not say of itself.
+
+Used by ``test_random_requests.py`` for some dozens of requests, by ``tests/fuzz/requests.py`` for thousands.
+"""
+
+import contextlib
+import io
+import json
+import math
+import random
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rockfrag.cli import main
+
+SIZES = {
+    "--width": ("8cm", "20cm", "35cm", "0.42 m", "60cm", "2 m", "1,65m", "0cm", "35", "14in"),
+    "--height": ("30cm", "80cm", "1.2m", "165cm", "2.5m", "4 ft", "-1m", "80 m"),
+    "--depth": ("15cm", "35cm", "1m", "2mm"),
+    "--mass": ("12kg", "180kg", "0.4t", "900 lb", "180g"),
+    "--cg-height": ("20cm", "0.5m", "75cm", "3m"),
+    "--cg-offset": ("1cm", "3cm", "-2cm", "40cm"),
+}
+OTHERS: dict[str, tuple[tuple[str, ...], ...]] = {
+    "--restitution": (("0.9",), ("0.97",), ("1",), ("1.2",)),
+    "--round": ((),),
+    "--friction": (("0.3",), ("0.6",), ("9",)),
+    "--pedestal": (
+        ("50cm", "90cm"),
+        ("50cm", "90cm", "400kg"),
+        ("25cm", "60cm"),
+        ("3m", "10cm"),
+        ("1m",),
+    ),
+    "--floor": (("0/3",), ("1/1",), ("2/4",), ("3/3",), ("attic",), ("5/4",)),
+    "--storey-height": (("4m",), ("4.5m", "4m", "3m"), ("30cm",)),
+    "--period": (("0.2s",), ("0.6 s",), ("700 ms",), ("20s",)),
+    "--material": (("masonry",), ("concrete",), ("steel",), ("wood",)),
+    "--magnitude": (("6.5",),),
+    "--distance": (("20",),),
+    "--years": (("50",), ("1",), ("1000",), ("0",)),
+    "--unit": (("g",),),
+    "--pages": ((),),
+    "--name": (("Venus",), ("a/../b",), ("=1",)),
+}
+LEVELS: tuple[tuple[str, ...], ...] = (
+    ("--pga", "0.13g"), ("--pga", "0.2g"), ("--pga", "0.25 g"), ("--pga", "2.4 m/s2"), ("--pga", "0.5g"),
+    ("--pga", "1.5g"), ("--pga", "9g"), ("--pga", "0.001g"), ("--pga", "0.13"), ("--pgv", "5cm/s"),
+    ("--pgv", "27cm/s"), ("--pgv", "1.2m/s"), ("--sa", "0.3s", "0.6g"), ("--sa", "2s", "0.1g"),
+    ("--pga", "0.3g", "--pgv", "30cm/s"),
+)  # fmt: skip
+
+
+_EMPTY = re.compile(r"\bnan\b|\binf\b|\bNone\b(?! of)|less than 0 %|\b0 to 100 %")
+"""Words of an answer that say nothing."""
+
+
+def request(rng: random.Random, records: Path, hazard: Path) -> list[str]:
+    """Options of one request; most of them make sense.
+
+    Parameters
+    ----------
+    rng
+        Source of chance.
+    records
+        Catalogue of records.
+    hazard
+        A hazard curve.
+    """
+    usual = rng.random() < 0.75
+    chosen: list[str] = []
+    for option, values in SIZES.items():
+        needed = option in ("--width", "--height")
+        if needed or rng.random() < (0.12 if usual else 0.3):
+            # the last ones are wrong, or unusual
+            chosen += [
+                option,
+                rng.choice(values[1:4] if usual and needed else values[:2] if usual else values),
+            ]
+    for option, given in OTHERS.items():
+        if rng.random() < (0.06 if usual and option not in ("--pedestal", "--floor") else 0.16):
+            chosen += [option, *rng.choice(given[:2] if usual else given)]
+    if rng.random() < 0.85:
+        chosen += rng.choice(LEVELS[:7] if usual else LEVELS)
+    if rng.random() < 0.4:
+        chosen += ["--return-period", rng.choice(("475", "2475", "50" if usual else "0"))]
+    elif rng.random() < 0.3:
+        chosen += ["--hazard", str(hazard)]
+    if not usual and rng.random() < 0.2:
+        chosen += rng.choice((["--on-floor"], ["--pga", "0.4g"], ["--pedestal", "60cm", "20cm"]))
+    return [*chosen, "--record", str(records)]
+
+
+def answered(options: Sequence[str], folder: Path) -> tuple[int, str, str]:
+    """Run the command line; return the exit status and what it wrote to both channels.
+
+    Parameters
+    ----------
+    options
+        Options of ``rockfrag assess``.
+    folder
+        Where it writes.
+    """
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            status = main(["assess", *options, "--json", "--output", str(folder)])
+        except SystemExit as end:
+            status = int(end.code or 0)
+    return status, out.getvalue(), err.getvalue()
+
+
+def contradictions(status: int, out: str, err: str) -> list[str]:
+    """What is wrong with an answer; nothing where it agrees with itself or was refused in one sentence.
+
+    Parameters
+    ----------
+    status, out, err
+        Exit status, and what was written to both channels.
+    """
+    if status == 2:
+        said = [line for line in err.splitlines() if not line.startswith(("usage:", "warning:"))]
+        return [] if len(said) == 1 and not out else [f"refused in {len(said)} lines: {err[-300:]}"]
+    if status != 0:
+        return [f"exit status {status}: {err[-300:]}"]
+    return _within(json.loads(out))
+
+
+def _within(answer: dict[str, Any]) -> list[str]:
+    rocking, toppling, likely = (
+        answer[key] for key in ("share_rocking", "share_toppling", "probability")
+    )
+    amplitudes = answer["amplitude_toppling"]
+    wrong = [
+        f"{name}: {one}"
+        for name, one in {
+            "rocking": rocking, "toppling": toppling, "probability": likely, **amplitudes
+        }.items()
+        if one is not None and not _ordered(one)
+    ]  # fmt: skip
+    checks = {
+        "toppling is likelier than rocking": rocking is None
+        or all(toppling[key] <= rocking[key] + 1e-12 for key in ("value", "lower", "upper")),
+        "a tenth topples at more than half": _of(amplitudes["0.1"]) <= _of(amplitudes["0.5"]),
+        "counts": _counts_agree(answer),
+        "below uplift": _at_rest(answer),
+        "lines": _lines_agree(answer),
+        "what helps": _helps(answer),
+        "shares fall with the level of none": all(
+            0 <= p <= 1 for p in answer["fragility"]["share"]
+        ),
+    }
+    return wrong + [name for name, right in checks.items() if not right]
+
+
+def _of(estimate: dict[str, Any]) -> float:
+    return math.inf if estimate["value"] is None else estimate["value"]
+
+
+def _ordered(one: dict[str, Any]) -> bool:
+    """Limits hold the value; a level that none reaches is null."""
+    low = 0.0 if one["lower"] is None else one["lower"]
+    high = math.inf if one["upper"] is None else one["upper"]
+    return low <= _of(one) * (1 + 1e-9) and _of(one) <= high * (1 + 1e-9)
+
+
+def _counts_agree(answer: dict[str, Any]) -> bool:
+    counts = answer["counts"]
+    if counts is None:
+        return True
+    if not counts["topple"] <= counts["rock"] <= counts["motions"]:
+        return False
+    shares = answer["share_toppling"]["value"], answer["share_rocking"]["value"]
+    expected = (counts[key] / counts["motions"] for key in ("topple", "rock"))
+    return all(abs(a - b) < 1e-9 for a, b in zip(shares, expected, strict=True))
+
+
+def _at_rest(answer: dict[str, Any]) -> bool:
+    """Below the level at which it starts to rock, nothing rocks and the line says so."""
+    level, starts = answer["level"], answer["rocks_from"]
+    if level is None or answer["share_rocking"] is None:
+        return True
+    if starts is not None and level >= starts:
+        return not answer["does_not_move"]
+    still = answer["share_rocking"]["value"] == 0 == answer["share_toppling"]["value"]
+    words = answer["lines"][0]
+    return still and ("does not move" in words or "is not expected to move" in words)
+
+
+def _lines_agree(answer: dict[str, Any]) -> bool:
+    """Five lines; a bound is called one, none of n is said as that, and no interval says nothing."""
+    lines = answer["lines"]
+    text = "\n".join(lines)
+    if len(lines) != 5 or _EMPTY.search(text):
+        return False
+    toppling = answer["share_toppling"]
+    if toppling and toppling["value"] == 0 and answer["share_rocking"]["value"] > 0:
+        return "none of" in lines[0] and "upper limit" in lines[0]
+    if toppling and toppling["lower"] < 0.01 and toppling["upper"] > 0.5 and toppling["value"] > 0:
+        return "not decidable" in lines[0]
+    return True
+
+
+def _helps(answer: dict[str, Any]) -> bool:
+    """What is printed as help makes nothing worse, and only that which helps is printed."""
+    line = answer["lines"][3].lower()
+    amplitude = answer["share_toppling"] is None and answer["probability"] is None
+    for one in answer["remedies"]:
+        factor = one["factor"]
+        better = factor is None or (factor > 1 if amplitude else factor < 1)
+        if one["helps"] and not better:
+            return False
+        if one["name"].lower() in line and not one["helps"]:
+            return False
+    return True

@@ -1,0 +1,362 @@
+"""What a conservator types is answered in her words, and what cannot be used is said at once."""
+
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.hazard.measure import PGA
+from rockfrag.assess.hazard.reading import read_hazard
+from rockfrag.assess.inventory import read_inventory
+from rockfrag.assess.narrowing import is_wide, narrowed
+from rockfrag.assess.page import page_of
+from rockfrag.assess.place import PERIOD_FACTORS
+from rockfrag.assess.remedies import compare
+from rockfrag.assess.request import make_request, read_request
+from rockfrag.assess.risk import Estimate, estimate, share_target
+from rockfrag.assess.scale import step_of
+from rockfrag.assess.verdicts import Ladder, Verdicts
+from rockfrag.assess.words import assumptions, five_lines
+from rockfrag.building.floors import floor_motions
+from rockfrag.cli import main
+from rockfrag.errors import InputError
+
+STATUE = {"width": "42 cm", "height": "1.65 m", "mass": "410 kg", "cg_height": "0.75 m"}
+
+
+def asked(**settings):
+    return make_request(settings, "test")
+
+
+def refused(capsys, *options: str) -> str:
+    """The one sentence with which the command line refuses."""
+    assert main(["assess", *options]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.count("\n") == 1
+    return shown.err
+
+
+@pytest.fixture(scope="module")
+def on_pedestal(motions):
+    """A statue on its pedestal in a building, under a level with a return period."""
+    request = asked(
+        name="Marble", **STATUE, pedestal={"width": "60 cm", "height": "90 cm", "mass": "700 kg"},
+        floor="2/3", pga="0.3 g", return_period="475 years",
+    )  # fmt: skip
+    return assess_with(request, motions.at(request.place))
+
+
+def only_one_earthquake_topples() -> Verdicts:
+    """Six motions of as many earthquakes, all of which rock and one of which topples."""
+    levels = np.geomspace(0.1, 1.0, 10)
+    rocked = np.ones((6, 10), dtype=bool)
+    fell = np.zeros((6, 10), dtype=bool)
+    fell[0, 4:] = True
+    ladder = Ladder(PGA, levels, np.broadcast_to(levels, (6, 10)), rocked)
+    return Verdicts(ladder, fell, rocked, np.arange(6).astype(object))
+
+
+def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
+    verdicts = only_one_earthquake_topples()
+    target = share_target(float(verdicts.ladder.levels[5]))
+    (change,) = compare(target, verdicts, {"a change": verdicts})
+    assert change.factor == 1 and not change.helps
+    found = estimate(target, verdicts, {}, {}, {})
+    # one of six: an exact binomial interval of 90 % runs from 0.9 to 58 %
+    assert 0.005 < found.lower < found.value < found.upper < 0.75
+
+
+def test_a_second_pedestal_is_refused_and_not_dropped(capsys):
+    said = refused(
+        capsys, "--width", "42cm", "--height", "1.65m",
+        "--pedestal", "60cm", "90cm", "700kg", "--pedestal", "80cm", "30cm",
+    )  # fmt: skip
+    assert "--pedestal is given twice" in said and "as one block" in said
+    assert "--pga is given twice" in refused(capsys, "--pga", "0.2g", "--pga", "0.3g")
+
+
+def test_below_uplift_it_says_from_which_level_it_rocks(motions):
+    found = assess_with(asked(**STATUE, pga="0.13 g"), motions)
+    line = five_lines(found)[0]
+    # b/h = 0.21 / 0.75
+    assert "does not move at PGA 0.13 g; it starts to rock at PGA 0.28 g" in line
+    assert "No change is needed" in five_lines(found)[3]
+    assert found.share.upper == 0
+
+
+def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on_pedestal):
+    wide = Estimate(0.05, 0.001, 0.74, {"conversion": 1.6, "period": 1.2, "model": 0.5})
+    better = narrowed(wide)
+    assert is_wide(wide)
+    assert better.known == ("conversion", "period")
+    # logit(0.05) = -2.94, the rest has (0.04 + 0.25) / (2.56 + 1.44 + 0.25) of the variance
+    ratio = ((1.2 / 6) ** 2 + 0.5**2) ** 0.5 / (1.6**2 + 1.2**2 + 0.5**2) ** 0.5
+    logits = np.log([0.05 / 0.95, 0.74 / 0.26])
+    expected = 1 / (1 + np.exp(-(logits[0] + ratio * (logits[1] - logits[0]))))
+    assert better.estimate.upper == pytest.approx(expected)
+    line = five_lines(replace(on_pedestal, share=wide))[0]
+    assert "not decidable with what was given" in line
+    assert "the ground velocity (PGV) of the site and the building's first period to 5 %" in line
+
+
+def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(own_records, tmp_path, capsys):
+    path = tmp_path / "gallery.csv"
+    path.write_text(
+        "name;width;height;floor\nsaint;35 cm;1,6 m;\nvase;abc;70 cm;\nbust;30 cm;70;\n"
+        "torso;30 cm;70 cm;7/3\nhead;20 cm\namphora;18 cm;60,5 cm;\nsaint;30 cm;1 m;\n"
+    )
+    options = ["--pga", "0.5g", "--record", str(own_records / "few.csv"), "--output", str(tmp_path)]
+    rows = (own_records / "catalogue.csv").read_text().splitlines()
+    (own_records / "few.csv").write_text("\n".join(rows[:7]) + "\n")
+    assert main(["assess", str(path), *options]) == 2
+    said = capsys.readouterr().err
+    for line, what in ((3, "abc"), (4, "without a unit"), (5, "7/3"), (6, "cells"), (8, "twice")):
+        assert re.search(rf"line {line}\b.*{what}", said)
+    assert "--keep-going" in said
+    assert main(["assess", str(path), *options, "--keep-going"]) == 0
+    shown = capsys.readouterr()
+    assert shown.err.count("left out") == 5
+    assert "2 objects" in shown.out and "5 rows left out" in shown.out
+
+
+def test_none_of_n_motions_is_said_as_that_and_bounds_are_called_bounds(on_pedestal):
+    none = replace(
+        on_pedestal, share=Estimate(0.0, 0.0, 0.11, {}), counts=(24, 12, 0), directions=None
+    )
+    line = five_lines(none)[0]
+    assert "none of 24 motions topples it (upper limit 11 %)" in line
+    assert "12 of 24 motions make it rock" in line
+
+
+def test_a_probability_stands_on_a_scale_with_what_to_do(on_pedestal):
+    line = five_lines(on_pedestal)[1]
+    assert "on our scale" in line and "ASCE 7" in line
+    assert "weaker and stronger than PGA 0.3 g" in line
+    assert [step_of(p, 50).name for p in (5e-4, 5e-3, 5e-2, 0.5)] == [
+        "low", "moderate", "high", "very high"
+    ]  # fmt: skip
+    # a step is one of rates: the same object in half the time
+    assert step_of(0.012, 50).name == step_of(0.006, 25).name == "high"
+
+
+def test_the_worst_direction_is_said_not_to_be_counted(on_pedestal):
+    assert "not counted" in five_lines(on_pedestal)[2]
+    said = [line for line in assumptions(on_pedestal) if "worst direction" in line]
+    assert said and all("counted" in line for line in said)
+
+
+def test_the_assumptions_that_matter_most_stand_in_the_line(on_pedestal):
+    line = five_lines(on_pedestal)[4]
+    assumed = line.partition("Assumed: ")[2]
+    assert "first period of 0.29 s" in assumed
+    assert assumed.count(",") == 2 or ";" in assumed
+    assert "see the page" not in line
+
+
+def test_a_building_is_described_as_conservators_know_it(tmp_path):
+    heights = asked(**STATUE, floor="2/3", building={"storey_heights_m": [5.2, 4.4, 3.9]})
+    assert heights.place.building.heights == (5.2, 4.4, 3.9)
+    assert "0.35 s" in heights.place.assumed[0].words  # 0.05 · 13.5^0.75
+    concrete = asked(
+        **STATUE, floor="2/3", building={"storey_height": "4 m", "material": "concrete"}
+    )
+    assert f"{PERIOD_FACTORS['concrete'] * 12**0.75:.2f} s" in concrete.place.assumed[0].words
+    known = asked(**STATUE, floor="2/3", building={"first_period_s": 0.8})
+    assert known.place.variants()[0].spread == 0.1
+    inline = asked(
+        **STATUE,
+        floor="attic",
+        building={
+            "storey_heights_m": [4, 4], "masses": ["200 t", "150 t"], "first_period_s": 0.3,
+            "floors": {"attic": 2},
+        },
+    )  # fmt: skip
+    assert inline.place.words == "on the floor attic, level 2 of 2"
+    with pytest.raises(InputError, match="2 heights are given for 3 storeys"):
+        asked(**STATUE, floor="2/3", building={"storey_heights_m": [5.2, 4.4]})
+    path = tmp_path / "statue.yaml"
+    path.write_text(
+        "width: 42 cm\nheight: 1.65 m\nfloor: 2/3\nbuilding: {storey_height: 4.5 m}\nreturn_period: 475 years\n"
+        "pga: 0.2 g\n"
+    )
+    assert read_request(path).place.building.heights == (4.5,) * 3
+
+
+def test_a_longer_period_is_that_of_the_floor(motions):
+    """The period that is given is the one with which the floor swings: its free motion repeats after it."""
+    place = asked(
+        **STATUE, floor="1/1", building={"first_period_s": 0.5, "damping_ratio": 0.01}
+    ).place
+    motion = motions.ground[0]
+    dt = motion.dt
+    kick = replace(motion, acceleration=np.append(np.full(5, 1.0), np.zeros(2000)))
+    swing = floor_motions(place.building, kick, [place.floor])[0].acceleration[5:]
+    spectrum = np.abs(np.fft.rfft(swing, 1 << 16))
+    assert 1 / np.fft.rfftfreq(1 << 16, dt)[spectrum.argmax()] == pytest.approx(0.5, rel=0.01)
+
+
+def test_levels_are_named_as_europe_and_america_do():
+    names = [
+        asked(**STATUE, floor=floor).place.floor_name for floor in ("0/4", "2/4", "4/4", "11/20")
+    ]
+    assert names == [
+        "ground floor in Europe, first in America",
+        "second floor in Europe, third in America",
+        "the roof",
+        "11th floor in Europe, 12th in America",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--width", "1,65m", "--height", "2m"), ("--width: ", "such as 1.2 m", "with a point, as '1.65m'")),
+        (("--width", "1m", "--height", "2m", "--pga", "0.13"), ("--pga: ", "such as 0.25 g",)),
+        (("--height", "2m"), ("--width is missing",)),
+        (("--width", "1m", "--height", "2m", "--floor", "second"), ("--floor: ", "2/4", "Europe", "America")),
+        (("--width", "1m", "--height", "2m", "--cg-height", "3m"), ("--cg-height: ",)),
+        (("--width", "1m", "--height", "2m", "--years", "20"), ("--years: ", "--hazard", "--return-period")),
+        (("--width", "1m", "--height", "2m", "--return-period", "soon"), ("--return-period: ", "475 years")),
+        (("--width", "1m", "--height", "2m", "--friction", "0.4"), ("--friction: ", "pga 0.25 g")),
+        (("--width", "1m", "--height", "2m", "--unit", "g"), ("--unit needs --record",)),
+        (("--width", "1m", "--height", "2m", "--pages"), ("--pages needs an inventory",)),
+        (("--width", "1m", "--height", "2m", "--up", "y"), ("--up needs --mesh",)),
+        (("--width", "1m", "--height", "2m", "--storey-height", "4m"), ("--floor is missing",)),
+        (("--width", "1m", "--height", "2m", "--round", "--restitution", "0.9"), ("--restitution: a round base",)),
+        (("--width", "1m", "--height", "2m", "--record", "absent.txt", "--magnitude", "6"), ("--magnitude: ",)),
+    ],
+)  # fmt: skip
+def test_messages_name_the_option_with_a_size_that_people_meet(options, words, capsys):
+    said = refused(capsys, *options)
+    assert all(word in said for word in words), said
+    assert "key " not in said
+
+
+def test_a_file_is_told_about_its_keys(tmp_path, capsys):
+    path = tmp_path / "statue.yaml"
+    path.write_text("width: 42 cm\nheight: 1,65 m\n")
+    assert "key height: " in refused(capsys, str(path))
+    assert "--years: " in refused(capsys, str(path), "--height", "1.65m", "--years", "10")
+
+
+@pytest.fixture(scope="module")
+def column(tmp_path_factory):
+    """Meshes of a box of 0.3 × 0.3 × 1 m that stands along z, in several formats."""
+    trimesh = pytest.importorskip("trimesh")
+    folder = tmp_path_factory.mktemp("meshes")
+    box = trimesh.creation.box((0.3, 0.3, 1.0))
+    box.export(folder / "z.stl")
+    spire = trimesh.creation.cone(0.2, 1.0)  # stands on a circle, points up
+    y_up = spire.copy()
+    y_up.vertices = y_up.vertices[:, [1, 2, 0]]
+    y_up.export(folder / "y.obj")
+    # glTF has y up by its specification
+    turned = box.copy()
+    turned.vertices = turned.vertices[:, [1, 2, 0]]
+    turned.export(folder / "box.glb")
+    open_box = trimesh.Trimesh(box.vertices, box.faces[:-1], process=False)
+    open_box.export(folder / "open.ply")
+    trimesh.PointCloud(box.vertices).export(folder / "cloud.ply")
+    millimetres = box.copy()
+    millimetres.apply_scale(1000)
+    millimetres.export(folder / "mm.stl")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("file", "way_out", "options"),
+    [
+        ("y.obj", "--up y", ("--up", "y")),
+        ("open.ply", "take its convex hull (--hull)", ("--hull",)),
+        ("cloud.ply", "take its convex hull (--hull)", ("--hull",)),
+        ("mm.stl", "--mesh-unit mm", ("--mesh-unit", "mm")),
+    ],
+)
+def test_a_mesh_that_cannot_be_used_is_told_the_way_out(
+    file, way_out, options, column, capsys, monkeypatch
+):
+    mesh = ("--mesh", str(column / file))
+    said = refused(capsys, *mesh)
+    assert way_out in said, said
+    # with it the next thing that is missing is a record
+    assert "absent.txt" in refused(capsys, *mesh, *options, "--record", "absent.txt")
+
+
+def test_glb_is_read_with_y_up(column):
+    same = [
+        asked(mesh={"file": str(column / name)}, mass="200 kg").objects.statue
+        for name in ("z.stl", "box.glb")
+    ]
+    assert same[0].width == pytest.approx(same[1].width, rel=1e-6)
+    assert same[0].height == pytest.approx(same[1].height, rel=1e-6) == pytest.approx(1.0)
+
+
+def test_an_italian_table_is_read(tmp_path):
+    path = tmp_path / "tr.csv"
+    path.write_text("PGA (g);Tr (anni)\n0,05;30\n0,13;475\n0,2;2475\n")
+    (curve,) = read_hazard([path])
+    assert curve.level(1 / 475) == pytest.approx(0.13)
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"tolerances": {"mass": 0.1}}, "without a pedestal"),
+        ({"tolerances": {"period": 0.1}}, "stands on the ground"),
+        ({"friction": 0.5, "restitution": 0.9, "pga": "0.2 g"}, "together"),
+        ({"round": True, "depth": "30 cm"}, "diameter"),
+        ({"cg_offset": "5 cm", "restitution": 0.999}, "gain energy"),
+        ({"records": {"paths": ["a"]}, "distance_km": 10}, "chooses among the default motions"),
+    ],
+)
+def test_what_would_have_no_effect_or_no_sense_is_refused(settings, words):
+    with pytest.raises(InputError, match=words):
+        asked(**STATUE, **settings)
+
+
+def test_a_centre_of_gravity_off_the_middle_is_answered(motions):
+    request = asked(width="20 cm", height="1.2 m", cg_offset="5 cm", pga="0.2 g")
+    found = assess_with(request, motions, brief=True)
+    assert found.share.lower <= found.share.value <= found.share.upper
+    assert "restitution" in {effect.name for effect in found.effects}
+    # b/h on the nearer side: 0.05 / 0.6
+    assert found.rocks_from == pytest.approx(0.05 / 0.6)
+
+
+def test_a_round_base_topples_earlier_and_says_why(motions):
+    square, rounded = (
+        assess_with(asked(**STATUE, **more), motions, brief=True) for more in ({}, {"round": True})
+    )
+    assert rounded.amplitudes[0.5].value < 0.8 * square.amplitudes[0.5].value
+    assert any("rectangular" in line for line in assumptions(square))
+    assert any("restitution of 1, in the worst direction" in line for line in assumptions(rounded))
+    assert "worst direction, which is counted" in five_lines(rounded)[2]
+
+
+def test_a_round_base_of_an_inventory(tmp_path):
+    path = tmp_path / "gallery.csv"
+    path.write_text("name,width,height,round\nvase,18 cm,60 cm,yes\nbox,18 cm,60 cm,\n")
+    requests, faults = read_inventory(path, {})
+    assert not faults
+    assert [one.objects.round for one in requests] == [True, False]
+
+
+def test_the_page_offers_several_motions_by_their_earthquake_and_no_false_digits(on_pedestal):
+    page = page_of(on_pedestal)
+    data = json.loads(re.search(r'id="live-data">(.*?)</script>', page, re.DOTALL)[1])
+    assert len(data["motions"]) >= 4
+    assert all(one["name"].startswith("earthquake") for one in data["motions"])
+    assert "cgHeight" in page
+    table = page[page.index("Return period [years]") :]
+    periods = re.findall(r'data-title="Return period \[years\]">([^<]*)<', table)
+    assert periods
+    for text in periods:
+        digits = text.replace("\\u202f", "").replace(" ", "").strip("0").replace(".", "")
+        assert text == "beyond the hazard" or len(digits) <= 2, text
+    for words in ("Words used here", "second floor in Europe", "What was assumed"):
+        assert words in page
+    assert "0.05 H^0.75" not in page

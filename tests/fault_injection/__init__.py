@@ -1,0 +1,1 @@
+"""Interrupting, starving and misusing studies: `make torture`."""

@@ -1,0 +1,86 @@
+"""Interrupt, starve and misuse studies, and see that they end in the same bytes by themselves.
+
+    python -m tests.fault_injection                 # all of it
+    python -m tests.fault_injection --only memory   # one kind of trials
+
+Each trial starts from the results of an undisturbed run, or from nothing, does what a machine or a person
+might do, and then gives the same command once more. It passes if that command ends well without any other
+step, all results have the bytes of the undisturbed run, and nothing lies outside of ``results`` and
+``.snakemake`` that was not there before. Two kinds of trials run at a time, each in a folder of its own.
+Prints a table in Markdown, and puts it into ``docs/reliability.md`` if all trials of all kinds passed; exit
+status 1 if one failed.
+"""
+
+import argparse
+import random
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+from rockfrag.files import write_text
+
+from . import kills, trials
+from .studies import ROOT, Study, Tally, write_shipped
+
+PAGE = ROOT / "docs" / "reliability.md"
+BEGIN, END = "<!-- results of make torture -->\n", "<!-- end of results -->\n"
+
+KINDS: Mapping[str, Callable[[Study, Tally, random.Random], None]] = {
+    **kills.KINDS,
+    "full disk": trials.full_disk,
+    "too little memory": trials.little_memory,
+    "read-only folders": trials.read_only,
+    "damaged downloads and caches": trials.damaged,
+    "two runs at once": trials.at_once,
+    "foreign names": trials.foreign_names,
+    "foreign processors and places": trials.foreign_processors,
+}
+"""All kinds of trials; the longest first, as two run at a time."""
+
+
+def main() -> int:
+    """Run the trials; return 0 if all passed."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seed", type=int, default=1, help="seed of the moments")
+    parser.add_argument("--only", default="", help="kinds of trials, by a word of their names")
+    options = parser.parse_args()
+    begin = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix="torture ") as scratch:
+        whole = Study(Path(scratch) / "whole")
+        if any("killed" in name for name in KINDS if options.only in name):
+            whole.beside = [
+                Study(Path(scratch) / name, partial(write_shipped, name=name))
+                for name in ("smoke", "thesis")
+            ]
+
+        def tried(name: str) -> Tally:
+            tally, started = Tally(name), time.monotonic()
+            rng = random.Random(f"{options.seed} {name}")
+            KINDS[name](whole.twin(Path(scratch) / name), tally, rng)
+            tally.seconds = time.monotonic() - started
+            print("\n".join([tally.row, *tally.noise]), file=sys.stderr, flush=True)
+            return tally
+
+        with ThreadPoolExecutor(2) as lanes:
+            tallies = list(lanes.map(tried, (name for name in KINDS if options.only in name)))
+    table = "\n".join(
+        [
+            "| trial | runs | steps by hand | differing files | files outside | time |",
+            "|---|--:|--:|--:|--:|--:|",
+            *(one.row for one in tallies),
+        ]
+    )
+    print(f"{table}\n\n{time.monotonic() - begin:.0f} s")
+    failed = any(one.steps or one.differing or one.outside or one.noise for one in tallies)
+    if not failed and len(tallies) == len(KINDS):
+        before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
+        write_text(f"{before}{BEGIN}{table}\n{END}{rest.partition(END)[2]}", PAGE)
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

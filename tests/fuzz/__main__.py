@@ -1,0 +1,179 @@
+"""Give the package damaged inputs of all kinds, and see that each is used or refused.
+
+    python -m tests.fuzz --inputs 1000000
+    python -m tests.fuzz --inputs 1000 --only hazard --seed 7
+
+Each must be used, or refused with an :class:`InputError` of one line and at most 500 characters, within five
+seconds of processor time and one gibibyte. All processors work. Prints how many there were of each kind, and
+what went wrong; the first inputs that did are kept. Exit status 1 if anything did.
+"""
+
+import argparse
+import os
+import random
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+from rockfrag.errors import LONGEST_MESSAGE, InputError
+from rockfrag.processes import in_processes
+
+from .assess import hazard_files, objects
+from .inputs import configurations, numbers, tables
+from .records import records
+
+MOST_SECONDS = 5.0
+LONGEST_WAIT_S = 120.0
+"""By the clock, for what hangs without using the processor; long, as the machine may do other things."""
+
+MOST_BYTES = 2**30
+CHUNK = 500
+KEPT = 20
+
+Attempt = tuple[Path, Callable[[], object]]
+KINDS: Mapping[str, tuple[Callable[[Path], Callable[[random.Random], Attempt]], float]] = {
+    "records, archives and catalogues": (records, 0.3),
+    "configurations": (configurations, 0.15),
+    "tables": (tables, 0.2),
+    "hazard files": (hazard_files, 0.15),
+    "statues and inventories": (objects, 0.1),
+    "numbers": (numbers, 0.1),
+}
+"""What makes the inputs of each kind, and their share."""
+
+
+@dataclass
+class Tally:
+    """What came of the inputs of a kind."""
+
+    kind: str
+    fates: Counter[str] = field(default_factory=Counter)
+    wrong: Counter[str] = field(default_factory=Counter)
+    slowest_s: float = 0.0
+    most_bytes: int = 0
+
+    def add(self, other: "Tally") -> None:
+        """Count another tally in."""
+        self.fates += other.fates
+        self.wrong += other.wrong
+        self.slowest_s = max(self.slowest_s, other.slowest_s)
+        self.most_bytes = max(self.most_bytes, other.most_bytes)
+
+
+class _TooSlow(BaseException):
+    """An input took too long; not an Exception, so that nothing under test catches it."""
+
+
+def main() -> int:
+    """Run the harness; return 0 if nothing went wrong."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--inputs", type=int, default=1_000_000, help="how many in all")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the damage")
+    parser.add_argument("--only", default="", help="kinds of inputs, by a word of their names")
+    options = parser.parse_args()
+    begin = time.monotonic()
+    kinds = {name: share for name, (_, share) in KINDS.items() if options.only in name}
+    chunks = [
+        (kind, number, min(CHUNK, count - number))
+        for kind, share in kinds.items()
+        for count in [round(options.inputs * share / sum(kinds.values()))]
+        for number in range(0, count, CHUNK)
+    ]
+    # files in memory where there are such: a disk is slower than what is under test
+    memory = Path("/dev/shm")
+    with tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None) as scratch:
+
+        def one(chunk: tuple[str, int, int]) -> Tally:
+            return _tried(Path(scratch), options.seed, *chunk)
+
+        found = in_processes(one, chunks, os.cpu_count() or 1)
+    tallies = {kind: Tally(kind) for kind in kinds}
+    for tally in found:
+        tallies[tally.kind].add(tally)
+    for kind, tally in tallies.items():
+        used, refused = tally.fates["used"], tally.fates["refused"]
+        print(
+            f"{kind}: {tally.fates.total()}, {used} used, {refused} refused, {tally.wrong.total()} wrong; "
+            f"the slowest {tally.slowest_s:.2f} s, at most {tally.most_bytes / 2**20:.0f} MiB"
+        )
+        for what, count in tally.wrong.most_common():
+            print(f"{count:8d}  {what}")
+    inputs = sum(tally.fates.total() for tally in tallies.values())
+    wrong = sum(tally.wrong.total() for tally in tallies.values())
+    print(f"{inputs} inputs (seed {options.seed}), {wrong} wrong, {time.monotonic() - begin:.0f} s")
+    return 1 if wrong else 0
+
+
+@cache
+def _maker(scratch: Path, kind: str) -> tuple[Path, Callable[[random.Random], Attempt]]:
+    """What makes inputs of a kind, once in each process, and the folder in which they lie."""
+    folder = scratch / str(os.getpid()) / kind
+    folder.mkdir(parents=True)
+    tempfile.tempdir = str(folder)
+    return folder, KINDS[kind][0](folder)
+
+
+def _tried(scratch: Path, seed: int, kind: str, number: int, count: int) -> Tally:
+    rng = random.Random(f"{seed} {kind} {number}")
+    tally = Tally(kind)
+    folder, make = _maker(scratch, kind)
+    os.chdir(folder)
+    signal.signal(signal.SIGPROF, _alarm)
+    signal.signal(signal.SIGALRM, _alarm)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for place in range(number, number + count):
+            path, attempt = make(rng)
+            start = time.process_time()
+            fate = _fate(attempt)
+            tally.slowest_s = max(tally.slowest_s, time.process_time() - start)
+            tally.fates[fate] += 1
+            if fate not in ("used", "refused"):
+                tally.wrong[f"{path.name}: {fate}"] += 1
+                if tally.wrong.total() <= KEPT and path.is_file():
+                    kept = Path("/tmp") / f"fuzz-{seed}-{place}-{path.name}"
+                    shutil.copy(path, kept)
+                    print(f"{kept}: {fate}", file=sys.stderr, flush=True)
+    tally.most_bytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    if tally.most_bytes > MOST_BYTES:
+        tally.wrong[f"more than {MOST_BYTES / 2**20:.0f} MiB"] += 1
+    return tally
+
+
+def _alarm(*_: object) -> None:
+    raise _TooSlow
+
+
+def _fate(attempt: Callable[[], object]) -> str:
+    signal.setitimer(signal.ITIMER_PROF, MOST_SECONDS)
+    signal.setitimer(signal.ITIMER_REAL, LONGEST_WAIT_S)
+    try:
+        attempt()
+        return "used"
+    except InputError as error:
+        text = str(error)
+        if len(text) > LONGEST_MESSAGE or not text.isprintable():
+            return f"unfit message: {text[:80]!r}"
+        return "refused"
+    except _TooSlow:
+        return "too slow"
+    except Exception as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        return f"uncaught: {type(error).__name__} in {Path(place.filename).name}:{place.lineno}"
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+"""Damaged configurations and tables of a study, and numbers that no simulation can use."""
+
+import random
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.fragility.tests_file import read_tests
+from rockfrag.records.catalogue import read_catalogue
+from rockfrag.shaketable.laboratory_table import read_measured
+from rockfrag.study.configurations import read_configurations, read_specimens
+from rockfrag.study.loading import load_any
+
+from .damage import changed, damage
+
+ROOT = Path(__file__).resolve().parents[2]
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+NUMBERS: tuple[Any, ...] = (
+    0, 1, -1, 0.5, 1e-12, 1e12, 1e300, -1e300, float("nan"), float("inf"), None, "1", "x", True, 2j,
+    [], [1.0], (0.9, 0.8), np.float32(0.3), np.array(0.2), np.array([0.2, np.nan]), {}, object(),
+)  # fmt: skip
+
+Attempt = tuple[Path, Callable[[], object]]
+
+
+def configurations(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what makes a configuration, a building or a table of a shaker that is damaged.
+
+    In two of three, values are exchanged, removed and added; in the third, bytes are damaged.
+    """
+    sources = _sources(folder, ".yaml")
+    parsed = {name: yaml.load(content, LOADER) for name, content in sources.items()}
+    path = folder / "damaged.yaml"
+
+    def one(rng: random.Random) -> Attempt:
+        name = rng.choice(list(sources))
+        if rng.random() < 1 / 3:
+            path.write_bytes(damage(sources[name], sources["thesis.yaml"], rng))
+        else:
+            content = parsed[name]
+            for _ in range(rng.randint(1, 3)):
+                content = changed(content, rng)
+            text = yaml.dump(content, Dumper=DUMPER, allow_unicode=True, sort_keys=False)
+            path.write_text(text, encoding="utf-8")
+        return path, lambda: _load(_used(parsed["smoke.yaml"], name, path))
+
+    return one
+
+
+def tables(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what makes a table with damaged bytes."""
+    sources = _sources(folder, ".csv")
+    path = folder / "damaged.csv"
+
+    def one(rng: random.Random) -> Attempt:
+        name = rng.choice(list(TABLES))
+        path.write_bytes(damage(sources[name], sources["thesis.csv"], rng))
+        return path, lambda: TABLES[name](path)
+
+    return one
+
+
+def numbers(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what makes a body, a motion and what else a simulation takes, some of it unusable."""
+    good = np.random.default_rng(1).normal(size=200)
+    # kernels are compiled once, before anything is timed
+    for body in (BLOCKS["T1"], Stack(BLOCKS["P"], BLOCKS["T1"])):
+        simulate(body, np.zeros(9), 0.01)
+        overturns([body], [np.ones(9)], [0.01], [1.0])
+
+    def one(rng: random.Random) -> Attempt:
+        def some(usual: Any) -> Any:
+            return rng.choice(NUMBERS) if rng.random() < 0.2 else usual
+
+        def attempt() -> None:
+            statue = Block(some(0.2), some(0.6), some(30.0))
+            pedestal = rng.random() < 0.5
+            body = Stack(Block(some(0.4), some(0.3), some(50.0)), statue) if pedestal else statue
+            acceleration = some(good * 10.0 ** rng.randint(-3, 3))
+            if rng.random() < 0.5:
+                simulate(body, acceleration, some(0.01), theta0=some(None), omega0=some(None))
+            else:
+                overturns(
+                    [some(body)], [acceleration], [some(0.01)], some([0.5, 1.0]), threads=some(1)
+                )
+
+        return folder / "numbers", attempt
+
+    return one
+
+
+BLOCKS = {"T1": Block(0.124, 0.372, 2.172), "P": Block(0.184, 0.208, 2.3)}
+TABLES: dict[str, Callable[[Path], object]] = {
+    "specimens.csv": read_specimens,
+    "configurations.csv": lambda path: read_configurations(path, dict(BLOCKS)),
+    "thesis.csv": read_catalogue,
+    "tests-template.csv": read_measured,
+    "campaign-template.csv": lambda path: read_tests(
+        path, ["pga_g"], overturned="overturned", motion="test"
+    ),
+}
+
+
+def _sources(folder: Path, ending: str) -> dict[str, bytes]:
+    """The files of the shipped studies, copied to where damaged ones are used."""
+    shutil.copytree(ROOT / "config", folder, dirs_exist_ok=True)
+    paths = (path for path in sorted((ROOT / "config").rglob("*")) if path.suffix == ending)
+    return {path.name: path.read_bytes() for path in paths}
+
+
+def _load(path: Path) -> None:
+    assert load_any(path).name
+
+
+def _used(smoke: dict[str, Any], name: str, damaged: Path) -> Path:
+    """The study that a damaged file belongs to: itself, or one that names it."""
+    key = "shaker" if name == "shaker.yaml" else "building" if name.startswith("building") else None
+    if key is None:
+        return damaged
+    path = damaged.with_name("whole.yaml")
+    path.write_text(yaml.dump({**smoke, key: damaged.name}, Dumper=DUMPER))
+    return path

@@ -1,0 +1,146 @@
+"""Damaged records: every format, archives and catalogues, cut, flipped, doubled and mixed."""
+
+import gzip
+import importlib.util
+import io
+import random
+import sys
+import tarfile
+import zipfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+from obspy import Stream, Trace, UTCDateTime
+
+from rockfrag.records.catalogue import load_motions
+from rockfrag.records.make_catalogue import make_catalogue
+from rockfrag.records.read import motion_of, read_record
+
+from .damage import damage
+
+BUILDERS = Path(__file__).resolve().parents[2] / "tests/records/built_records.py"
+
+
+def records(folder: Path) -> Callable[[random.Random], tuple[Path, Callable[[], object]]]:
+    """Return what makes a damaged record and how it is read."""
+    seeds = list(_seeds(folder))
+
+    def one(rng: random.Random) -> tuple[Path, Callable[[], object]]:
+        name, content, read = rng.choice(seeds)
+        path = folder / name
+        path.write_bytes(damage(content, rng.choice(seeds)[1], rng))
+        return path, lambda: read(path)
+
+    return one
+
+
+def _read_all(path: Path) -> None:
+    for cut_short in (False, True):
+        record = read_record(path, None, cut_short)
+        for channel in record.channels:
+            motion = motion_of(record, channel, None if channel.unit else "g")
+            assert np.isfinite(motion.acceleration).all()
+
+
+def _read_with_dt(path: Path) -> None:
+    record = read_record(path, 0.02)
+    for channel in record.channels:
+        motion_of(record, channel, None if channel.unit else "g")
+
+
+def _catalogue_of(path: Path) -> None:
+    make_catalogue([path])
+
+
+def _seeds(folder: Path) -> Iterable[tuple[str, bytes, Callable[[Path], None]]]:
+    """Yield name, content and reader of every kind of input."""
+    spec = importlib.util.spec_from_file_location("built_records", BUILDERS)
+    assert spec is not None and spec.loader is not None
+    built_records = importlib.util.module_from_spec(spec)
+    sys.modules["built_records"] = built_records
+    spec.loader.exec_module(built_records)
+    inside = folder / "built"
+    inside.mkdir()
+    texts = {}
+    for kind, build in built_records.BUILDERS.items():
+        built = build(inside)
+        texts[f"{kind}-{built.path.name}"] = built.path.read_bytes()
+        reader = _read_all if built.stated_dt else _read_with_dt
+        yield f"{kind}-{built.path.name}", built.path.read_bytes(), reader
+    for name, content in _binary(inside):
+        yield name, content, _read_all
+    for name, content in _archives(texts):
+        yield name, content, _read_all
+        yield f"c-{name}", content, _catalogue_of
+    (folder / "a.txt").write_bytes(texts["plain_csv-plain.csv"])
+    row = "A,E,1976-05-06,S,090,6.5,20.1,folder,a.txt,,,\n"
+    catalogue = (
+        "name,event,date,station,component,magnitude,distance_km,source,file,sha256,unit,dt\n" + row
+    )
+    yield "motions.csv", catalogue.encode(), lambda path: load_motions(path) and None
+    yield (
+        "motions2.csv",
+        catalogue.replace(",", ";").encode(),
+        lambda path: load_motions(path) and None,
+    )
+    yield "_SearchResults.csv", built_records.search_results(4).encode(), _catalogue_of
+
+
+def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
+    """Yield records of the formats that ObsPy reads."""
+    samples = np.round(1e4 * np.sin(np.arange(400) * 0.1)).astype(np.int32)
+    header = {
+        "station": "ABC",
+        "channel": "HNE",
+        "delta": 0.01,
+        "starttime": UTCDateTime(2019, 7, 6),
+    }
+    for name, kind in (
+        ("a.mseed", "MSEED"),
+        ("a.sac", "SAC"),
+        ("a.gse", "GSE2"),
+        ("a.slist", "SLIST"),
+    ):
+        data = samples.astype(np.float32) if kind == "SAC" else samples
+        buffer = io.BytesIO()
+        trace = Trace(data.copy(), dict(header))
+        try:
+            Stream([trace]).write(buffer, format=kind)
+        except TypeError:
+            Stream([trace]).write(str(folder / name), format=kind)
+            buffer.write((folder / name).read_bytes())
+        yield name, buffer.getvalue()
+    lines = [
+        "Origin Time       2018/01/24 19:51:00", "Lat.              41.0", "Long.             142.5",
+        "Depth. (km)       34", "Mag.              6.3", "Station Code      AOM001",
+        "Station Lat.      41.5", "Station Long.     140.9", "Station Height(m) 10",
+        "Record Time       2018/01/24 19:51:43", "Sampling Freq(Hz) 100Hz", "Duration Time(s)  4",
+        "Dir.              E-W", "Scale Factor      7845(gal)/8223790", "Max. Acc. (gal)   4.1",
+        "Last Correction   2018/01/24 19:51:27", "Memo.",
+    ]  # fmt: skip
+    body = "".join("".join(f"{v:9d}" for v in samples[i : i + 8]) + "\n" for i in range(0, 400, 8))
+    yield "AOM001.EW", ("\n".join(lines) + "\n" + body).encode()
+
+
+def _archives(texts: dict[str, bytes]) -> Iterable[tuple[str, bytes]]:
+    some = {name: texts[name] for name in ("csmip_v2-csmip.V2", "at2_peer-peer.AT2")}
+    for name, packing in (("stored.zip", zipfile.ZIP_STORED), ("packed.zip", zipfile.ZIP_DEFLATED)):
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w", packing) as archive:
+            for member, content in some.items():
+                archive.writestr(member, content)
+        yield name, buffer.getvalue()
+    nested = io.BytesIO()
+    with zipfile.ZipFile(nested, "w") as archive:
+        archive.writestr("inner.zip", buffer.getvalue())
+    yield "nested.zip", nested.getvalue()
+    for name, mode in (("some.tar", "w"), ("some.tar.gz", "w:gz")):
+        buffer = io.BytesIO()
+        with tarfile.open(fileobj=buffer, mode=mode) as archive:
+            for member, content in some.items():
+                info = tarfile.TarInfo(member)
+                info.size = len(content)
+                archive.addfile(info, io.BytesIO(content))
+        yield name, buffer.getvalue()
+    yield "peer.AT2.gz", gzip.compress(some["at2_peer-peer.AT2"])

@@ -1,0 +1,94 @@
+"""Ask `rockfrag assess` at random, and hold every answer against itself.
+
+    python -m tests.fuzz.requests --requests 2000
+
+Each request must be answered without a contradiction, or be refused in one sentence (``tests/assess/asking.py``).
+Prints how many were answered and refused, and what went wrong; exit status 1 if anything did.
+"""
+
+import argparse
+import os
+import random
+import sys
+import tempfile
+import traceback
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from rockfrag.motions import bandpass, scale_to_pga
+from rockfrag.processes import in_processes
+from rockfrag.records.motion import Motion
+from rockfrag.units import GRAVITY
+
+from ..assess import asking, samples
+
+EARTHQUAKES = 6
+PART = 50
+
+LEAST_ANSWERED = 0.25
+"""Fraction of the requests that must be answered, and not refused."""
+
+
+def main() -> int:
+    """Run the draws; return 0 if every answer agreed with itself."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--requests", type=int, default=2000, help="how many")
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    parts = [
+        (options.seed, first, min(first + PART, options.requests))
+        for first in range(0, options.requests, PART)
+    ]
+    fates: Counter[int] = Counter()
+    wrong: list[str] = []
+    for found, lines in in_processes(_part, parts, os.cpu_count() or 1):
+        fates += found
+        wrong += lines
+    print(f"{options.requests} requests: {fates[0]} answered, {fates[2]} refused in one sentence")
+    print("\n".join(wrong) if wrong else "no contradiction")
+    if fates[0] < LEAST_ANSWERED * options.requests:
+        print("too few of them were answered for this to say anything")
+        return 1
+    return 1 if wrong else 0
+
+
+def _part(part: tuple[int, int, int]) -> tuple[Counter[int], list[str]]:
+    seed, first, last = part
+    fates: Counter[int] = Counter()
+    wrong = []
+    with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
+        folder = Path(scratch)
+        records = write_records(folder)
+        (folder / "hazard.csv").write_text(samples.table_csv())
+        for number in range(first, last):
+            rng = random.Random(f"{seed} {number}")
+            asked = asking.request(rng, records, folder / "hazard.csv")
+            try:
+                status, out, err = asking.answered(asked, folder / "answer")
+                found = asking.contradictions(status, out, err)
+            except Exception:
+                status, found = 1, [traceback.format_exc(limit=-3)]
+            fates[status] += 1
+            wrong += [f"{number}: {' '.join(asked)}\n    {one}" for one in found]
+    return fates, wrong
+
+
+def write_records(folder: Path) -> Path:
+    """Write a catalogue of short records of noise, one an earthquake and two a station; return its path."""
+    rng = np.random.default_rng(0)
+    rows = ["name,event,station,file,unit"]
+    for i in range(EARTHQUAKES):
+        raw = Motion(rng.standard_normal(1500) * np.hanning(1500), 0.01, name=f"noise {i}")
+        motion = scale_to_pga(bandpass(raw, 0.2, 1.0 + 0.5 * i), 0.2 + 0.01 * i)
+        values = zip(motion.time, motion.acceleration / GRAVITY, strict=True)
+        (folder / f"{i}.txt").write_text("".join(f"{t:.2f} {a:.7f}\n" for t, a in values))
+        rows.append(f"noise {i},earthquake {i},station {i // 2},{i}.txt,g")
+    place = folder / "catalogue.csv"
+    place.write_text("\n".join(rows) + "\n")
+    return place
+
+
+if __name__ == "__main__":
+    sys.exit(main())

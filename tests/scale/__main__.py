@@ -1,0 +1,179 @@
+"""What a study costs against its size: synthetic motions, lone blocks and stacks, through the workflow.
+
+``python -m tests.scale 300 1000 3000`` runs studies of so many motions of 20 s, a third as many events,
+the thesis's six configurations (three lone blocks, three stacks) and 200 amplitudes; ``--amplitudes 2000``
+takes more.  Each stage's processor time, what the run takes before and between its jobs, the largest memory
+and the wall time of the whole are printed as the table of ``docs/reliability.md``, and go to
+``results/bench/scale.csv``.
+"""
+
+import argparse
+import math
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import yaml
+
+from rockfrag.files import write_table
+from rockfrag.motions.synthetic import evolutionary
+from rockfrag.study.amplitudes import Amplitudes
+
+ROOT = Path(__file__).resolve().parents[2]
+SAMPLES, DT = 2000, 0.01
+LOWEST_G, HIGHEST_G = 0.05, 2.0
+OF_AN_EVENT = 3
+"""Motions of one event."""
+
+CONFIGURATIONS = 6
+_TOOK = re.compile(r"took ([0-9.]+) s, ([0-9.]+) s of processors, ([0-9]+) MiB")
+_PART = re.compile(r"_\d+$")
+
+
+def main() -> int:
+    """Run what was asked for and print it."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("motions", type=int, nargs="+", help="motions of each study")
+    parser.add_argument("--amplitudes", type=int, default=200)
+    parser.add_argument("--cores", type=int, default=2)
+    parser.add_argument("--folder", type=Path, help="where studies stay; a temporary one without")
+    asked = parser.parse_args()
+    rows = []
+    with tempfile.TemporaryDirectory() as scratch:
+        for motions in asked.motions:
+            folder = (asked.folder or Path(scratch)) / f"{motions}x{asked.amplitudes}"
+            rows += measured(folder, motions, asked.amplitudes, asked.cores)
+    table = pd.DataFrame(rows)
+    write_table(table, ROOT / "results" / "bench" / "scale.csv")
+    print(in_words(table))
+    return 0
+
+
+def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[dict[str, object]]:
+    """Run one study, and say what each of its stages took."""
+    write_study(folder, motions, amplitudes)
+    project = folder / "project"
+    shutil.rmtree(project, ignore_errors=True)
+    project.mkdir()
+    for name in ("workflow", "profiles"):
+        (project / name).symlink_to(ROOT / name)
+    begin, before = time.monotonic(), _of_children()
+    command = [sys.executable, "workflow/run.py", str(folder / "study.yaml")]
+    subprocess.run([*command, "--cores", str(cores), "--quiet"], cwd=project, check=True)
+    wall, whole = time.monotonic() - begin, _of_children() - before
+    histories = motions * CONFIGURATIONS * amplitudes
+    stages: dict[str, list[tuple[float, float, float]]] = {}
+    for log in sorted((project / "results" / "scale" / "logs").glob("*.log")):
+        found = _TOOK.search(log.read_text(encoding="utf-8"))
+        if found is None:
+            raise RuntimeError(f"{log} does not say what its job took")
+        one = (float(found[1]), float(found[2]), float(found[3]))
+        stages.setdefault(_PART.sub("", log.stem), []).append(one)
+    # reading the records beforehand, and planning the jobs
+    jobs = sum(job[1] for some in stages.values() for job in some)
+    stages["before and between"] = [(math.nan, whole - jobs, math.nan)]
+    about = {"motions": motions, "histories": histories, "wall_s": round(wall, 1)}
+    return [
+        {
+            **about,
+            "stage": stage,
+            "jobs": len(jobs),
+            "longest_s": max(job[0] for job in jobs),
+            "processor_s": sum(job[1] for job in jobs),
+            "memory_mib": max(job[2] for job in jobs),
+        }
+        for stage, jobs in stages.items()
+    ]
+
+
+def _of_children() -> float:
+    """Processor time of all processes that were started from here and have ended [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def in_words(table: pd.DataFrame) -> str:
+    """Return the measured table in Markdown: processor time of each stage, the largest process, the wall."""
+    stages = list(dict.fromkeys(table["stage"]))
+    lines = [
+        "| motions | histories | "
+        + " | ".join(stages)
+        + " | all but sweep | memory [MiB] | wall [s] |"
+    ]
+    lines.append("|--:" * (len(stages) + 5) + "|")
+    for (motions, histories), rows in table.groupby(["motions", "histories"], sort=False):
+        seconds = rows.set_index("stage")["processor_s"]
+        cells = [f"{motions}", f"{histories:,}".replace(",", " ")]
+        cells += [f"{seconds[stage]:.0f}" for stage in stages]
+        share = 1 - seconds["sweep"] / seconds.sum()
+        cells += [
+            f"{share:.0%}",
+            f"{rows['memory_mib'].max():.0f}",
+            f"{rows['wall_s'].iloc[0]:.0f}",
+        ]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def write_study(folder: Path, motions: int, amplitudes: int) -> None:
+    """Write a study's configuration and its records."""
+    (folder / "records").mkdir(parents=True, exist_ok=True)
+    rows = ["name,event,source,file,unit"]
+    for number in range(motions):
+        name = f"records/{number:05d}.txt"
+        if not (folder / name).exists():
+            values = np.round(acceleration(number), 6).astype(str)
+            lines = [f"{k * DT:.2f} {value}" for k, value in enumerate(values)]
+            (folder / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
+        rows.append(f"motion {number},event {number // OF_AN_EVENT},folder,{name},g")
+    (folder / "motions.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    for name in ("specimens.csv", "configurations.csv"):
+        shutil.copy(ROOT / "config" / name, folder / name)
+    # a hair less than the step that fits exactly, lest rounding lose the last amplitude
+    step = 100 * math.expm1(math.log(HIGHEST_G / LOWEST_G) / (amplitudes - 1)) * (1 - 1e-9)
+    if len(Amplitudes(LOWEST_G, HIGHEST_G, step).values_g) != amplitudes:
+        raise RuntimeError(f"{amplitudes} amplitudes do not come out of a step of {step} %")
+    content = {
+        "study": "scale",
+        "title": f"{motions} synthetic motions",
+        "seed": 1,
+        "motions": {"catalogue": "motions.csv"},
+        "bodies": {"specimens": "specimens.csv", "configurations": "configurations.csv"},
+        "amplitudes": {"lowest_g": LOWEST_G, "highest_g": HIGHEST_G, "step_percent": step},
+        "protocol": {"step_percent": 5},
+        "fragility": {"measures": ["pga_g", "pgv_cm_s"], "confidence": 0.9},
+    }
+    text = yaml.safe_dump(content, sort_keys=False)
+    (folder / "study.yaml").write_text(text, encoding="utf-8")
+
+
+def acceleration(number: int) -> np.ndarray:
+    """Return a stochastic motion of 20 s [g], of a strong earthquake on firm ground."""
+    rng = np.random.default_rng(number)
+    duration = rng.uniform(4.0, 12.0)
+    motion = evolutionary(
+        number,
+        arias_m_s=rng.uniform(0.5, 3.0),
+        d5_95_s=duration,
+        mid_s=duration * rng.uniform(0.4, 0.8),
+        mid_hz=rng.uniform(1.5, 8.0),
+        slope_hz_s=rng.uniform(-0.25, 0.0),
+        filter_damping=rng.uniform(0.1, 0.5),
+        dt=DT,
+    ).acceleration[:SAMPLES]
+    values = np.zeros(SAMPLES)
+    values[: motion.size] = motion / 9.81
+    return values
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,60 @@
+"""A study's stages, one after the other in this process, as the rules of the workflow would run them."""
+
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from rockfrag import guests
+from rockfrag.report import stages as reports
+from rockfrag.stages import (
+    campaign,
+    explanation,
+    fragility,
+    measured_tests,
+    motions,
+    pedestal,
+    sensitivity,
+    sweep,
+    tests,
+)
+from rockfrag.stages.job import Job, Results
+from rockfrag.study.campaign import CampaignStudy
+from rockfrag.study.loading import AnyStudy
+from rockfrag.study.study import Study
+from rockfrag.thesis import stages as thesis
+
+Stage = Callable[[Job], Results]
+
+
+def stages_of(study: AnyStudy) -> list[Stage]:
+    """Stages of a study in the order in which data flow."""
+    if isinstance(study, CampaignStudy):
+        return [campaign.run, reports.campaign_report]
+    if not isinstance(study, Study):
+        return [reports.measured_table]
+    optional = (
+        (pedestal.run, study.has_pairs),
+        (explanation.run, study.more.explanation),
+        (sensitivity.run, study.more.sensitivity),
+        (measured_tests.run, study.more.measured_tests),
+        (thesis.run, study.compare_with == "thesis"),
+        (guests.report, True),
+    )
+    asked = [stage for stage, wanted in optional if wanted]
+    return [motions.run, _swept, tests.run, fragility.run, *asked]
+
+
+def _swept(job: Job[Study]) -> Results:
+    for part in range(job.study.sweep_jobs):
+        yield from sweep.run_part(replace(job, part=part))
+    yield from sweep.run_as_recorded(job)
+
+
+def run_stages(study: AnyStudy, folder: Path, stages: list[Stage] | None = None) -> Path:
+    """Run stages of a study, all if none are named, and return the folder of the results."""
+    for stage in stages_of(study) if stages is None else stages:
+        job = Job(study, folder, 1, logging.getLogger("stages in process"))
+        for name, value in stage(job):
+            job.write(name, value)
+    return folder

@@ -1,0 +1,296 @@
+"""A study runs once at a time, nothing outlives its run, and what was killed is taken up without a hand."""
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+
+import psutil
+import pytest
+
+from rockfrag import lock
+from rockfrag.errors import InputError
+from rockfrag.processes import in_processes
+from rockfrag.stages.log import in_words, logged
+from rockfrag.stages.preflight import check_folders
+from rockfrag.stages.run_lock import run_lock
+from rockfrag.stages.running import RUN
+from rockfrag.stages.same_numbers import same_numbers
+
+from .conftest import study_content, write_study
+from .running import ROOT, tables_of
+
+LAUNCHER = ROOT / "workflow" / "run.py"
+
+WITHOUT_FLOCK = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP)
+"""What the system says of locks where there are none, as on some network drives."""
+
+
+def program(text: str, **more: str) -> subprocess.Popen[str]:
+    """Start a program in Python that says when it is there."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", text],
+        env={**os.environ, **more},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline().strip() == "there"
+    return process
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    assert process.stdout is not None
+    process.kill()
+    process.wait()
+    process.stdout.close()
+
+
+def until(holds: Callable[[], object], seconds: float = 30.0) -> None:
+    deadline = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def holder(results: Path) -> subprocess.Popen[str]:
+    """A process that runs a study."""
+    return program(
+        "import time\nfrom pathlib import Path\nfrom rockfrag.stages.run_lock import run_lock\n"
+        f"with run_lock(Path({str(results)!r})):\n    print('there', flush=True)\n    time.sleep(60)"
+    )
+
+
+def test_a_second_run_is_told_in_which_process_the_first_one_is(tmp_path: Path):
+    first = holder(tmp_path / "tiny")
+    try:
+        with (
+            pytest.raises(InputError, match=f"running already, in process {first.pid} since"),
+            run_lock(tmp_path / "tiny"),
+        ):
+            pass
+        with run_lock(tmp_path / "another"):
+            pass
+    finally:
+        end(first)
+
+
+def test_a_killed_run_leaves_neither_a_lock_nor_half_written_files(tmp_path: Path):
+    first = holder(tmp_path / "tiny")
+    (tmp_path / "tiny" / "figures").mkdir()
+    part = tmp_path / "tiny" / "figures" / ".tests.csv.abc.part"
+    part.write_text("half")
+    end(first)
+    with run_lock(tmp_path / "tiny"):
+        assert not part.exists()
+
+
+@pytest.mark.parametrize("number", WITHOUT_FLOCK, ids=errno.errorcode.get)
+def test_where_there_are_no_locks_nobody_waits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
+):
+    def refused(*_: object) -> None:
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(lock.fcntl, "flock", refused)
+    with lock.locked(tmp_path / "lock", patience_s=60) as free, run_lock(tmp_path / "tiny"):
+        assert free
+
+
+def test_a_lock_that_another_process_holds_is_waited_for_no_longer_than_was_said(tmp_path: Path):
+    first = holder(tmp_path / "tiny")
+    try:
+        started = time.monotonic()
+        with lock.locked(tmp_path / "tiny" / ".run", patience_s=0.2) as free:
+            assert not free
+        assert 0.2 <= time.monotonic() - started < 10
+    finally:
+        end(first)
+
+
+def test_a_folder_that_may_not_be_written_needs_no_lock(tmp_path: Path):
+    (tmp_path / "file").write_text("")
+    with lock.locked(tmp_path / "file" / "lock", patience_s=60) as free:
+        assert free
+
+
+JOB = (
+    "import os, time\nfrom rockfrag.processes import end_with\n"
+    f"end_with(int(os.environ[{RUN!r}]))\nprint('there', flush=True)\ntime.sleep(60)"
+)
+
+
+@pytest.mark.parametrize("reaped", [True, False])
+def test_a_job_ends_with_its_run_and_with_the_shell_that_started_it(reaped: bool):
+    """Between a run and its job is a shell, which a signal to the run does not end."""
+    run = program("import time; print('there', flush=True); time.sleep(60)")
+    job = program(JOB, **{RUN: str(run.pid)})
+    try:
+        run.kill()
+        if reaped:
+            run.wait()
+        job.wait(30)
+    finally:
+        end(run)
+        end(job)
+
+
+def test_a_job_whose_shell_was_killed_ends():
+    text = f"import subprocess, sys\nsubprocess.run([sys.executable, '-c', {JOB!r}])"
+    shell = program(text, **{RUN: str(os.getpid())})
+    (job,) = psutil.Process(shell.pid).children()
+    end(shell)
+    job.wait(30)
+
+
+POOL = (
+    "import time\nfrom rockfrag.processes import in_processes\n"
+    "print('there', flush=True)\nin_processes(lambda _: time.sleep(60), range(4), 3)"
+)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="pools are made of forks on Linux")
+def test_the_workers_of_a_pool_end_with_their_parent():
+    parent = program(POOL)
+    family = psutil.Process(parent.pid)
+    until(lambda: len(family.children()) == 3)
+    workers = family.children()
+    end(parent)
+    assert not psutil.wait_procs(workers, timeout=30)[1]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="pools are made of forks on Linux")
+def test_a_worker_that_is_killed_is_one_sentence():
+    def dies(number: int) -> int:
+        if number == 2:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return number
+
+    with pytest.raises(BrokenProcessPool) as told:
+        in_processes(dies, range(4), 2)
+    assert in_words(told.value).startswith("one of its processes was killed or ran out of memory")
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (OSError(errno.ENOSPC, "No space left on device", "t.csv"), "disk is full"),
+        (OSError("Error writing bytes to file. Detail: No space left on device"), "disk is full"),
+        (OSError(errno.EFBIG, "File too large"), "disk is full"),
+        (PermissionError(errno.EACCES, "Permission denied", "t.csv"), "t.csv may not be written"),
+        (MemoryError("Unable to allocate 1. TiB"), "not enough memory"),
+        (ValueError("a\nb"), "ValueError: a b"),
+    ],
+)
+def test_what_a_machine_lacks_is_said_in_a_sentence(error: Exception, words: str):
+    assert words in in_words(error)
+    assert "\n" not in in_words(error)
+
+
+def test_a_job_that_may_not_write_its_log_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(SystemExit), logged(str(tmp_path / "file" / "x.log"), "sweep"):
+        pass
+    said = capsys.readouterr().err
+    assert said.startswith("sweep failed: ")
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("mebibytes", [300, 1000])
+def test_a_run_that_may_not_have_the_memory_it_needs_says_so_at_once(mebibytes: int):
+    """OpenBLAS would wait for ever for what it is refused while it is loaded."""
+    pytest.importorskip("resource")
+    # of this process alone, as a limit that was lowered is not raised again
+    program = (
+        f"import resource, runpy, sys; resource.setrlimit(resource.RLIMIT_AS, ({mebibytes << 20},) * 2); "
+        f"sys.argv = ['run.py', 'no.yaml']; runpy.run_path({str(LAUNCHER)!r}, run_name='__main__')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"a process may reserve {mebibytes} MiB of memory here")
+    assert done.stderr.count("\n") == 1
+
+
+def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_job(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    figures = tmp_path / "results" / "tiny" / "figures"
+    check_folders(figures.parent)
+    figures.mkdir(parents=True)
+    check_folders(figures.parent)
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != figures)
+    with pytest.raises(PermissionError) as told:
+        check_folders(figures.parent)
+    assert "figures may not be written" in in_words(told.value)
+
+
+@pytest.mark.slow
+def test_a_run_killed_at_any_level_ends_in_the_same_bytes(study_folder: Path):
+    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    wanted = None
+    for wait in (None, 6.0, 12.0):
+        process = subprocess.Popen([*command, "--logger", "rockfrag"], cwd=study_folder)
+        if wait is not None:
+            time.sleep(wait)
+            process.kill()
+        process.wait()
+        done = subprocess.run(command, cwd=study_folder, capture_output=True, text=True, check=True)
+        assert "LockException" not in done.stderr
+        found = tables_of(study_folder)
+        wanted = wanted or found
+        assert found == wanted
+        subprocess.run(["rm", "-r", str(study_folder / "results")], check=True)
+
+
+def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch):
+    chosen = same_numbers({"GLIBC_TUNABLES": "glibc.malloc.check=1:glibc.cpu.hwcaps=-AVX2"})
+    assert chosen["GLIBC_TUNABLES"].startswith("glibc.malloc.check=1:glibc.cpu.hwcaps=-FMA,")
+    assert chosen["OPENBLAS_NUM_THREADS"] == "1"
+    program = "import numpy; print(numpy.show_config(mode='dicts')['SIMD Extensions'].get('found'))"
+    found = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        env={**os.environ, **chosen},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert found.stdout.strip() == "None"
+
+
+FOREIGN = {
+    "OPENBLAS_CORETYPE": "Haswell",
+    "NPY_DISABLE_CPU_FEATURES": "X86_V4",
+    "NUMBA_CPU_NAME": "generic",
+    "NUMBA_CPU_FEATURES": "",
+    "PYTHONHASHSEED": "77",
+    "TZ": "Asia/Tokyo",
+    "LC_ALL": "de_DE.UTF-8",
+    "OPENBLAS_NUM_THREADS": "2",
+}
+
+
+@pytest.mark.slow
+def test_the_same_bytes_on_other_processors_and_in_other_places(
+    study_folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    (study_folder / "building.yaml").write_text((ROOT / "config" / "building.yaml").read_text())
+    content = {**study_content(), "building": "building.yaml"}
+    content["fragility"]["measures"] = ["pga_g", "pgv_cm_s", "sa_0_3s_g"]
+    write_study(study_folder, content)
+    command = [sys.executable, str(LAUNCHER), "study.yaml", "--cores", "2"]
+    found = []
+    for more in ({}, FOREIGN):
+        environment = {**os.environ, **more}
+        subprocess.run(command, cwd=study_folder, env=environment, capture_output=True, check=True)
+        found.append(tables_of(study_folder))
+        subprocess.run(["rm", "-r", str(study_folder / "results")], check=True)
+    assert found[0] == found[1]

@@ -1,0 +1,27 @@
+# Fragility from a table of shake-table tests, without a simulation.
+
+
+rule measured_table:
+    """Fit fragility curves in every intensity measure, compare the measures, and write the page."""
+    input:
+        STUDY.table,
+    output:
+        table("tests", "fragility", "recommendation", "bins", "goodness"),
+        figures=report(directory(f"{RESULTS}/figures"), patterns=["{figure}.svg"]),
+        page=report(f"{RESULTS}/report.html", category="Report"),
+    log:
+        f"{RESULTS}/logs/measured_table.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.report.stages:measured_table",
+        study=STUDY_FILE,
+        settings=settings(
+            *("title", "seed", "table", "columns", "measures"),
+            *("confidence", "replicates"),
+        ),
+    script:
+        "../scripts/run_stage.py"

@@ -1,0 +1,51 @@
+# The report: everything that the study computed on one page.
+
+
+rule report:
+    """Draw the figures and write the page."""
+    input:
+        rules.motions.output,
+        SWEEPS,
+        table("as_recorded"),
+        rules.tests.output,
+        rules.fragility.output,
+        rules.pedestal.output if STUDY.has_pairs else [],
+        rules.explanation.output if STUDY.more.explanation else [],
+        rules.building_sensitivity.output if STUDY.more.sensitivity else [],
+        rules.measured_tests.output if STUDY.more.measured_tests else [],
+        rules.thesis.output if STUDY.compare_with == "thesis" else [],
+        bodies=STUDY.body_files,
+    output:
+        figures=report(
+            directory(f"{RESULTS}/figures"),
+            patterns=["{figure}.svg"],
+            category="Figures",
+            subcategory=lambda wildcards: captions(wildcards.figure)["chapter"],
+            labels=lambda wildcards: {"shows": captions(wildcards.figure)["caption"]},
+            caption="../report/figure.rst",
+        ),
+        page=report(
+            f"{RESULTS}/report.html",
+            category="Report",
+            labels={
+                "shows": "The answer, and all chapters with their figures and tables"
+            },
+            caption="../report/report.rst",
+        ),
+    log:
+        f"{RESULTS}/logs/report.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    threads: CORES
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.guests:report",
+        study=STUDY_FILE,
+        settings=settings(
+            *("title", "bodies", "amplitudes", "protocol", "fragility", "seed"),
+            *("compare_with", "friction", "vertical"),
+        ),
+    script:
+        "../scripts/run_stage.py"

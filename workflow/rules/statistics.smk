@@ -1,0 +1,168 @@
+# What the response histories say: tests as a laboratory makes them, fragility, the effect of a pedestal.
+
+
+rule tests:
+    """Read the sweeps as a laboratory would, within the limits of its shaker, and look at the contact forces."""
+    input:
+        motions=SHAKING,
+        sweeps=SWEEPS,
+        bodies=STUDY.body_files,
+        shaker=STUDY.more.shaker_file or [],
+    output:
+        table("tests", "mean_amplitudes", "bodies", "validity"),
+        sliding=table("sliding") if STUDY.slides else [],
+        shaker=table("shaker") if STUDY.more.shaker_file else [],
+    log:
+        f"{RESULTS}/logs/tests.log",
+    priority: 6
+    conda:
+        "../envs/rockfrag.yaml"
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.stages.tests:run",
+        study=STUDY_FILE,
+        settings=settings(
+            "bodies", "amplitudes", "protocol", "shaker", "friction", "vertical"
+        ),
+    script:
+        "../scripts/run_stage.py"
+
+
+rule fragility:
+    """Fit fragility curves, compare intensity measures, and write curves for OpenQuake and SimCenter."""
+    input:
+        read("measures", "motions/records"),
+        sweeps=SWEEPS,
+    output:
+        table("fragility", "fragility_bands", "fragility_bins", "fragility_shares"),
+        table("fragility_floors", "fragility_floors_shares"),
+        table("survival_windows", "measure_choice"),
+        table("fragility_two_measures", "fragility_contours", "fragility_cells"),
+        exports=directory(f"{RESULTS}/exports"),
+    log:
+        f"{RESULTS}/logs/fragility.log",
+    priority: 4
+    conda:
+        "../envs/rockfrag.yaml"
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.stages.fragility:run",
+        study=STUDY_FILE,
+        settings=settings(
+            "fragility", "seed", "bodies", "building", "friction", "vertical"
+        ),
+    script:
+        "../scripts/run_stage.py"
+
+
+rule pedestal:
+    """Estimate the effect of a pedestal from pairs of tests with and without it."""
+    input:
+        read("tests"),
+        bodies=STUDY.body_files,
+    output:
+        table("pedestal/pairs", "pedestal/effects", "pedestal/whole", "pedestal/mixed"),
+        table("pedestal/without_event", "pedestal/ranks", "pedestal/notes"),
+    log:
+        f"{RESULTS}/logs/pedestal.log",
+    # seconds, less than a cluster takes to start it
+    localrule: True
+    conda:
+        "../envs/rockfrag.yaml"
+    params:
+        stage="rockfrag.stages.pedestal:run",
+        study=STUDY_FILE,
+        settings=settings("bodies", "seed"),
+    script:
+        "../scripts/run_stage.py"
+
+
+rule measured_tests:
+    """Put the tests of a laboratory through the same statistics, and beside the simulated ones."""
+    input:
+        read("tests"),
+        bodies=STUDY.body_files,
+        measured=STUDY.more.measured_tests or [],
+    output:
+        table("measured/tests", "measured/beside", "measured/notes"),
+        table("measured/fragility", "measured/effects"),
+    log:
+        f"{RESULTS}/logs/measured_tests.log",
+    localrule: True
+    conda:
+        "../envs/rockfrag.yaml"
+    params:
+        stage="rockfrag.stages.measured_tests:run",
+        study=STUDY_FILE,
+        settings=settings("measured_tests", "fragility", "seed", "bodies"),
+    script:
+        "../scripts/run_stage.py"
+
+
+rule building_sensitivity:
+    """Repeat the tests on the floors of other buildings, one assumption changed at a time."""
+    input:
+        read("motions/ground"),
+        bodies=STUDY.body_files,
+        building=STUDY.building_file or [],
+    output:
+        table("building_sensitivity/tests", "building_sensitivity/means"),
+    log:
+        f"{RESULTS}/logs/building_sensitivity.log",
+    conda:
+        "../envs/rockfrag.yaml"
+    threads: CORES
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.stages.sensitivity:run",
+        study=STUDY_FILE,
+        settings=settings(
+            *("building_sensitivity", "building", "bodies", "amplitudes"),
+            *("protocol", "friction"),
+        ),
+    script:
+        "../scripts/run_stage.py"
+
+
+EXPLAINED = STUDY.more.explanation
+
+
+rule explanation:
+    """Simulate what could produce an effect of the pedestal, one departure from the ideal model at a time."""
+    input:
+        read("motions/floors"),
+        bodies=STUDY.body_files,
+    output:
+        table("explanation/ratios", "explanation/effects"),
+        friction=(
+            table("explanation/friction_ratios", "explanation/friction")
+            if EXPLAINED and EXPLAINED.friction
+            else []
+        ),
+        inversion=(
+            table("explanation/inversion")
+            if EXPLAINED and EXPLAINED.wanted_percent
+            else []
+        ),
+    log:
+        f"{RESULTS}/logs/explanation.log",
+    priority: 3
+    conda:
+        "../envs/rockfrag.yaml"
+    # half of the cores, so that tests and fragility need not wait for it
+    threads: max(1, CORES // 2)
+    resources:
+        mem_mb=MEMORY_MB,
+        runtime=120,
+    params:
+        stage="rockfrag.stages.explanation:run",
+        study=STUDY_FILE,
+        settings=settings("explanation", "bodies", "amplitudes", "protocol", "seed"),
+    script:
+        "../scripts/run_stage.py"
