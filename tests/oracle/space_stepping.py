@@ -128,7 +128,7 @@ def stepping(points, inertia, friction, ground, dt, g, step, turned):
     velocity, omega = np.zeros(3), np.zeros(3)
     samples = ground.shape[0]
     tilts = np.zeros(samples)
-    each = int(round(dt / step))
+    each = round(dt / step)
     moving = False
     reach = np.hypot(points[:, 0], points[:, 1]).max()
     safe = 0.2 * g * 0.5 * reach / height if points.shape[0] > 4 else 0.0

@@ -21,15 +21,23 @@ MOST_VERTICES = 64
 BODY = np.dtype(
     [
         ("count", np.int64),  # vertices of the base; of a round one, four points of its rim
-        ("flat", np.int64),  # 1 if all vertices lie in one plane
         ("rim", np.float64),  # radius of a round base [m]; 0 for a polygon
         ("centre", np.float64, (2,)),  # centre of a round base [m]
         ("height", np.float64),  # of the centre of mass over the base [m]
-        ("furthest", np.float64),  # tilt at which the centre of mass is over the furthest point [rad]
+        (
+            "furthest",
+            np.float64,
+        ),  # tilt at which the centre of mass is over the furthest point [rad]
         ("static", np.float64),  # coefficients of friction [-]
         ("kinetic", np.float64),
-        ("barrier", np.float64),  # energy over rest below which nothing falls on ground at rest [J/kg]
-        ("pass_turn", np.float64),  # turn of the contact of a round base that passes through flat [rad]
+        (
+            "barrier",
+            np.float64,
+        ),  # energy over rest below which nothing falls on ground at rest [J/kg]
+        (
+            "pass_turn",
+            np.float64,
+        ),  # turn of the contact of a round base that passes through flat [rad]
         ("inertia", np.float64, (3, 3)),  # tensor over the mass, about the centre of mass [m²]
         ("inverse", np.float64, (3, 3)),
         ("points", np.float64, (MOST_VERTICES, 3)),  # vertices, anticlockwise [m]
@@ -146,7 +154,22 @@ def position_of_base(y, rows, p):
 
 
 __all__ = [
-    "FRICTION", "SIZE", "WORK", "BODY", "arm", "bias", "energy", "first_candidate", "free_spin", "gap",
-    "last_candidate", "minus", "omega_of", "point_velocity", "position_of_base", "rim_contact", "rim_direction",
+    "BODY",
+    "FRICTION",
+    "SIZE",
+    "WORK",
+    "arm",
+    "bias",
+    "energy",
+    "first_candidate",
+    "free_spin",
+    "gap",
+    "last_candidate",
+    "minus",
+    "omega_of",
+    "point_velocity",
+    "position_of_base",
+    "rim_contact",
+    "rim_direction",
     "rim_drift",
 ]  # fmt: skip

@@ -37,7 +37,7 @@ def compliance(s, n):
 
 @njit(cache=True)
 def product(s, n, x, out):
-    """out = W x + b."""
+    """Fill in out = W x + b."""
     for i in range(3 * n):
         value = s.free[i]
         for j in range(3 * n):
@@ -254,7 +254,10 @@ def start_sliding(s, n, mask, turned):
         u, v = s.free[a], s.free[a + 1]
         size = max(math.hypot(u, v), 1e-300)
         e, f = u / size, v / size
-        e, f = e * math.cos(turned) - f * math.sin(turned), e * math.sin(turned) + f * math.cos(turned)
+        e, f = (
+            e * math.cos(turned) - f * math.sin(turned),
+            e * math.sin(turned) + f * math.cos(turned),
+        )
         if s.given[i]:
             e, f = s.way[i, 0], s.way[i, 1]
         s.impulse[a] = -s.friction[i] * normal * e
@@ -266,10 +269,10 @@ def start_sliding(s, n, mask, turned):
 def others_open(s, n, mask, small):
     """Whether contacts outside of a set do not approach."""
     product(s, n, s.impulse, s.after)
+    approaching = 0
     for i in range(n):
-        if not in_set(mask, i) and s.after[3 * i + 2] < -small:
-            return False
-    return True
+        approaching += not in_set(mask, i) and s.after[3 * i + 2] < -small
+    return approaching == 0
 
 
 @njit(cache=True)
@@ -293,7 +296,7 @@ def bits(mask):
 
 @njit(cache=True)
 def solve_set(s, n, mask, scale):
-    """Solve for one set; return whether there is a solution in which all of it pushes and nothing else approaches."""
+    """Solve for one set; return whether all of it pushes and nothing else approaches."""
     if mask == 0:
         for i in range(3 * n):
             s.impulse[i] = 0.0

@@ -56,7 +56,7 @@ CASE = np.dtype(
         ("lam", np.float64, (MOST, 3)),  # contact forces or impulses in the world
         # effective gravity at the beginning of the interval, its rate, and gravity on ground at rest
         ("field", np.float64, (7,)),
-        # a small system: contacts, whether the way of slip is given, the way, coefficients, directions between them
+        # a small system: contacts, whether and which way of slip is given, coefficients, directions between
         ("which", np.int64, (MOST,)),
         ("given", np.int64, (MOST,)),
         ("way", np.float64, (MOST, 2)),
@@ -79,7 +79,10 @@ CASE = np.dtype(
         ("slip", np.float64, (MOST, 2)),
         ("armed", np.int64, (MOST,)),
         ("counters", np.int64, (8,)),
-        ("close", np.float64),  # velocity after an impact below which a point that touches stays closed [m/s]
+        (
+            "close",
+            np.float64,
+        ),  # velocity after an impact below which a point that touches stays closed [m/s]
     ],
     align=True,
 )
@@ -292,7 +295,11 @@ def rates(body, tau, y, dy, s):
     """
     rows = rotation(y)
     omega = omega_of(y)
-    pull = (s.field[0] + s.field[3] * tau, s.field[1] + s.field[4] * tau, s.field[2] + s.field[5] * tau)
+    pull = (
+        s.field[0] + s.field[3] * tau,
+        s.field[1] + s.field[4] * tau,
+        s.field[2] + s.field[5] * tau,
+    )
     weight = to_body(rows, pull)
     kind = kind_of(s)
     lost = 0.0

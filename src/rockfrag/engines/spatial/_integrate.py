@@ -40,6 +40,7 @@ from rockfrag.engines.spatial._modes import (
     anchor_all,
     choose_mode,
     come_to_rest,
+    count_touching,
     edge_margin,
     gap,
     impact,
@@ -309,9 +310,12 @@ def happen(body, what, tau, y, cut, stuck, s):
     if what == LANDS:
         impact(body, y, 1, s)
         rows = rotation(y)
-        if energy(body, y, g) < cut * body.barrier and rest_margin(body, y, rows, pull_at(s.field, tau)) >= 0:
-            if body.flat:
-                come_to_rest(body, y, s)
+        if body.rim == 0.0 and count_touching(body, y, rows) >= 3:
+            # the points that open begin with no gap, not with one of rounding
+            lay_flat(body, y)
+        carried = rest_margin(body, y, rows, pull_at(s.field, tau)) >= 0
+        if carried and energy(body, y, g) < cut * body.barrier:
+            come_to_rest(body, y, s)
     elif what == SLIP_ENDS:
         stop_slips(body, y, s)
     if stuck > 3 and what in (OPENS, LEAVES_CONE):
@@ -329,7 +333,7 @@ def happen(body, what, tau, y, cut, stuck, s):
 @njit(cache=True)
 def critical_tilt(body, up):
     """Tilt at which the centre of mass is over the base's furthest point in the direction of the tilt."""
-    u, sine = rim_direction(body, up)
+    u, _ = rim_direction(body, up)
     if body.rim > 0:
         reach = body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
     else:
@@ -425,12 +429,13 @@ def cannot_fall(body, y, s, g):
 @njit(cache=True)
 def small_rim(body, y, tau, cut, s):
     """Let a round body rest whose energy is below the cut-off while the ground would carry it at rest."""
-    if energy(body, y, s.field[6]) < cut * body.barrier:
-        if rest_margin(body, y, rotation(y), pull_at(s.field, tau)) >= 0:
-            lost = energy(body, y, s.field[6])
-            come_to_rest(body, y, s)
-            return lost
-    return 0.0
+    left = energy(body, y, s.field[6])
+    if left >= cut * body.barrier:
+        return 0.0
+    if rest_margin(body, y, rotation(y), pull_at(s.field, tau)) < 0:
+        return 0.0
+    come_to_rest(body, y, s)
+    return left
 
 
 @njit(cache=True)

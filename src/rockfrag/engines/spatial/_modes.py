@@ -45,7 +45,8 @@ TOUCH = 1e-10
 """Gap below which a point touches [m]."""
 
 CLOSE = 1e-6
-"""Velocity after an impact below which a point that touches stays closed, unless there are too many [m/s]."""
+"""Velocity after an impact below which a point that touches stays closed, unless
+there are too many [m/s]."""
 
 AT_REST = SLIP_FLOOR
 """Velocity below which points that touch neither approach nor slip when the mode is chosen [m/s]."""
@@ -58,7 +59,7 @@ IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS, PASSES, CHANGES = range(C
 
 @njit(cache=True)
 def touching(body, y, rows, s):
-    """Fill in s.which with the points that touch, at most MOST, those that approach fastest; return how many there are."""
+    """Fill in s.which with the points that touch, at most MOST, the fastest to approach; return their number."""
     n = 0
     speed = s.vector
     flat = body.rim > 0 and math.hypot(rows[2][0], rows[2][1]) < 1e-9
@@ -242,8 +243,7 @@ def come_to_rest(body, y, s):
     s.count, s.rests = 0, 1
     for k in range(7, 13):
         y[k] = 0.0
-    if body.flat:
-        lay_flat(body, y)
+    lay_flat(body, y)
 
 
 @njit(cache=True)
@@ -259,11 +259,15 @@ def lay_flat(body, y):
 def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
     rows = rotation(y)
-    pull = (s.field[0] + s.field[3] * tau, s.field[1] + s.field[4] * tau, s.field[2] + s.field[5] * tau)
-    if still(body, y) and count_touching(body, y, rows) >= 3:
-        if rest_margin(body, y, rows, pull) >= 0:
-            come_to_rest(body, y, s)
-            return True
+    pull = (
+        s.field[0] + s.field[3] * tau,
+        s.field[1] + s.field[4] * tau,
+        s.field[2] + s.field[5] * tau,
+    )
+    lies = still(body, y) and count_touching(body, y, rows) >= 3
+    if lies and rest_margin(body, y, rows, pull) >= 0:
+        come_to_rest(body, y, s)
+        return True
     n = pick_closed(body, y, rows, s)
     fill_delassus(body, rows, s.which, n, s.delassus)
     fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
@@ -366,7 +370,7 @@ def settle(body, y, s):
     """Put a state back on the conditions of its mode, from which steps drift by their error."""
     rows = rotation(y)
     kind = kind_of(s)
-    if kind == PIVOT or kind == HINGE:
+    if kind in (PIVOT, HINGE):
         i = s.closed[0]
         p = arm(body, rows[2], i)
         omega = omega_of(y)
@@ -394,7 +398,7 @@ def settle(body, y, s):
 def close_gaps(body, y, rows, s):
     """Move the body by what its closed points are off the ground."""
     n = s.count
-    if n >= 3 and body.flat:
+    if n >= 3:
         lay_flat(body, y)
         return
     a, b, c = 0.0, 0.0, 0.0

@@ -80,10 +80,10 @@ def slip_along(body, y, rows, i, s):
 @njit(cache=True)
 def is_closed(s, i):
     """Whether point i is closed in a mode."""
+    found = False
     for k in range(s.count):
-        if s.closed[k] == i:
-            return True
-    return False
+        found = found or s.closed[k] == i
+    return found
 
 
 @njit(cache=True)
@@ -103,6 +103,12 @@ def begin_slips(body, y, s):
 
 
 @njit(cache=True)
+def sinks(body, y, rows, i):
+    """Whether an open point moves down, and not by rounding alone."""
+    return point_velocity(y, rows, arm(body, rows[2], i))[2] < -1e-10
+
+
+@njit(cache=True)
 def margin(body, y, s):
     """Return the least of all that must not be negative, and what it belongs to."""
     rows = rotation(y)
@@ -110,6 +116,8 @@ def margin(body, y, s):
     for i in range(first_candidate(body), last_candidate(body)):
         if not is_closed(s, i):
             value = gap(body, y, rows[2], i) + 0.5 * TOUCH
+            if value < 0.5 * TOUCH and not sinks(body, y, rows, i):
+                value += TOUCH
             if value < least:
                 least, what = value, LANDS
     small = LEAST_FORCE * s.field[6]
@@ -143,5 +151,3 @@ def dips(body, y, h, s):
             if lowest - 0.02 * h * (rising - sinking) < -0.5 * TOUCH:
                 return True
     return False
-
-

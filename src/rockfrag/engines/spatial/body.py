@@ -1,7 +1,6 @@
 """Bodies as the kernels know them, made of a system of one body in space."""
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +47,11 @@ def kernel_body(system: System, g: float = GRAVITY) -> np.void:
 
 
 def polygon_body(
-    vertices: Array, inertia: Array, height: float, friction: tuple[float, float], g: float = GRAVITY
+    vertices: Array,
+    inertia: Array,
+    height: float,
+    friction: tuple[float, float],
+    g: float = GRAVITY,
 ) -> np.void:
     """Return a body on a convex polygon.
 
@@ -125,24 +128,25 @@ def _filled(
     friction: tuple[float, float],
     g: float,
     reach: tuple[float, float],
-) -> Any:
+) -> np.void:
     """Return the record of a body whose base reaches so far at least and at most from below its centre of mass."""
     if not reach[0] > 0:
-        raise InputError("base: the centre of mass is not above the base, so the body cannot stand.")
+        raise InputError(
+            "base: the centre of mass is not above the base, so the body cannot stand."
+        )
     count = len(points)
     squares = np.einsum("ni,ni->n", points, points)
-    about = (
-        inertia + squares[:, None, None] * np.eye(3) - np.einsum("ni,nj->nij", points, points)
-    )
+    about = inertia + squares[:, None, None] * np.eye(3) - np.einsum("ni,nj->nij", points, points)
     body = np.zeros(1, BODY)
-    body["count"], body["flat"], body["height"] = count, 1, height
+    body["count"], body["height"] = count, height
     body["static"], body["kinetic"] = friction
     body["barrier"] = g * (math.hypot(reach[0], height) - height)
     body["furthest"] = math.atan2(reach[1], height)
     body["inertia"], body["inverse"] = inertia, np.linalg.inv(inertia)
     body["points"][0, :count], body["about"][0, :count] = points, about
     body["about_inverse"][0, :count] = np.linalg.inv(about)
-    return body[0]
+    made: np.void = body[0]
+    return made
 
 
 def standing(body: np.void, turned: float = 0.0) -> Array:

@@ -43,8 +43,8 @@ class SpatialOutcome:
     fell_over
         What it fell over: ``"edge 1-2"``, ``"vertex 2"``, ``"rim"``, ``"flight"``; empty without a fall.
     peak_rotation
-        Largest tilt over that at which its centre is above the base's outline in the tilt's direction [-]; infinite
-        if it fell.
+        Largest tilt over that at which the centre of mass is above the base's outline in the tilt's direction [-];
+        infinite if it fell.
     peak_tilt
         Largest tilt until the outcome was known [rad].
     peak_velocity
@@ -190,10 +190,10 @@ def history_table(history: Array, dt: float, height: float) -> pd.DataFrame:
 
     Returns
     -------
-    A row per sample: ``time_s``; ``x_m``, ``y_m``, ``z_m`` of the centre of mass relative to the ground; ``tilt_rad``
-    of the body's axis and ``axis_x``, ``axis_y``, its horizontal components; ``turn_rad`` about the vertical;
-    ``base_x_m``, ``base_y_m``, the base's point below the centre of mass; ``omega_x_rad_s`` to ``omega_z_rad_s`` in
-    the body; ``contacts``, the number of closed points, NaN at rest.
+    A row per sample: ``time_s``; ``x_m``, ``y_m``, ``z_m`` of the centre of mass relative to the ground;
+    ``tilt_rad`` of the body's axis and ``axis_x``, ``axis_y``, its horizontal components; ``turn_rad`` about the
+    vertical; ``base_x_m``, ``base_y_m``, the base's point below the centre of mass; ``omega_x_rad_s`` to
+    ``omega_z_rad_s`` in the body; ``contacts``, the number of closed points, NaN at rest.
     """
     w, x, y, z = history[:, 3:7].T
     axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
