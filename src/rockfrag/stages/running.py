@@ -101,8 +101,7 @@ def run_job(
     log_file
         Path of its log, whose stem names the job.
     """
-    if RUN in os.environ:
-        end_with(int(os.environ[RUN]))
+    end_with_run()
     module, _, function = stage.partition(":")
     with logged(log_file, Path(log_file).stem) as log:
         study = any_study(config, study_file)
@@ -112,6 +111,12 @@ def run_job(
         job = Job(study, folder, threads, log, part, *declared)
         for name, value in getattr(import_module(module), function)(job):
             job.write(name, value)
+
+
+def end_with_run() -> None:
+    """Let this job end as soon as its run does, or the shell in which the run started it."""
+    if RUN in os.environ:
+        end_with(int(os.environ[RUN]))
 
 
 def _named(study: AnyStudy) -> str:
