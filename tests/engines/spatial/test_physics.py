@@ -77,7 +77,7 @@ def test_wobble_of_a_round_body_with_its_centre_at_rest(tilt, expected):
     s, c, h = math.sin(tilt), math.cos(tilt), height / 2
     rate = math.sqrt(g * (radius * c - h * s) / (s * (across * c - along * h / radius * s)))
     assert rate == pytest.approx(expected, abs=6e-5)
-    # the centre at rest: ω lies along the arm to the contact, and the axis precesses at Ω
+    # the centre at rest: ω lies along the arm to the contact, and the axis goes round at Ω
     arm = np.array([radius, 0.0, -h])
     up = np.array([-s, 0.0, c])
     axis = np.array([0.0, 0.0, 1.0])

@@ -35,7 +35,7 @@ MOST = 4
 STICKS, SLIDES = 0, 1
 FLIGHT, PIVOT, HINGE, GENERAL, REST = 0, 1, 2, 3, 4
 
-SLIP_FLOOR = 1e-8
+SLIP_FLOOR = 1e-5
 """Slip velocity below which a point does not slip yet, or no longer, and its direction is the one noted [m/s]."""
 
 SOFTNESS = 1e-9

@@ -68,6 +68,12 @@ SHORTEST = 1e-11
 MANY = 40
 """Events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
 
+HURRY = 1000
+"""Steps in one interval after which errors of COARSE are allowed: slip that hardly begins is stiff [-]."""
+
+COARSE = 1e-6
+"""Error of a step that is allowed then [m, m/s, rad/s]."""
+
 OUTCOME = 20
 (
     FELL, FALL_TIME, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, PEAK_WALK, WALK_X,
@@ -277,7 +283,7 @@ def stop_slips(body, y, s):
         if s.slides[i] == SLIDES:
             p = arm(body, rows[2], s.closed[i])
             turned = to_world(rows, cross(omega_of(y), p))
-            if math.hypot(y[7] + turned[0], y[8] + turned[1]) < 10 * AT_REST:
+            if math.hypot(y[7] + turned[0], y[8] + turned[1]) < 2 * AT_REST:
                 s.slides[i] = STICKS
     settle(body, y, s)
 
@@ -542,7 +548,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
         if k > last and cannot_fall(body, y, s, g):
             break
         tau = 0.0
-        many = 0
+        many, seen = 0, out[EVENTS]
         s.close = CLOSE
         while dt - tau > 1e-12 * dt:
             if kind_of(s) == REST:
@@ -555,10 +561,12 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                 ahead = dt
                 if kind_of(s) == REST:
                     break
-            tau, ahead, h = advance(body, tau, dt, ahead, y, tolerance, cut, stuck, s, out)
+            allowed = tolerance if many < HURRY else max(tolerance, COARSE)
+            tau, ahead, h = advance(body, tau, dt, ahead, y, allowed, cut, stuck, s, out)
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
-            if many % MANY == 0:
+            if out[EVENTS] - seen >= MANY:
+                seen = out[EVENTS]
                 s.close = min(2.0 * s.close, 1e-3)
             if stuck > 100:
                 # nothing is consistent here: let the motion go on as it is for a moment

@@ -49,7 +49,10 @@ CLOSE = 1e-6
 there are too many [m/s]."""
 
 AT_REST = SLIP_FLOOR
-"""Velocity below which points that touch neither approach nor slip when the mode is chosen [m/s]."""
+"""Velocity below which points that touch do not slip when the mode is chosen [m/s]."""
+
+LEAVES = 1e-8
+"""Velocity above which points that touch leave when the mode is chosen [m/s]."""
 
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, NOTHING = 1, 2, 3, 4, 0
 
@@ -159,7 +162,7 @@ def keep_slow_contacts(body, y, rows, n, found, s):
             slow = slow or not in_set(found, i)
             s.closed[count] = s.which[i]
             slip = math.hypot(s.after[3 * i], s.after[3 * i + 1])
-            s.slides[count] = SLIDES if slip > s.close else STICKS
+            s.slides[count] = SLIDES if slip > max(s.close, AT_REST) else STICKS
             count += 1
     s.count, s.rests = count, 0
     if slow:
@@ -291,7 +294,7 @@ def pick_closed(body, y, rows, s):
     kept = 0
     for i in range(n):
         u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
-        if u[2] > AT_REST:
+        if u[2] > LEAVES:
             continue
         s.which[kept] = s.which[i]
         speed = math.hypot(u[0], u[1])
