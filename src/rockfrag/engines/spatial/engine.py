@@ -87,6 +87,9 @@ class SpatialEngine:
         return SpatialResponse(found, history_table(history, case.motion.dt, float(body["height"])))
 
 
+ENGINE = SpatialEngine()
+
+
 def _lightest(ground: NDArray[np.float64], scale: float, g: float) -> float:
     """Least effective gravity over gravity."""
     return 1.0 + scale * float(ground[:, 2].min()) / g
@@ -101,9 +104,10 @@ def _write(
     result.certain_time[case] = found.certain_time
     result.impacts[case] = found.impacts
     result.flights[case] = found.flights
+    result.several_modes[case] = found.ambiguous
     result.paradoxes[case] = found.paradoxes
     result.unstable_distance[case] = math.nan
-    result.lightest[case] = lightest
+    result.minimum_gravity_ratio[case] = lightest
     body = (*case, 0)
     result.peak_rotation[body] = found.peak_rotation
     result.peak_velocity[body] = found.peak_velocity
