@@ -13,8 +13,8 @@ import psutil
 
 from .studies import PATIENCE_S, Study, Tally
 
-FORGOTTEN = (("report.html",), ("report.html", "measures.*"), ("tests.*", "pedestal/*"))
-"""Results that a trial makes anew, of which those of a pool's workers are the first and the second."""
+FORGOTTEN = (("report.html",), ("report.html", "measures.*"), ("report.html", "tests.*"))
+"""Results that a trial makes anew, of which the first and the second are made by pools."""
 
 LONGEST_WORDS = 8
 """A run that was disturbed says why in so many lines, beside those of its stages."""
@@ -75,7 +75,7 @@ def compiling(study: Study, tally: Tally, rng: random.Random) -> None:
     study.more["NUMBA_CACHE_DIR"] = str(cache)
     for number in range(COMPILING):
         shutil.rmtree(cache, ignore_errors=True)
-        study.forget("sweep/*", "tests.*")
+        study.forget("report.html", "sweep/*")
         _disturbed(study, tally, rng, (job, everything)[number % 2], 15.0)
 
 
