@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "src"))
+sys.path.insert(0, str(ROOT / "docs"))
 
 from rockfrag import __version__  # noqa: E402
 
@@ -20,62 +21,86 @@ author = "rockfrag developers"
 copyright = author
 release = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
+extensions = [
+    *("myst_parser", "sphinx.ext.autodoc", "numpydoc"),
+    *("sphinx_copybutton", "sphinx_gallery.gen_gallery"),
+]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "reference/static"]
+exclude_patterns = ["_build", "reference/static", "gallery", "images", "auto_gallery/*.md5"]
 html_theme = "furo"
 html_title = f"rockfrag {release}"
 html_extra_path = ["tutorial.ipynb"]
-html_static_path = ["reference/static"]
+html_static_path = ["static", "reference/static"]
 # Sphinx looks for it before anything is generated
 (ROOT / "docs" / "reference" / "static").mkdir(parents=True, exist_ok=True)
 html_copy_source = False
 html_show_sourcelink = False
+html_css_files = ["site.css"]
+copybutton_prompt_text = r"\$ |>>> |\.\.\. "
+copybutton_prompt_is_regexp = True
+copybutton_exclude = ".linenos, .gp, .go"
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "auto_gallery",
+    "filename_pattern": r"/plot_",
+    "within_subsection_order": "FileNameSortKey",
+    "reset_modules": ("gallery_style.journal",),
+    "image_scrapers": ("matplotlib", "gallery_style.kept_figures"),
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_signature": False,
+    "min_reported_time": 1e9,
+    "image_srcset": ["2x"],
+    "plot_gallery": "True",
+}
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 autodoc_typehints = "none"
 numpydoc_show_class_members = False
 suppress_warnings = ["myst.header", "ref.python", "misc.highlighting_failure"]
 
-ROOMS = {
-    "rockfrag.assess": "One object at one place",
-    "rockfrag.rocking": "Bodies, histories, ensembles",
-    "rockfrag.motions": "Motions",
-    "rockfrag.building": "Buildings",
-    "rockfrag.fragility": "Fragility",
-    "rockfrag.pedestal": "Paired comparisons",
-    "rockfrag.shaketable": "Shaking tables",
+SUBPACKAGES = {
+    "rockfrag.system": (
+        "Objects",
+        "what is shaken: blocks, stacks, columns, bodies in space, scans",
+    ),
+    "rockfrag.rocking": (
+        "Simulation",
+        "histories, ensembles, thresholds, rocking spectra, closed forms",
+    ),
+    "rockfrag.outcomes": ("Outcomes", "what comes out of simulations, and states of damage"),
+    "rockfrag.records": ("Records", "read, list and write strong-motion records"),
+    "rockfrag.motions": (
+        "Motions",
+        "filter, scale, rotate, measure; spectra, pulses, synthetic motions",
+    ),
+    "rockfrag.building": ("Buildings", "motions of the floors of a building"),
+    "rockfrag.fragility": ("Fragility", "curves with intervals, choice of the measure, exports"),
+    "rockfrag.pedestal": ("Paired comparisons", "the effect of a pedestal, tested"),
+    "rockfrag.shaketable": ("Shaking tables", "limits, protocols and tables of tests"),
+    "rockfrag.campaign": ("Campaigns", "a laboratory's tests, simulated one by one"),
+    "rockfrag.assess": ("One object at one place", "what the command `rockfrag assess` does"),
 }
-"""Rooms of the library whose public names are documented; records are read by ``rockfrag.read_motion``."""
+"""Subpackages whose public names are documented, in the order in which people need them."""
 
 PAGES = {
     "../config/README.md": "/reference/configuration.md",
     "../results/README.md": "/reference/results.md",
     "../CONTRIBUTING.md": "/reference/contributing.md",
+    "../CHANGELOG.md": "/reference/changelog.md",
 }
 """Documents outside this folder, and the page that shows each."""
-
-LIVE = """```{raw} html
-<iframe id="live" src="_static/play.html" title="A figure on a plinth, simulated live" style="width: 100%; height:
-56rem; border: 0"> </iframe>
-<script>addEventListener("message", (event) => {
-  const frame = document.getElementById("live");
-  const height = Number(event.data.rockfragHeight);
-  if (event.source === frame.contentWindow && height > 0) frame.style.height = `${Math.ceil(height) + 4}px`;
-});</script>
-```"""
-"""What stands for ``{{ live }}`` on the front page."""
 
 GENERATED = {
     "/reference/configuration.md": ROOT / "config" / "README.md",
     "/reference/results.md": ROOT / "results" / "README.md",
     "/reference/contributing.md": ROOT / "CONTRIBUTING.md",
+    "/reference/changelog.md": ROOT / "CHANGELOG.md",
 }
 
 
 def _site_links(app: Sphinx, name: str, source: list[str]) -> None:
     """Turn links of the repository into links of the site; what the site does not show becomes plain text."""
-    source[0] = source[0].replace("{{ live }}", LIVE)
 
     def link(found: re.Match[str]) -> str:
         text, target = found[1], found[2]
@@ -113,7 +138,8 @@ def _generate(app: Sphinx) -> None:
         _write(folder / name.lstrip("/"), text)
     _write_live(folder / "reference" / "static" / "play.html")
     _write(folder / "reference" / "command-line.md", _command_line())
-    _write(folder / "reference" / "api.md", _library())
+    for name, text in _library().items():
+        _write(folder / "reference" / "api" / f"{name}.md", text)
 
 
 def _write(path: Path, text: str) -> None:
@@ -137,30 +163,72 @@ def _command_line() -> str:
     return "\n".join(parts) + "\n"
 
 
-def _library() -> str:
-    """Public names of every room, whose docstrings autodoc puts there."""
-    parts = ["# The library", "", "SI units throughout: m, kg, s, rad, m/s².", ""]
-    for module, title in ROOMS.items():
-        room = importlib.import_module(module)
-        parts += [f"## {title}", "", f"`{module}`", "", "```{eval-rst}"]
-        for name in sorted(room.__all__):
-            value = getattr(room, name)
-            if inspect.isfunction(value):
-                parts.append(f".. autofunction:: {value.__module__}.{value.__qualname__}")
-            elif inspect.isclass(value):
-                parts.append(f".. autoclass:: {value.__module__}.{value.__qualname__}")
-                parts.append("   :members:")
-            parts.append("")
-        parts += ["```", ""]
-    return "\n".join(parts)
+def _library() -> dict[str, str]:
+    """Return a page a subpackage, whose names stand there as they are imported, and one that lists them."""
+    pages = {}
+    shown: set[object] = set()
+    front = [
+        "# Library",
+        "",
+        "SI units throughout: m, kg, s, rad, m/s². What is used most stands in `rockfrag` itself:",
+        "",
+    ]
+    top = sorted(
+        name for name in importlib.import_module("rockfrag").__all__ if not _is_module(name)
+    )
+    front += [", ".join(f"`{name}`" for name in top) + ".", ""]
+    front += ["| topic | import from | for |", "|---|---|---|"]
+    for module, (title, words) in SUBPACKAGES.items():
+        page = module.rpartition(".")[2]
+        front.append(f"| [{title}]({page}.md) | `{module}` | {words} |")
+        pages[page] = _subpackage(module, title, words, shown)
+    front += ["", "```{toctree}", ":hidden:", "", *pages, "```"]
+    return {"index": "\n".join(front) + "\n", **pages}
+
+
+def _is_module(name: str) -> bool:
+    return inspect.ismodule(getattr(importlib.import_module("rockfrag"), name))
+
+
+def _subpackage(module: str, title: str, words: str, shown: set[object]) -> str:
+    """Page of a subpackage, without what another page has shown, which it adds to."""
+    package = importlib.import_module(module)
+    public = {name: getattr(package, name) for name in sorted(package.__all__, key=str.lower)}
+    documented = {
+        name: value
+        for name, value in public.items()
+        if (inspect.isfunction(value) or inspect.isclass(value)) and value not in shown
+    }
+    shown |= set(documented.values())
+    parts = [f"# {title}", "", f"`{module}`: {words}.", ""]
+    parts += ["| name | what it does |", "|---|---|"]
+    for name, value in documented.items():
+        first = (
+            (inspect.getdoc(value) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+        )
+        parts.append(f"| [`{name}`](#{module}.{name}) | {_plain(first)} |")
+    parts += ["", "```{eval-rst}"]
+    for name, value in documented.items():
+        kind = "autofunction" if inspect.isfunction(value) else "autoclass"
+        parts += [
+            f".. {kind}:: {module}.{name}",
+            *(["   :members:"] if kind == "autoclass" else []),
+            "",
+        ]
+    return "\n".join([*parts, "```", ""])
+
+
+def _plain(text: str) -> str:
+    """Return a line of a docstring without its markup."""
+    return re.sub(r":\w+:`([^`]+)`", r"\1", text).replace("``", "`")
 
 
 def _schema_tables() -> str:
     """Every key of every file with what it may hold, from the schema itself."""
     schemas = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))["$defs"]
-    parts = ["", "# All keys, from the schema", ""]
+    parts = ["", "## All keys, from the schema", ""]
     for name, schema in schemas.items():
-        parts += [f"## {schema.get('title', name)}", "", "| key | expected |", "|---|---|"]
+        parts += [f"### {schema.get('title', name)}", "", "| key | expected |", "|---|---|"]
         parts += [f"| `{key}` | {words} |" for key, words in _keys(schema, "")]
         parts.append("")
     return "\n".join(parts)
@@ -187,6 +255,39 @@ def _write_live(path: Path) -> None:
     write_play_page(body, named, path)
 
 
+ACCESSIBLE = (
+    # a keyboard can scroll what is wider than the page
+    (r"<pre>", '<pre tabindex="0">'),
+    (r'<div class="(math|table-wrapper)', r'<div tabindex="0" class="\1'),
+    # landmarks of one kind are told apart
+    (r'<aside class="sidebar-drawer">', '<aside class="sidebar-drawer" aria-label="Pages">'),
+    (
+        r'<aside class="toc-drawer([^"]*)">',
+        r'<aside class="toc-drawer\1" aria-label="Contents of this page">',
+    ),
+    (r'role="heading">', 'role="heading" aria-level="2">'),
+    (r'(?<!</h1>)<div id="search-results">', '<h1>Search</h1><div id="search-results">'),
+    # a cell without words is no heading
+    (r'<th class="head([^"]*)"><p></p></th>', r'<td class="head\1"></td>'),
+    # the words of a thumbnail's link are hidden behind its picture
+    (
+        r'<a class="reference internal" href="(plot_[^"]+)"><span class="doc">([^<]+)</span></a>',
+        r'<a class="reference internal" href="\1" aria-label="\2"><span class="doc">\2</span></a>',
+    ),
+)
+"""What the theme leaves out, and what stands there instead."""
+
+
+def _make_accessible(app: Sphinx, failed: Exception | None) -> None:
+    """Mend pages for those who use a keyboard or listen; what is mended already is not found again."""
+    for path in Path(app.outdir).rglob("*.html") if failed is None else ():
+        if "_static" not in path.parts:
+            text = path.read_text(encoding="utf-8")
+            for found, instead in ACCESSIBLE:
+                text = re.sub(found, instead, text)
+            path.write_text(text, encoding="utf-8")
+
+
 def _plain_bars(
     app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]
 ) -> None:
@@ -199,3 +300,4 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _plain_bars, priority=900)
     app.connect("builder-inited", _generate)
     app.connect("source-read", _site_links)
+    app.connect("build-finished", _make_accessible)

@@ -1,5 +1,7 @@
 """Fixtures that every folder of tests may use."""
 
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -80,3 +82,18 @@ def noise() -> Callable[..., Motion]:
         return Motion(samples, dt, **{"name": f"noise {seed}", **about})
 
     return make
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, built without a warning; the scripts of the gallery are run for it."""
+    for package in ("myst_parser", "sphinx_gallery", "sphinx_copybutton", "furo"):
+        pytest.importorskip(package, reason="the extra docs is not installed")
+    folder = tmp_path_factory.mktemp("site")
+    command = [
+        *(sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"),
+        *(str(ROOT / "docs"), str(folder)),
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.returncode == 0, done.stderr[-3000:]
+    return folder

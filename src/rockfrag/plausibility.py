@@ -137,3 +137,21 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
             f"{GRAVITY:g}"
         )
     return ""
+
+
+def gravity_warning(g: float) -> str:
+    """Say that an acceleration of gravity [m/s²] looks like one in cm/s², or return an empty text."""
+    if g <= LARGEST_GRAVITY:
+        return ""
+    return f"an acceleration of gravity of {g:g} m/s² is that of no planet; if it is in cm/s², divide it by 100"
+
+
+LARGEST_GRAVITY = 100.0
+"""Largest acceleration of gravity that is no mistake of unit [m/s²]."""
+
+
+def interval_warning(dt: float) -> str:
+    """Say that a sampling interval [s] is too long for strong motion, or return an empty text."""
+    if dt <= LONGEST_STEP:
+        return ""
+    return f"a sampling interval of {dt:g} s is too long for strong motion; check its unit"

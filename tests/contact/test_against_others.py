@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from rockfrag.rocking.contact.reference import simulate_reference
 from rockfrag.rocking.contact.simulation import simulate_with_friction
 
+from ..oracle.contact_reference import simulate_reference
+from ..oracle.time_stepping import time_stepping
 from .cases import DT, as_friction, random_block, random_frictions, random_motion, random_stack
-from .time_stepping import time_stepping
 
 
 def case(rng: np.random.Generator, stacks: bool) -> tuple:
@@ -38,7 +38,7 @@ def compare_with_reference(cases: int, stacks: bool, seed: int) -> tuple[int, in
         length = LENGTH
         if len(fast.events) > 10:
             length = min(LENGTH, fast.events["time"].iloc[10] + 2 * DT)
-        plain = simulate_reference(body, motion, DT, duration=length, **kwargs)
+        plain = simulate_reference(body, motion, DT, duration=length, friction=mus, vertical=up)
         times = [event.time for event in plain.events]
         assert len(times) > 8 or length == LENGTH
         until = times[8] if len(times) > 8 else math.inf

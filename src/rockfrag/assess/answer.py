@@ -27,6 +27,7 @@ from rockfrag.assess.risk import (
     share_target,
 )
 from rockfrag.assess.rules import RuleCheck, check_rules
+from rockfrag.assess.sources import SPACE
 from rockfrag.assess.verdicts import (
     FEW_LEVELS,
     LEVELS,
@@ -182,10 +183,14 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     arrangements = verdicts_of(objects, bodies, motions, ladder)
     now = next(iter(arrangements.values()))
     target = _target(level, hazard, request.years)
-    conversion = find_conversion(now, motions) if level else None
+    conversion = find_conversion(now, motions, request.records) if level else None
     moved = _moved(request, motions.thinned() if brief else motions, measure, asked)
     both_sides = {one.name: one.sides for one in moved}
-    shifts = {"model": BETA_MODEL} | ({"conversion": conversion.shift} if conversion else {})
+    shifts = {"model": BETA_MODEL}
+    if not request.objects.round:
+        shifts["space"] = SPACE
+    if conversion:
+        shifts["conversion"] = conversion.shift
 
     def estimated(one: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
         return estimate(one, now, both_sides, fixed or {}, shifts)

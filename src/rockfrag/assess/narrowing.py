@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from scipy import special
 
 from rockfrag.assess.risk import Estimate
+from rockfrag.assess.sources import SOURCES, Measurement
 
 LIKELY, UNLIKELY = 0.5, 0.01
 """An interval of a share that holds both tells nothing."""
@@ -18,31 +19,8 @@ MOST_NAMED = 2
 """Measurements that are named together."""
 
 
-@dataclass(frozen=True)
-class Measurement:
-    """Something that a user could measure or find out.
-
-    Attributes
-    ----------
-    words
-        What it is.
-    left
-        What it leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care.
-    """
-
-    words: str
-    left: float
-
-
 MEASUREMENTS: Mapping[str, Measurement] = {
-    "conversion": Measurement("the ground velocity (PGV) of the site", 0.0),
-    "period": Measurement("the building's first period to 5 %", 1 / 6),
-    "damping": Measurement("the building's damping to 15 %", 0.4),
-    "width": Measurement("the width on which it stands to 0.5 %", 0.25),
-    "cg_height": Measurement("the height of its centre of gravity to 1 %", 0.2),
-    "restitution": Measurement("its restitution to 1 %", 0.2),
-    "mass": Measurement("its mass to 2 %", 0.1),
-    "hazard": Measurement("a hazard curve of the site", 0.5),
+    name: source.measurement for name, source in SOURCES.items() if source.measurement is not None
 }
 """Measurements by the source of uncertainty that they narrow."""
 

@@ -24,6 +24,13 @@ CONTACT_TOLERANCE = 0.002
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
 
+CONTACT_SPREAD, KNOWN_CONTACT_SPREAD = 0.6, 0.2
+"""Relative standard deviation of the contact tolerance of a scan that was assumed, and of one that was given:
+of ours; for a granite rock on a shaking table 0.5 to 1.9 mm were plausible."""
+
+_RETREATS = (1.0, 0.75, 0.5, 0.25)
+"""Parts of a step towards a contact tolerance that are tried until the object stands."""
+
 ROLLING = 1.0
 """Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
 
@@ -48,6 +55,8 @@ class Objects:
     round
         Whether the base of the object is round: it then rolls on its rim, loses nothing and falls in the worst
         direction.
+    scan
+        The scan as it stands on points within some tolerance; None where dimensions were given.
     livelier
         Factor on every restitution, measured or not [-]; impacts never gain energy.
     tolerances
@@ -67,6 +76,7 @@ class Objects:
     tolerances: Mapping[str, float]
     plane: str
     round: bool = False
+    scan: "Scan | None" = None
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
     doubts: tuple[str, ...] = ()
@@ -128,7 +138,58 @@ class Objects:
             moves["restitution"] = partial(_livelier, self)
         if self.pedestal is not None:
             moves["mass"] = partial(_heavier, self)
-        return moved_to_both_sides(moves, self.tolerances)
+        if self.scan is not None:
+            moves["contact"] = partial(_carried_by, self, self.scan)
+        spreads = dict(self.tolerances)
+        if self.scan is not None:
+            spreads.setdefault("contact", self.scan.spread)
+        return moved_to_both_sides(moves, spreads)
+
+
+@dataclass(frozen=True)
+class Scan:
+    """A scan that stands on all points within some height above the lowest one.
+
+    Attributes
+    ----------
+    shape
+        The scan.
+    tolerance
+        That height [m].
+    retreat
+        Distance by which edges carry further in [m].
+    spread
+        Relative standard deviation of the height [-].
+    """
+
+    shape: Shape
+    tolerance: float
+    retreat: float
+    spread: float
+
+    def block(self, factor: float = 1.0) -> tuple[Block, float, float]:
+        """Return the block where it balances at the least angle, its direction [degrees] and angle [rad].
+
+        Parameters
+        ----------
+        factor
+            On the height up to which points carry.
+        """
+        direction, angle = self.shape.worst_direction(self.tolerance * factor)
+        return self.shape.block(direction, self.tolerance * factor, self.retreat), direction, angle
+
+
+def _carried_by(objects: Objects, scan: Scan, factor: float) -> Objects:
+    """Let points carry up to another height; as near to it as the object still stands."""
+    for part in _RETREATS:
+        try:
+            statue, *_ = scan.block(1 + part * (factor - 1))
+            moved = replace(objects, statue=statue)
+            _ = moved.body
+        except InputError:
+            continue
+        return moved
+    return objects
 
 
 def _wider(objects: Objects, factor: float) -> Objects:
@@ -186,8 +247,9 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     assumed: list[Assumption] = []
     doubts: list[str] = []
     is_round = bool(settings.get("round", False))
+    scan = None
     if "mesh" in settings:
-        statue, plane = _from_mesh(settings, folder, assumed)
+        scan, statue, plane = _from_mesh(settings, folder, assumed)
     else:
         statue, plane = _from_dimensions(settings, assumed, doubts)
     pedestal = None
@@ -211,6 +273,7 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         tolerances=_tolerances(settings),
         plane=plane,
         round=is_round,
+        scan=scan,
         assumed=(*first, *assumed),
         doubts=tuple(doubts),
     )
@@ -255,7 +318,11 @@ def _tolerances(settings: Mapping[str, Any]) -> Mapping[str, float]:
         )
     if "restitution" in given and settings.get("round"):
         raise InputError("key tolerances.restitution: a round base loses nothing; leave it out.")
-    return TOLERANCES | {key: float(given[key]) for key in given if key in TOLERANCES}
+    if "contact" in given and "mesh" not in settings:
+        raise InputError("key tolerances.contact: is that of a scan; leave it out.")
+    return TOLERANCES | {
+        key: float(given[key]) for key in given if key in TOLERANCES or key == "contact"
+    }
 
 
 def _check_restitution(objects: Objects) -> None:
@@ -363,7 +430,7 @@ _FROM_MESH = ("width_m", "height_m", "depth_m", "cg_height_m", "cg_offset_m", "i
 
 def _from_mesh(
     settings: Mapping[str, Any], folder: Path, assumed: list[Assumption]
-) -> tuple[Block, str]:
+) -> tuple[Scan, Block, str]:
     """The planar block of a scanned statue, in the direction towards which it leans over at the least angle."""
     mesh = settings["mesh"]
     needless = [key for key in _FROM_MESH if key in settings]
@@ -393,17 +460,18 @@ def _from_mesh(
                 f"Points of the scan within {1000 * tolerance:g} mm of the lowest one carry; the answer depends "
                 "much "
                 "on that where the foot is uneven.",
-                ("width",),
+                ("contact",),
             )
         )
+    spread = KNOWN_CONTACT_SPREAD if "contact_tolerance_m" in mesh else CONTACT_SPREAD
     try:
         shape = _shape(mesh, folder, mass)
-        direction, angle = shape.worst_direction(tolerance)
-        block = shape.block(direction, tolerance, float(mesh.get("edge_retreat_m", 0.0)))
+        scan = Scan(shape, tolerance, float(mesh.get("edge_retreat_m", 0.0)), spread)
+        block, direction, angle = scan.block()
     except InputError as error:
         raise InputError(_in_keys(str(error))) from None
     plane = f"towards {direction:.0f}° of the mesh, where it balances at {math.degrees(angle):.1f}°"
-    return block, plane
+    return scan, block, plane
 
 
 def _shape(mesh: Mapping[str, Any], folder: Path, mass: float | None) -> Shape:

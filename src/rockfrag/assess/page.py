@@ -18,6 +18,7 @@ from rockfrag.assess.figures import shares_figure, sources_figure
 from rockfrag.assess.glossary import words_used
 from rockfrag.assess.remedies import without_simulation
 from rockfrag.assess.scale import SCALE_WORDS
+from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import (
     NAMES,
     assumptions,
@@ -26,11 +27,12 @@ from rockfrag.assess.words import (
     estimate_words,
     headline,
     helps,
+    main_assumptions,
     positions,
     remedy_words,
     risk,
     share_words,
-    sure,
+    uncertainty,
     value_words,
     worst_direction,
 )
@@ -120,11 +122,7 @@ def _drawn(specs: list[FigureSpec]) -> Mapping[str, Picture]:
 
 
 def _answer(found: Assessment) -> Answer:
-    largest = found.main.largest
-    doubtful = doubts(found)
-    if largest:
-        doubtful.append(f"Most of the uncertainty comes from {NAMES[largest]}.")
-    doubtful.append(worst_direction(found))
+    doubtful = [*doubts(found), *uncertainty(found), worst_direction(found)]
     return Answer(
         asked="Does it topple, how probable is that, and what helps?",
         sentences=[
@@ -140,8 +138,8 @@ def _answer(found: Assessment) -> Answer:
             "as many earthquakes could show (90 %).",
             lambda: shares_figure(found),
         ),
-        rests_on=[sure(found)],
-        could_overturn=doubtful,
+        rests_on=[f"{found.motions.words}.", *main_assumptions(found)],
+        could_change=doubtful,
         questions=[
             ("What helps?", "remedies"),
             ("How does it stand best?", "arrangements"),
@@ -235,9 +233,56 @@ def _arrangements(found: Assessment) -> Section:
 
 
 def _sure(found: Assessment) -> Section:
+    parts: list[Markup | FigureSpec] = [_sources(found), _effects(found)]
+    if found.main.sources:
+        parts.insert(
+            0,
+            FigureSpec(
+                "sources",
+                "How much each source of uncertainty widens the interval.",
+                "What widens the interval.",
+                lambda: sources_figure(found),
+            ),
+        )
+    words = [
+        "The interval holds what is not known; the variances of all its sources are added. What differs from one "
+        "earthquake to the next is not ignorance and stands in the result itself."
+    ]
+    if found.probability or found.share:
+        words.insert(0, f"The result is {estimate_words(found.main)}.")
+    if found.probability:
+        words.append(f"Our scale of risk: {SCALE_WORDS}. The steps are ours.")
+    message = " ".join(uncertainty(found)) or "No interval can be given of sources that all agree."
+    return Section("sure", "How sure that is", message, words, parts)
+
+
+def _sources(found: Assessment) -> Markup:
+    """The sources of the interval, what each adds to it, where its size comes from, and what would narrow it."""
+    rows = []
+    for name, part in parts_of(found.main.sources).items():
+        source = SOURCES[name]
+        measurement = source.measurement
+        rows.append(
+            {
+                "name": _capital(source.words),
+                "part": f"{100 * part:.0f} %",
+                "basis": source.basis,
+                "measure": _capital(measurement.words) if measurement else "–",
+            }
+        )
+    columns = (
+        Column("name", "Not known"),
+        Column("part", "Part of the variance", numeric=True),
+        Column("basis", "Where its size comes from"),
+        Column("measure", "What would narrow it"),
+    )
+    return table_html(pd.DataFrame(rows), columns, "Sources of the interval, the largest first.")
+
+
+def _effects(found: Assessment) -> Markup:
     rows = [
         {
-            "name": NAMES[effect.name],
+            "name": _capital(NAMES[effect.name]),
             "spread": f"± {100 * effect.spread:g} %",
             "lower": value_words(found, effect.lower),
             "upper": value_words(found, effect.upper),
@@ -250,33 +295,10 @@ def _sure(found: Assessment) -> Section:
         Column("lower", "If less", numeric=True),
         Column("upper", "If more", numeric=True),
     )
-    parts: list[Markup | FigureSpec] = [
-        table_html(pd.DataFrame(rows), columns, "What each assumption does to the answer.")
-    ]
-    if found.main.sources:
-        parts.insert(
-            0,
-            FigureSpec(
-                "sources",
-                "How much each source of uncertainty widens the interval.",
-                "What widens the interval.",
-                lambda: sources_figure(found),
-            ),
-        )
-    return Section(
-        "sure",
-        "How sure that is",
-        sure(found),
-        [
-            f"The result is {estimate_words(found.main)}."
-            if found.probability or found.share
-            else "",
-            "The interval adds the variances of all sources. The table moves each assumption alone, by its "
-            "standard "
-            "deviation.",
-            f"Our scale of risk: {SCALE_WORDS}. The steps are ours." if found.probability else "",
-        ],
-        parts,
+    return table_html(
+        pd.DataFrame(rows),
+        columns,
+        "What the answer is with each property moved by its standard deviation.",
     )
 
 
@@ -310,9 +332,8 @@ def _rules(found: Assessment) -> Section:
         "What rules of thumb say",
         "Checks of practice beside the simulation of this object.",
         [
-            "A ratio below 1 is cautious, above 1 unsafe. An object on a pedestal is checked alone and as "
-            "one body "
-            "with it, and the lower amplitude counts, as practice does with three models."
+            "A ratio below 1 is cautious, above 1 unsafe. An object on a pedestal is checked alone and as one "
+            "body with it, and the lower amplitude counts, as practice does with three models."
         ],
         [table_html(table, columns, "Rules held against every motion that topples the object.")],
     )

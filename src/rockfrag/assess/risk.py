@@ -8,13 +8,15 @@ power law, so that each piece is integrated in closed form.  In 50 years the pro
 Its interval is taken on ln λ (on the logit of a share): the variances of its sources are added, each from its own
 calculation, and Student's t has the degrees of freedom of Welch and Satterthwaite.
 
-- motions: jackknife that leaves out an earthquake at a time, of shares with half an earthquake on either side
-  added (Haldane 1956, Anscombe 1956), without which one earthquake that holds every toppling would leave the
-  interval without bound;
+- motions: jackknife that leaves out an earthquake at a time;
 - body, floor: each property moved by its standard deviation to both sides;
 - model: the median amplitude moved by the error of the planar rocking model;
 - conversion: where hazard in PGA or Sa speaks about velocity, see :mod:`rockfrag.assess.conversion`;
 - hazard: its quantiles, where they are given.
+
+For the widths of a share half an earthquake that topples the object and half of one that does not are added
+(Haldane 1956, Anscombe 1956), without which few earthquakes that almost agree would leave the interval without
+bound; for the rate only where one earthquake holds every toppling.
 """
 
 import math
@@ -32,6 +34,9 @@ Floats = NDArray[np.float64]
 
 LEVEL = 0.90
 """Confidence of the intervals."""
+
+HALF = 0.5
+"""Part of an earthquake that is added on either side of counted shares (Haldane 1956, Anscombe 1956)."""
 
 _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 
@@ -119,6 +124,8 @@ class Target:
         To the scale on which intervals are symmetric and back.
     rocks
         Whether the shares are those of motions that make the object rock.
+    added
+        What is added of earthquakes for the widths of sources, see :meth:`on_scale`.
     certain
         The number where all motions agree that it happens; infinite for a level that none reaches.
     """
@@ -127,10 +134,16 @@ class Target:
     forward: Callable[[float], float]
     back: Callable[[float], float]
     rocks: bool = False
+    added: float = 0.0
     certain: float = 1.0
 
     def on_scale(
-        self, verdicts: Verdicts, weights: Floats | None = None, shift: float = 0.0
+        self,
+        verdicts: Verdicts,
+        weights: Floats | None = None,
+        shift: float = 0.0,
+        *,
+        added: float = 0.0,
     ) -> float:
         """Value on the scale of the interval; -∞ where nothing topples.
 
@@ -142,8 +155,15 @@ class Target:
             Weight of each motion, shape (motions,); all alike if None.
         shift
             Logarithm of a factor on all levels.
+        added
+            Earthquakes that are added, of which one topples the object wherever it rocks and one does not: a
+            part of each [-].
         """
         shares = verdicts.shares(weights, rocks=self.rocks)
+        if added:
+            count = len(set(verdicts.events)) - (weights is not None)
+            could = verdicts.shares(weights, rocks=True) > 0
+            shares = (count * shares + added * could) / (count + 2 * added)
         return self.forward(self.of(verdicts.ladder.levels, shares, shift))
 
     def value(self, verdicts: Verdicts, weights: Floats | None = None) -> float:
@@ -153,20 +173,13 @@ class Target:
     def without_each(self, verdicts: Verdicts) -> Floats:
         """Values on the scale without one earthquake each, shape (earthquakes,).
 
-        Half an earthquake that topples the object wherever it rocks, and half of one that does not, are added to
-        those that are left where one of them decides alone.
+        Where one of them decides alone, half an earthquake on either side is added to those that are left.
         """
         weights = event_weights(verdicts.events)
-        found = np.array([self.on_scale(verdicts, w) for w in weights])
+        found = np.array([self.on_scale(verdicts, w, added=self.added) for w in weights])
         if np.isfinite(found).all():
             return found
-        levels, count = verdicts.ladder.levels, len(weights) - 1
-        values = []
-        for w in weights:
-            could = verdicts.shares(w, rocks=True) > 0
-            shares = (count * verdicts.shares(w, rocks=self.rocks) + 0.5 * could) / (count + 1)
-            values.append(self.forward(self.of(levels, shares, 0.0)))
-        return np.array(values)
+        return np.array([self.on_scale(verdicts, w, added=HALF) for w in weights])
 
 
 def _log(value: float) -> float:
@@ -212,6 +225,7 @@ def share_target(level: float, *, rocks: bool = False) -> Target:
         forward=lambda share: float(special.logit(share)),
         back=lambda value: float(special.expit(value)),
         rocks=rocks,
+        added=HALF,
     )
 
 
@@ -268,16 +282,19 @@ def estimate(
     """
     middle = target.on_scale(verdicts)
     if not math.isfinite(middle):
-        return _bounded(target, verdicts, middle, shifts)
+        return _bounded(target, verdicts, middle, moved, shifts)
+
+    def near(one: Verdicts, shift: float = 0.0) -> float:
+        return target.on_scale(one, shift=shift, added=target.added)
+
     sources: dict[str, float] = {}
     left_out = target.without_each(verdicts)
     sources["motions"] = _jackknife(left_out, middle)
     for name, (lower, upper) in moved.items():
-        ends = target.on_scale(lower), target.on_scale(upper)
-        sources[name] = _half_width(*ends, middle)
+        sources[name] = _half_width(near(lower), near(upper), near(verdicts))
     for name, spread in shifts.items():
-        low, high = (target.on_scale(verdicts, shift=sign * spread) for sign in (-1, 1))
-        sources[name] = _half_width(low, high, middle)
+        low, high = (near(verdicts, sign * spread) for sign in (-1, 1))
+        sources[name] = _half_width(low, high, near(verdicts))
     sources |= fixed
     total = math.sqrt(sum(value**2 for value in sources.values()))
     half = _quantile(sources["motions"], total, len(left_out)) * total
@@ -315,22 +332,52 @@ def _quantile(of_motions: float, total: float, groups: int) -> float:
 
 
 def _bounded(
-    target: Target, verdicts: Verdicts, middle: float, shifts: Mapping[str, float]
+    target: Target,
+    verdicts: Verdicts,
+    middle: float,
+    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    shifts: Mapping[str, float],
 ) -> Estimate:
     """Where every motion agrees: as many others could disagree as this number of earthquakes cannot exclude."""
     hidden = 1 - (1 - LEVEL) ** (1 / len(set(verdicts.events)))
     shift = _Z * math.sqrt(sum(spread**2 for spread in shifts.values()))
-    levels, shares = verdicts.ladder.levels, verdicts.shares(rocks=target.rocks)
-    could = np.where(verdicts.shares(rocks=True) > 0, np.maximum(shares, hidden), 0.0)
+
+    def most(one: Verdicts, shift: float = 0.0) -> float:
+        shares = np.maximum(one.shares(rocks=target.rocks), hidden)
+        could = np.where(one.shares(rocks=True) > 0, shares, 0.0)
+        return target.of(one.ladder.levels, could, -shift)
+
+    def least(one: Verdicts, shift: float = 0.0) -> float:
+        shares = np.minimum(one.shares(rocks=target.rocks), 1 - hidden)
+        return target.of(one.ladder.levels, shares, shift)
+
     if math.isinf(target.certain):
         # never reached: hidden motions could be enough at some level, or it lies above the last one
-        least = target.of(levels, could, -shift)
-        return Estimate(math.inf, min(least, float(levels[-1])), math.inf, {})
+        reached = min(most(verdicts, shift), float(verdicts.ladder.levels[-1]))
+        return Estimate(math.inf, reached, math.inf, {})
     if middle > 0:
-        surely = target.of(levels, np.maximum(shares - hidden, 0.0), shift)
-        return Estimate(1.0, target.back(target.forward(surely)), 1.0, {})
-    bound = target.forward(target.of(levels, could, -shift))
-    return Estimate(0.0, 0.0, target.back(bound), {})
+        return Estimate(
+            1.0, target.back(_limit(target, least, verdicts, moved, shift, -1)), 1.0, {}
+        )
+    return Estimate(0.0, 0.0, target.back(_limit(target, most, verdicts, moved, shift, 1)), {})
+
+
+def _limit(
+    target: Target,
+    of: Callable[..., float],
+    verdicts: Verdicts,
+    moved: Mapping[str, tuple[Verdicts, Verdicts]],
+    shift: float,
+    sign: int,
+) -> float:
+    """Limit on the scale, above (1) or below (-1): the bound, with what is not known of the properties."""
+    bound, plain = (target.forward(of(verdicts, by)) for by in (shift, 0.0))
+    ends = [max(sign * target.forward(of(side)) for side in both) for both in moved.values()]
+    if not math.isfinite(plain):
+        # at rest as it is: what could move it decides
+        return sign * max([sign * bound, *ends])
+    further = [max(0.0, end - sign * plain) for end in ends]
+    return bound + sign * _Z * math.sqrt(sum(one**2 for one in further))
 
 
 def estimate_rocking(

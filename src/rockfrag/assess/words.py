@@ -9,22 +9,18 @@ from rockfrag.assess.narrowing import MEASUREMENTS, Narrowed, is_wide, narrowed
 from rockfrag.assess.remedies import Remedy
 from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.assess.scale import SCALE_WORDS, classes
+from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.verdicts import LARGEST_FACTOR
 from rockfrag.report.wording import counted
 
-NAMES: Mapping[str, str] = {
-    "motions": "how much earthquakes differ",
-    "width": "the width on which it stands",
-    "cg_height": "the height of its centre of gravity",
-    "restitution": "the energy that impacts take",
-    "mass": "its mass",
-    "period": "the building's first period",
-    "damping": "the building's damping",
-    "model": "the error of the planar rocking model",
-    "conversion": "the ground velocity, which the given measure does not fix",
-    "hazard": "the hazard curve",
-}
+NAMES: Mapping[str, str] = {name: source.words for name, source in SOURCES.items()}
 """Sources of uncertainty and assumptions as a reader may know them."""
+
+MOST_SOURCES = 3
+"""Sources of uncertainty that are named in a line."""
+
+LEAST_PART = 0.05
+"""Part of the variance from which a source is worth naming [-]."""
 
 MANY = 0.5
 """Share of motions from which an object is said to topple."""
@@ -362,18 +358,41 @@ def _limits(remedy: Remedy, sign: int) -> str:
 
 def sure(found: Assessment) -> str:
     """The motions, what makes the interval wide, what would narrow it, and what was assumed."""
+    return " ".join([f"{found.motions.words}.", *uncertainty(found), *_assumed(found)])
+
+
+def uncertainty(found: Assessment) -> list[str]:
+    """Sentences of what makes the interval wide, and of what would narrow it."""
     main = found.main
-    parts = [f"{found.motions.words}."]
-    if main.largest:
-        parts.append(f"Most of the uncertainty comes from {NAMES[main.largest]}.")
+    lines = []
+    named = [
+        f"{100 * part:.0f} % from {NAMES[name]}"
+        for name, part in parts_of(main.sources).items()
+        if part >= LEAST_PART
+    ]
+    if named:
+        lines.append(f"The variance of the interval comes to {_listed(named[:MOST_SOURCES])}.")
     better = narrowed(main) if found.probability or found.share else None
     if better is not None and not (not_decidable(found) and main is found.share):
-        parts.append(f"{_capital(_narrowing(better))}.")
+        lines.append(f"{_capital(_narrowing(better))}.")
+    return lines
+
+
+def main_assumptions(found: Assessment) -> list[str]:
+    """What was assumed that matters most, a sentence each."""
+    return [one.words for one in all_assumed(found) if one.short][:MOST_ASSUMPTIONS]
+
+
+def _listed(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _assumed(found: Assessment) -> list[str]:
     named, more = _main_assumptions(found)
-    if named:
-        rest = f"; {counted(more, 'more assumption')} on the page" if more else ""
-        parts.append(f"Assumed: {', '.join(named)}{rest}.")
-    return " ".join(parts)
+    if not named:
+        return []
+    rest = f"; {counted(more, 'more assumption')} on the page" if more else ""
+    return [f"Assumed: {', '.join(named)}{rest}."]
 
 
 def _main_assumptions(found: Assessment) -> tuple[list[str], int]:
@@ -404,8 +423,9 @@ def assumptions(found: Assessment) -> list[str]:
     lines.append("It rocks in one plane on sharp rigid edges.")
     if found.directions is not None and math.isfinite(found.directions.factor):
         lines.append(
-            "Records come from directions at random. Neither the worst direction nor both components at once are "
-            "counted in the figures and their intervals."
+            "Motions come in the direction in which they were recorded, at random. The worst direction is not "
+            "counted "
+            "in the figures; that both components act at once is counted in their intervals, as for a square box."
         )
     if math.isfinite(found.sliding_share) and found.share is not None:
         lines.append(

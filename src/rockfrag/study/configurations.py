@@ -8,15 +8,15 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.plausibility import check_density
-from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.measured_restitution import (
     Law,
     Measured,
     MeasuredRestitution,
     Restitution,
-    stack_restitution,
 )
+from rockfrag.rocking.options import FrictionInput, system_of
 from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
 
 
@@ -53,7 +53,17 @@ class Configuration:
     @property
     def statue(self) -> Block:
         """The object's block."""
-        return self.body.statue if isinstance(self.body, Stack) else self.body
+        return self.body.blocks[-1]
+
+    @property
+    def system(self) -> System:
+        """What is shaken: the body with its contacts."""
+        return system_of(self.body, self.friction, self.restitution)
+
+    @property
+    def fallen_names(self) -> tuple[str, ...]:
+        """What tables call the body that fell, by its number in outcomes."""
+        return ("", "pedestal", "statue") if self.pedestal else ("", "statue")
 
     @property
     def slug(self) -> str:
@@ -172,7 +182,7 @@ def with_restitution(
         return configuration
     value = (of_pedestal, of_object) if configuration.pedestal else of_object
     restitution = MeasuredRestitution(value, law)  # type: ignore[arg-type]
-    stack_restitution(configuration.body, restitution)
+    system_of(configuration.body, restitution=restitution)
     return replace(configuration, restitution=restitution)
 
 
@@ -198,6 +208,8 @@ def with_friction(
     ground, interface = (
         (one["static"], one["kinetic"]) if isinstance(one, Mapping) else one for one in each
     )
-    friction = (ground, interface) if configuration.pedestal else ground
-    interface_frictions(configuration.body, friction)
+    friction: dict[str, Any] = {"ground": ground}
+    if configuration.pedestal:
+        friction["interface"] = interface
+    system_of(configuration.body, friction)
     return replace(configuration, friction=friction)

@@ -11,39 +11,19 @@ import math
 import numba
 import numpy as np
 
-from rockfrag.rocking import Block, Body
+from rockfrag.system import Block, Column, Stack, System, as_system
+
+from .standing import standing
 
 
-def body_table(body: Body) -> np.ndarray:
+def body_table(system: System) -> np.ndarray:
     """Mass, inertia, corners and top edges from the centre, tilt of the base and of the top, start (x, y)."""
-    if isinstance(body, Block):
-        arms, blocks, tops = [body.arm], [body], [(0.0, 0.0)]
-    else:
-        blocks = [body.pedestal, body.statue]
-        arms = [body.pedestal.arm, body.statue_arm]
-        tops = [(body.pedestal.b, body.pedestal.lean), (0.0, 0.0)]
-    rows = []
-    for k, (block, arm, (half, lean)) in enumerate(zip(blocks, arms, tops, strict=True)):
-        row = [block.mass, block.centroidal_inertia]
-        for s in (-1, 1):
-            row += [-arm(s).x, -arm(s).y]
-        middle = np.array([-block.centre.x, -block.centre.y])
-        middle += np.array([math.sin(lean), math.cos(lean)]) * block.height
-        for s in (-1, 1):
-            edge = middle + s * half * np.array([math.cos(lean), -math.sin(lean)])
-            row += edge.tolist()
-        base_tilt = tops[k - 1][1] if k else 0.0
-        row += [base_tilt, lean]
-        if k == 0:
-            row += [
-                body.centre.x if isinstance(body, Block) else blocks[0].centre.x,
-                blocks[0].centre.y,
-            ]
-        else:
-            pole, own = body.interface_pole(1), body.statue_arm(1)
-            row += [pole.x + own.x, pole.y + own.y]
-        rows.append(row)
-    return np.array(rows)
+    return np.array(
+        [
+            [b.mass, b.inertia, *b.corners.ravel(), *b.edges.ravel(), b.base, b.face, *b.centre]
+            for b in standing(system)
+        ]
+    )
 
 
 @numba.njit(cache=True)
@@ -87,17 +67,18 @@ def _candidates(table, q, points, axes, gaps, below):
 
 @numba.njit(cache=True)
 def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q, v, rows):
-    """March; fills rows (samples, 6 bodies) with q, v at samples.
+    """March; fills rows (samples, 6 n) with q, v at samples.
 
     Returns the body that fell (0: none), when, and the number of rows.
     """
     n = table.shape[0]
     h = dt / substeps
-    points, axes, gaps = np.zeros((6, 2)), np.zeros(6), np.zeros(6)
-    below = np.zeros(6, np.int64)
-    jn, jt = np.zeros((6, 3 * n)), np.zeros((6, 3 * n))
-    wn, wt = np.zeros(6), np.zeros(6)
-    pn, pt = np.zeros(6), np.zeros(6)
+    m = 4 * n
+    points, axes, gaps = np.zeros((m, 2)), np.zeros(m), np.zeros(m)
+    below = np.zeros(m, np.int64)
+    jn, jt = np.zeros((m, 3 * n)), np.zeros((m, 3 * n))
+    wn, wt = np.zeros(m), np.zeros(m)
+    pn, pt = np.zeros(m), np.zeros(m)
     inverse = np.zeros(3 * n)
     for k in range(n):
         inverse[3 * k] = inverse[3 * k + 1] = 1.0 / table[k, 0]
@@ -171,7 +152,7 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
                 moving = max(moving, abs(v[d]))
             for k in range(n):
                 relative = q[3 * k + 2] - (q[3 * k - 1] if k else 0.0)
-                off = count < 3 and k == 1 and _apart(table, q)
+                off = k > 0 and _apart(table, q, k)
                 if abs(q[3 * k + 2]) >= math.pi / 2 or abs(relative) >= math.pi / 2 or off:
                     return k + 1, i * dt + (j + 1) * h, i + 1
         if i >= last and moving < 1e-4:
@@ -180,22 +161,22 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
 
 
 @numba.njit(cache=True)
-def _apart(table, q):
-    """Whether the statue's base no longer lies over the pedestal's top."""
-    tl = q[2] + table[0, 11]
+def _apart(table, q, above):
+    """Whether a base no longer lies over the face below."""
+    tl = q[3 * above - 1] + table[above - 1, 11]
     tx, ty = math.cos(tl), -math.sin(tl)
     ends = np.empty((2, 2))
-    for k, first in ((0, 6), (1, 2)):
+    for part, k, first in ((0, above - 1, 6), (1, above, 2)):
         c, s = math.cos(q[3 * k + 2]), math.sin(q[3 * k + 2])
         for i in range(2):
             ex, ey = table[k, first + 2 * i], table[k, first + 1 + 2 * i]
             px, py = q[3 * k] + ex * c + ey * s, q[3 * k + 1] - ex * s + ey * c
-            ends[k, i] = px * tx + py * ty
+            ends[part, i] = px * tx + py * ty
     return ends[1, 0] > ends[0, 1] or ends[1, 1] < ends[0, 0]
 
 
 def time_stepping(
-    body: Body,
+    body: Block | Stack | Column | System,
     acceleration: np.ndarray,
     dt: float,
     friction: tuple[float, ...],
@@ -207,7 +188,7 @@ def time_stepping(
     g: float = 9.81,
 ) -> tuple[bool, int, float, np.ndarray]:
     """Whether, which and when a body fell, and q, v at the samples; ``theta0`` turns the uppermost body."""
-    table = body_table(body)
+    table = body_table(as_system(body))
     n = len(table)
     q = np.zeros(3 * n)
     for k in range(n):

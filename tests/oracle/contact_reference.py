@@ -2,11 +2,11 @@
 
 Dormand and Prince's 8(5,3) pair from sample to sample, every event located on its dense output, and at every
 event an enumeration of all modes that the closed contacts allow.  The mechanics is that of
-:mod:`rockfrag.rocking.contact.reference_model`; nothing but the bodies is shared with the fast kernels.
+:mod:`contact_model`; nothing but the bodies is shared with the fast kernels.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,8 +15,11 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
-from rockfrag.rocking.contact.reference_model import (
+from rockfrag.system import Block, Column, Stack, System, as_system
+from rockfrag.system.contact import Friction
+from rockfrag.units import GRAVITY
+
+from .contact_model import (
     AT_EDGE,
     FULL,
     OPEN,
@@ -27,8 +30,6 @@ from rockfrag.rocking.contact.reference_model import (
     Model,
     Solution,
 )
-from rockfrag.system.blocks import Block, Body
-from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
 Key = tuple[str, int, int]
@@ -101,11 +102,11 @@ class ContactResponse:
 
 
 def simulate_reference(
-    body: Body,
+    body: Block | Stack | Column | System,
     acceleration: ArrayLike,
     dt: float,
     *,
-    friction: FrictionInput,
+    friction: Sequence[float],
     vertical: ArrayLike | None = None,
     theta0: ArrayLike | None = None,
     omega0: ArrayLike | None = None,
@@ -118,14 +119,14 @@ def simulate_reference(
     Parameters
     ----------
     body
-        A block or a stack.
+        What stands.
     acceleration, vertical
         Horizontal and vertical acceleration of the ground [m/s²], shape (n,), linear between samples and
         zero one sample after the last.
     dt
         Time between samples [s].
     friction
-        See :func:`rockfrag.rocking.contact.friction.interface_frictions`.
+        Of each contact from below, static and kinetic.
     theta0, omega0
         Rotations [rad] and angular velocities [rad/s] at the start, of bodies that touch at the corners which
         these leave.
@@ -145,9 +146,9 @@ def simulate_reference(
         raise InputError("acceleration: needs two or more samples, and vertical as many.")
     if not all(np.isfinite(motion).all() for motion in motions):
         raise InputError("acceleration: every sample must be a finite number of m/s².")
-    model = Model(body, interface_frictions(body, friction), g)
-    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.statue)
-    slowest = min(block.frequency(s, g) for block in blocks for s in (1, -1))
+    system = as_system(body)
+    model = Model(system, tuple(Friction(mu, mu) for mu in friction), g)
+    slowest = 0.3 * model.speed / model.size
     theta, omega = (
         [0.0] * model.count if x is None else np.atleast_1d(np.asarray(x, float)).tolist()
         for x in (theta0, omega0)

@@ -16,8 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.system.blocks import Block, Body, Vector
+from rockfrag.system import System
+from rockfrag.system.blocks import Vector
 from rockfrag.system.contact import Friction
+
+from .standing import standing
 
 Array = NDArray[np.float64]
 
@@ -75,44 +78,35 @@ class Model:
 
     Parameters
     ----------
-    body
-        A block or a stack.
+    system
+        Planar bodies.
     friction
         Of each interface, the ground first.
     g
         Gravity [m/s²].
     """
 
-    def __init__(self, body: Body, friction: tuple[Friction, ...], g: float) -> None:
+    def __init__(self, system: System, friction: tuple[Friction, ...], g: float) -> None:
         self.g, self.friction = g, friction
-        if isinstance(body, Block):
-            blocks, self.tilt = [body], [0.0]
-            arms = [[body.arm(s) for s in FULL]]
-            self.face = [(Vector(0.0, 0.0), math.inf)]
-        else:
-            pedestal = body.pedestal
-            blocks = [pedestal, body.statue]
-            arms = [[arm(s) for s in FULL] for arm in (pedestal.arm, body.statue_arm)]
-            self.tilt = [0.0, pedestal.lean]
-            top = Vector(0.0, pedestal.height).turned(pedestal.lean).minus(pedestal.centre)
-            self.face = [(Vector(0.0, 0.0), math.inf), (top, pedestal.b)]
-        self.count = len(blocks)
+        bodies = standing(system)
+        self.count = len(bodies)
+        self.tilt = [body.base for body in bodies]
+        self.face = [(Vector(0.0, 0.0), math.inf)]
+        for body in bodies[:-1]:
+            left, right = body.edges
+            middle = (left + right) / 2
+            self.face.append((Vector(*middle), float(np.hypot(*(right - left))) / 2))
         # corners of each base, from the centre of the standing body
         self.corner = [
-            {s: Vector(0.0, 0.0).minus(arm) for s, arm in zip(FULL, pair, strict=True)}
-            for pair in arms
+            {s: Vector(*corner) for s, corner in zip(FULL, body.corners, strict=True)}
+            for body in bodies
         ]
-        self.mass = np.array(
-            [m for block in blocks for m in (block.mass, block.mass, block.centroidal_inertia)]
-        )
-        self.weight = g * sum(block.mass for block in blocks)
-        self.size = blocks[-1].b
+        self.mass = np.array([m for b in bodies for m in (b.mass, b.mass, b.inertia)])
+        self.weight = g * float(self.mass[::3].sum())
+        left, right = bodies[-1].corners
+        self.size = float(np.hypot(*(right - left))) / 2
         self.speed = math.sqrt(g * self.size)
-        centres = [Vector(*blocks[0].centre)]
-        if not isinstance(body, Block):
-            pole, arm = body.interface_pole(1), body.statue_arm(1)
-            centres.append(Vector(pole.x + arm.x, pole.y + arm.y))
-        self.standing = np.array([x for c in centres for x in (c.x, c.y, 0.0)])
+        self.standing = np.array([x for b in bodies for x in (*b.centre, 0.0)])
 
     def posed(self, theta: list[float], omega: list[float]) -> tuple[Array, Array]:
         """Coordinates and velocities with every body on the corner that its rotation leaves it."""

@@ -1,0 +1,129 @@
+"""What is not known, source by source: its words, where its size comes from, and what would make it smaller.
+
+Only what is not known stands here and widens intervals. What differs from one earthquake to the next, such as the
+velocity that comes with a given PGA, is in the motions and so in the shares and probabilities themselves.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+SPACE = 0.13
+"""Standard deviation of ln level of the second horizontal component, |ln(0.47 g / 0.54 g)|: the median level of
+a box of 0.35 × 0.35 × 1.2 m in space under both components of 25 records of FEMA P-695 over that along one of
+them."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Something that a user could measure or find out.
+
+    Attributes
+    ----------
+    words
+        What it is.
+    left
+        What it leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care.
+    """
+
+    words: str
+    left: float
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source of uncertainty.
+
+    Attributes
+    ----------
+    words
+        What it is, as a reader may know it.
+    basis
+        Where its size comes from.
+    measurement
+        What would make it smaller; None where no user can.
+    """
+
+    words: str
+    basis: str
+    measurement: Measurement | None = None
+
+
+SOURCES: Mapping[str, Source] = {
+    "motions": Source(
+        "how much earthquakes differ",
+        "Jackknife that leaves out an earthquake at a time (Efron and Stein 1981)",
+    ),
+    "width": Source(
+        "the width on which it stands",
+        "± 2 %, of ours: rounded and chipped edges carry some millimetres further in",
+        Measurement("the width on which it stands to 0.5 %", 0.25),
+    ),
+    "contact": Source(
+        "which points of the scan carry",
+        "± 60 % of the contact tolerance, of ours: for a granite rock on a shaking table 0.5 to 1.9 mm were "
+        "plausible",
+        Measurement("the points on which it stands, traced at its foot", 1 / 3),
+    ),
+    "cg_height": Source(
+        "the height of its centre of gravity",
+        "± 5 %, of ours: half the height is a guess, a drawing is better",
+        Measurement("the height of its centre of gravity to 1 %", 0.2),
+    ),
+    "restitution": Source(
+        "the energy that impacts take",
+        "± 5 % of what momentum leaves (Housner 1963), of ours",
+        Measurement("its restitution to 1 %", 0.2),
+    ),
+    "mass": Source(
+        "its mass",
+        "± 20 %, of ours: stones differ in density, and statues fill a part of their box",
+        Measurement("its mass to 2 %", 0.1),
+    ),
+    "period": Source(
+        "the building's first period",
+        "± 30 % of the rule of EN 1998-1, ± 10 % of one that is given, of ours",
+        Measurement("the building's first period to 5 %", 1 / 6),
+    ),
+    "damping": Source(
+        "the building's damping",
+        "± 40 %, of ours",
+        Measurement("the building's damping to 15 %", 0.4),
+    ),
+    "model": Source(
+        "the error of the planar rocking model",
+        "ln(16.9/13.9) of the median level, seen on one measured rock to which the model had been fitted",
+    ),
+    "space": Source(
+        "both horizontal components at once",
+        f"{SPACE:g} of ln level: a square box in space has 0.88 of the median of one component; not counted for "
+        "round "
+        "bases",
+    ),
+    "conversion": Source(
+        "the ground velocity, which the given measure does not fix",
+        "How far the mean PGV of a site's motions may be from that of the set, by magnitude, distance, ground "
+        "and site",
+        Measurement("the ground velocity (PGV) of the site", 0.0),
+    ),
+    "hazard": Source(
+        "the hazard curve",
+        "Its quantiles; exponents of 2.4 to 3.6 where one level was given (EN 1998-1)",
+        Measurement("a hazard curve of the site", 0.5),
+    ),
+}
+"""Sources of uncertainty by name."""
+
+
+def parts_of(sources: Mapping[str, float]) -> dict[str, float]:
+    """Part of each source in the variance of an interval, the largest first [-]; empty where one has no bound.
+
+    Parameters
+    ----------
+    sources
+        Standard deviations by name.
+    """
+    total = sum(value**2 for value in sources.values())
+    if not 0 < total < float("inf"):
+        return {}
+    ranked = sorted(sources, key=lambda name: -sources[name])
+    return {name: sources[name] ** 2 / total for name in ranked}

@@ -1,0 +1,124 @@
+"""What differs between earthquakes is in the probability, what is not known in the interval."""
+
+import html
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.conversion import OF_THE_SITE, UNKNOWN, spread_of_site
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.page import page_of
+from rockfrag.assess.request import Records, make_request
+from rockfrag.assess.sources import SOURCES, SPACE, parts_of
+from rockfrag.assess.words import five_lines
+
+
+def asked(**settings):
+    return make_request(settings, "test")
+
+
+def set_of(records: int, rng: np.random.Generator, noise) -> tuple[MotionSet, np.ndarray]:
+    """Motions of records with known magnitude, distance and ground; the numbers too."""
+    about = np.column_stack(
+        [rng.uniform(6, 8, records), rng.uniform(0, 4, records), rng.uniform(5, 7, records)]
+    )
+    motions = tuple(
+        replace(
+            noise(0, 20),
+            name=f"{i}",
+            metadata={
+                "event": f"e{i // 3}", "station": f"s{i}", "magnitude": float(m),
+                "distance_km": math.exp(r), "vs30_m_s": math.exp(v),
+            },
+        )
+        for i, (m, r, v) in enumerate(about)
+    )  # fmt: skip
+    return MotionSet(motions, motions, (), "made"), about
+
+
+def test_what_is_known_of_the_earthquakes_is_no_ignorance(noise, random):
+    motions, about = set_of(60, random, noise)
+    logs = 1.0 + about @ np.array([0.5, -0.2, -0.3])
+    parts = np.array([0.5, -0.2, -0.3]) * list(UNKNOWN.values())
+    all_unknown = spread_of_site(logs, motions, Records())
+    assert all_unknown == pytest.approx(np.linalg.norm(parts))
+    known = spread_of_site(logs, motions, Records(magnitude=7.0, distance_km=10.0))
+    assert known == pytest.approx(abs(parts[2]))
+
+
+def test_what_differs_between_motions_of_one_site_is_not_all_ignorance(noise, random):
+    motions, _ = set_of(3000, random, noise)
+    logs = 0.4 * random.standard_normal(3000)
+    assert spread_of_site(logs, motions, Records()) == pytest.approx(
+        0.4 * math.sqrt(OF_THE_SITE), rel=0.05
+    )
+    few = replace(motions, ground=motions.ground[:20])
+    spread = logs[:20].std(ddof=1)
+    assert spread_of_site(logs[:20], few, Records()) == pytest.approx(
+        spread * math.sqrt(OF_THE_SITE)
+    )
+
+
+def test_every_source_says_where_its_size_comes_from(motions):
+    request = asked(
+        width="35 cm", height="1.2 m", pedestal={"width": "50 cm", "height": "90 cm"}, floor="2/4",
+        pga="0.5 g", return_period="475 years",
+    )  # fmt: skip
+    found = assess_with(request, motions.at(request.place))
+    assert {"space", "model", "period", "conversion", "hazard"} <= set(found.main.sources)
+    assert set(found.main.sources) <= set(SOURCES)
+    parts = parts_of(found.main.sources)
+    assert sum(parts.values()) == pytest.approx(1)
+    assert list(parts.values()) == sorted(parts.values(), reverse=True)
+    page = html.unescape(page_of(found))
+    for name in found.main.sources:
+        assert SOURCES[name].basis.split(",")[0].split("(")[0] in page
+    # the three largest are named, and what would narrow the interval
+    for name in list(parts)[:3]:
+        assert SOURCES[name].words in five_lines(found)[4]
+
+
+def test_both_components_count_for_a_rectangular_base_only(motions):
+    square, rounded = (
+        assess_with(asked(width="35 cm", height="1.2 m", pga="0.6 g", **more), motions, brief=True)
+        for more in ({}, {"round": True})
+    )
+    assert "space" in square.share.sources and "space" not in rounded.share.sources
+    assert pytest.approx(math.log(0.54 / 0.47), abs=0.01) == SPACE
+
+
+@pytest.fixture(scope="module")
+def on_feet(tmp_path_factory):
+    """A block of 0.3 × 0.3 × 1 m on a plate of 0.2 m at 1 mm below it: which carries depends on the tolerance."""
+    trimesh = pytest.importorskip("trimesh")
+    block = trimesh.creation.box((0.3, 0.3, 1.0))
+    block.apply_translation((0, 0, 0.501))
+    plate = trimesh.creation.box((0.2, 0.2, 0.001))
+    plate.apply_translation((0, 0, 0.0005))
+    path = tmp_path_factory.mktemp("scan") / "feet.stl"
+    trimesh.util.concatenate([block, plate]).export(path)
+    return path
+
+
+def test_which_points_carry_is_a_source_of_a_scan(on_feet, motions):
+    def of(**mesh):
+        return asked(mesh={"file": str(on_feet), **mesh}, mass="200 kg", pga="0.6 g")
+
+    request = of()
+    (contact,) = [one for one in request.objects.variants() if one.name == "contact"]
+    # 2 mm reach the block, 0.8 mm only the plate
+    assert request.objects.statue.width == pytest.approx(0.3, rel=1e-3)
+    assert contact.lower.statue.width == pytest.approx(0.2, rel=1e-3)
+    assert contact.upper.statue.width == pytest.approx(0.3, rel=1e-3)
+    measured = of(contact_tolerance="2 mm")
+    (known,) = [one for one in measured.objects.variants() if one.name == "contact"]
+    assert known.lower.statue.width == pytest.approx(0.3, rel=1e-3)
+    blind, narrowed = (
+        assess_with(one, motions, brief=True).amplitudes[0.5].sources["contact"]
+        for one in (request, measured)
+    )
+    # half of ln(0.3/0.2): the level grows at least as the width does
+    assert blind > 0.2 > 0.02 > narrowed

@@ -1,0 +1,111 @@
+"""Random columns, and their integration by the planar kernels alone."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rockfrag.engines.planar.integrate import (
+    Book,
+    Shaking,
+    event_columns,
+    history_columns,
+    integrate,
+)
+from rockfrag.engines.planar.records import posed, system_record, working_memory
+from rockfrag.system import Block, Column, ImpactLaw, System, as_system
+
+from .cases import DT
+
+G = 9.81
+
+
+class Found(NamedTuple):
+    """What came out: histories at the samples, shape (n, bodies), and counts."""
+
+    system: System
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    slip: np.ndarray
+    residual: np.ndarray
+    events: np.ndarray
+    fallen: int
+    when: float
+    work: np.void
+
+    @property
+    def theta(self) -> np.ndarray:
+        return self.position[:, 2::3]
+
+
+def random_column(rng: np.random.Generator, bodies: int) -> Column:
+    """Draw a column that narrows upwards a little, centres off the middle, uneven bases."""
+    blocks, offsets = [], []
+    width = rng.uniform(0.3, 1.0)
+    for k in range(bodies):
+        height = width * rng.uniform(0.3, 3.0)
+        blocks.append(
+            Block(
+                width,
+                height,
+                rng.uniform(300, 3000) * width**2 * height,
+                cg_height=height * rng.uniform(0.4, 0.6),
+                cg_offset=rng.uniform(-0.03, 0.03) * width,
+                lean=rng.uniform(-0.003, 0.003),
+            )
+        )
+        if k:
+            offsets.append(rng.uniform(-0.02, 0.02) * width)
+        width *= rng.uniform(0.7, 1.05)
+    return Column(tuple(blocks), tuple(offsets))
+
+
+def with_contacts(
+    thing: object, frictions: list[float], laws: list[ImpactLaw] | None = None
+) -> System:
+    """Give the contacts of a system their friction and laws."""
+    from dataclasses import replace
+
+    from rockfrag.system import Contact
+    from rockfrag.system.contact import checked_friction
+
+    system = as_system(thing)
+    contacts = []
+    for k, contact in enumerate(system.contacts):
+        assert isinstance(contact, Contact)
+        changed = replace(contact, friction=checked_friction("friction", frictions[k]))
+        contacts.append(replace(changed, law=laws[k]) if laws else changed)
+    return replace(system, contacts=tuple(contacts))
+
+
+def run(
+    system: System,
+    motion: np.ndarray,
+    dt: float = DT,
+    *,
+    vertical: np.ndarray | None = None,
+    theta: list[float] | None = None,
+    closing: float = 1e-6,
+    substeps: int = 2,
+    free: int = 800,
+) -> Found:
+    """Integrate a system through a motion and on until it rests or has fallen."""
+    p, w, n = system_record(system, G), working_memory(), system.count
+    start = posed(p, theta or [0.0] * n, [0.0] * n)
+    up = np.zeros(0) if vertical is None else vertical
+    history = np.zeros((motion.size + free, history_columns(n)))
+    events = np.zeros((100_000, event_columns(n)))
+    done, count, when = integrate(
+        p, Shaking(motion, up, dt, 1.0, substeps, free), start, closing, Book(history, events), w
+    )
+    history = history[:done]
+    q, v = history[:, : 3 * n], history[:, 3 * n : 6 * n]
+    kinetic = (0.5 / p["inverse"][: 3 * n] * v**2).sum(axis=1)
+    potential = G * (p["mass"][:n] * q[:, 1::3]).sum(axis=1)
+    work, rubbed, struck = history[:, -4:-1].T
+    total = kinetic + potential - work + rubbed + struck
+    unit = max(G * float(p["mass"][:n] @ p["standing"][1 : 3 * n : 3]), float(np.abs(work).max()))
+    return Found(
+        system, np.arange(done) * dt, q, v, history[:, 6 * n : 7 * n], (total - total[0]) / unit,
+        events[:count], int(w["fallen"]), float(when), w,
+    )  # fmt: skip

@@ -1,0 +1,212 @@
+"""Columns of any number of bodies: limits, invariances, and a plain time stepping beside them."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rockfrag.system import Block, Column, System
+from rockfrag.system.body import Interval, RigidBody
+from rockfrag.system.contact import Contact
+
+from ..oracle.contact_reference import simulate_reference
+from ..oracle.time_stepping import time_stepping
+from .cases import DT, random_motion
+from .columns import Found, random_column, run, with_contacts
+
+
+def early(found: Found, events: int = 6) -> int:
+    """Number of samples before an event."""
+    times = found.events[:, 0]
+    return (
+        int(np.searchsorted(found.time, times[events])) if len(times) > events else len(found.time)
+    )
+
+
+def opening(found: Found) -> float:
+    """Return the instant at which a joint opens or slides first: a column that falls throws its bodies off."""
+    for event in found.events:
+        number = int(event[3]) >> 4
+        while number:
+            if number & 15 != 3 + 4:
+                return float(event[0])
+            number >>= 4
+    return math.inf
+
+
+def on_a_foot(rng: np.random.Generator, bodies: int) -> tuple[System, Block]:
+    """Wide bodies on one that has a narrow foot, so that no joint opens; and all of them as one block."""
+    foot, wide = rng.uniform(0.04, 0.15), Interval(-2.0, 2.0)
+    heights, masses = rng.uniform(0.6, 1.2, bodies) / bodies, rng.uniform(20, 100, bodies)
+    inertias = masses * rng.uniform(0.02, 0.1, bodies)
+    made = [
+        RigidBody(m, i, (0.0, 0.0, h / 2), Interval(-foot, foot) if k == 0 else wide, h, wide)
+        for k, (m, i, h) in enumerate(zip(masses, inertias, heights, strict=True))
+    ]
+    middles = np.cumsum(heights) - heights / 2
+    centre = float(masses @ middles / masses.sum())
+    inertia = float(inertias.sum() + masses @ (middles - centre) ** 2)
+    whole = Block(2 * foot, float(heights.sum()), float(masses.sum()), inertia, centre)
+    return System(tuple(made), (Contact(),) * bodies), whole
+
+
+@pytest.mark.parametrize("bodies", [2, 3, 5, 12])
+def test_joints_that_do_not_open_leave_one_block(bodies: int) -> None:
+    rng = np.random.default_rng(bodies)
+    fell = 0
+    for _ in range(6):
+        column, whole = on_a_foot(rng, bodies)
+        motion = 2.5 * random_motion(rng)
+        many, single = run(column, motion), run(whole.system(), motion)
+        assert many.fallen > 0 or single.fallen == 0
+        n = min(early(single), int(np.searchsorted(many.time, opening(many))))
+        for k in range(bodies):
+            np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-7)
+        assert (many.fallen > 0) == (single.fallen > 0)
+        fell += single.fallen > 0
+    assert 0 < fell < 6
+
+
+def test_a_light_body_on_top_changes_what_is_below_in_proportion_to_its_mass() -> None:
+    rng = np.random.default_rng(2)
+    compared = 0
+    for _ in range(8):
+        column = random_column(rng, 2)
+        mus, motion = list(rng.uniform(0.3, 0.8, 2)), random_motion(rng)
+        bare = run(with_contacts(column, mus), motion)
+        n = early(bare, 4)
+        differences = []
+        for mass in (1e-2, 1e-4, 1e-6):
+            top = Block(0.5 * column.blocks[-1].width, 0.1, mass * column.mass)
+            taller = Column((*column.blocks, top), (*(column.offsets or ()), 0.0))
+            found = run(with_contacts(taller, [*mus, 0.5]), motion)
+            m = min(n, len(found.time))
+            differences.append(float(np.abs(found.theta[:m, :2] - bare.theta[:m]).max()))
+        if len(bare.events) < 4:
+            continue
+        compared += 1
+        assert differences[2] < 1e-4
+        assert differences[2] <= 0.05 * differences[0] + 1e-9
+    assert compared >= 3
+
+
+@pytest.mark.parametrize("bodies", [3, 4, 8])
+def test_the_ledger_of_energy_of_a_column_closes(bodies: int) -> None:
+    rng = np.random.default_rng(bodies)
+    for _ in range(6):
+        column = with_contacts(random_column(rng, bodies), list(rng.uniform(0.2, 0.9, bodies)))
+        found = run(column, random_motion(rng), vertical=0.3 * random_motion(rng))
+        assert np.abs(found.residual).max() < 2e-8
+
+
+@pytest.mark.parametrize("bodies", [3, 5])
+def test_the_mirror_image_of_a_column_moves_as_the_mirror_image(bodies: int) -> None:
+    rng = np.random.default_rng(bodies)
+    for _ in range(4):
+        column = random_column(rng, bodies)
+        mirrored = Column(
+            tuple(replace(b, cg_offset=-b.cg_offset, lean=-b.lean) for b in column.blocks),
+            tuple(-x for x in column.offsets or ()),
+        )
+        mus, motion = list(rng.uniform(0.3, 0.8, bodies)), random_motion(rng)
+        found = run(with_contacts(column, mus), motion)
+        other = run(with_contacts(mirrored, mus), -motion)
+        n = early(found, 5)
+        np.testing.assert_allclose(found.theta[:n], -other.theta[:n], atol=1e-9)
+        np.testing.assert_allclose(found.slip[:n], -other.slip[:n], atol=1e-9)
+
+
+def test_a_larger_column_moves_alike_in_longer_time() -> None:
+    rng = np.random.default_rng(3)
+    for ratio in (0.3, 4.0):
+        column = random_column(rng, 3)
+        larger = Column(
+            tuple(
+                Block(
+                    ratio * b.width, ratio * b.height, ratio**3 * b.mass, lean=b.lean,
+                    cg_height=ratio * b.h, cg_offset=ratio * b.cg_offset,
+                )
+                for b in column.blocks
+            ),
+            tuple(ratio * x for x in column.offsets or ()),
+        )  # fmt: skip
+        blocks = tuple(replace(b, cg_height=b.h) for b in column.blocks)
+        mus, motion = [0.5, 0.6, 0.7], random_motion(rng)
+        found = run(with_contacts(Column(blocks, column.offsets), mus), motion)
+        other = run(with_contacts(larger, mus), motion, DT * math.sqrt(ratio))
+        n = early(found, 5)
+        np.testing.assert_allclose(found.theta[:n], other.theta[:n], atol=1e-7)
+
+
+def test_without_a_motion_a_column_rests_for_ever() -> None:
+    rng = np.random.default_rng(4)
+    for bodies in (3, 7, 12):
+        column = with_contacts(random_column(rng, bodies), [0.3] * bodies)
+        found = run(column, np.zeros(50))
+        assert (found.velocity == 0).all() and found.fallen == 0
+        assert len(found.events) <= 1
+
+
+def test_a_column_tilted_as_one_falls_as_one_until_a_joint_opens() -> None:
+    drums = Column(tuple(Block(1.0, 0.8, 900.0) for _ in range(6)))
+    whole = Block(1.0, 4.8, 5400.0)
+    tilt = 1.05 * whole.alpha
+    many = run(drums.system(), np.zeros(300), theta=[tilt] * 6)
+    single = run(whole.system(), np.zeros(300), theta=[tilt])
+    assert many.fallen == 1 and single.fallen == 1
+    n = int(np.searchsorted(many.time, many.events[0, 0]))
+    assert n > 50
+    for k in range(6):
+        np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-9)
+
+
+def test_histories_of_three_bodies_are_those_of_the_plain_reference() -> None:
+    rng = np.random.default_rng(6)
+    compared = 0
+    for _ in range(3):
+        column, mus = random_column(rng, 3), list(rng.uniform(0.3, 0.8, 3))
+        motion, up = random_motion(rng), 0.3 * random_motion(rng)
+        found = run(with_contacts(column, mus), motion, vertical=up)
+        times = found.events[:, 0]
+        length = float(times[7]) if len(times) > 7 else 3.0
+        plain = simulate_reference(
+            column, motion, DT, friction=mus, vertical=up, duration=length + DT
+        )
+        n = min(early(found), len(plain.time) - 1)
+        np.testing.assert_allclose(found.theta[:n], plain.theta[:n], atol=2e-6)
+        np.testing.assert_allclose(found.slip[:n], plain.slip[:n], atol=2e-6)
+        compared += len(times) > 7
+    assert compared >= 1
+
+
+def outcomes_beside_stepping(cases: int, bodies: tuple[int, ...], seed: int, step: float) -> tuple:
+    """Count outcomes that differ from those of time stepping, and falls."""
+    rng = np.random.default_rng(seed)
+    differing = fallen = 0
+    for i in range(cases):
+        n = bodies[i % len(bodies)]
+        column, mus = random_column(rng, n), list(rng.uniform(0.2, 0.9, n))
+        motion, up = 1.3 * random_motion(rng), 0.3 * random_motion(rng)
+        found = run(with_contacts(column, mus), motion, vertical=up, closing=1e-4)
+        fell, _, _, _ = time_stepping(column, motion, DT, tuple(mus), step=step, vertical=up)
+        fallen += found.fallen > 0
+        if fell != (found.fallen > 0):
+            print(f"case {i} of {n} bodies: {found.fallen} at {found.when:.3f} s, stepping {fell}")
+            differing += 1
+    return differing, fallen
+
+
+def test_outcomes_of_columns_are_those_of_time_stepping() -> None:
+    differing, fallen = outcomes_beside_stepping(8, (3, 4), seed=7, step=1e-4)
+    assert differing <= 1 and fallen >= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("bodies", "cases", "most"), [((3, 4), 200, 6), ((8,), 50, 2)])
+def test_outcomes_of_many_columns_are_those_of_time_stepping(
+    bodies: tuple[int, ...], cases: int, most: int
+) -> None:
+    differing, fallen = outcomes_beside_stepping(cases, bodies, seed=8, step=2e-5)
+    print(f"{differing} of {cases} outcomes of columns of {bodies} differ, {fallen} fall")
+    assert differing <= most and cases // 10 <= fallen

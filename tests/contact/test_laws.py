@@ -1,0 +1,188 @@
+"""Impacts with friction and measured restitution together, each contact by its own law."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from rockfrag.engines.planar.compile import entry_kernel
+from rockfrag.engines.planar.impact import strike
+from rockfrag.engines.planar.modes import kinetic_energy
+from rockfrag.engines.planar.records import posed, system_record, working_memory
+from rockfrag.engines.planar.solve import look_at
+from rockfrag.rocking import MeasuredRestitution, simulate
+from rockfrag.system import ImpactLaw, System, geometry
+
+from .cases import DT, random_block, random_motion, random_stack
+from .columns import G, random_column, run, with_contacts
+
+LAWS = ("position", "couple", "ratio")
+
+
+@entry_kernel
+def hit(p, w):
+    """Strike, and give the energy before and after."""
+    look_at(p, w, w.q)
+    before = kinetic_energy(p, w.v)
+    strike(p, w, 0.0, 0.0, 0.0, False)
+    return before, kinetic_energy(p, w.v)
+
+
+class Impact(NamedTuple):
+    """Bodies of which one comes down on the body below.
+
+    Attributes
+    ----------
+    system, theta, omega
+        Bodies, rotations [rad] and angular velocities [rad/s].
+    contact, end
+        Which contact closes, and at which end.
+    """
+
+    system: System
+    theta: np.ndarray
+    omega: np.ndarray
+    contact: int
+    end: int
+
+    def outcome(self, mus: np.ndarray, laws: list[ImpactLaw]) -> tuple[np.ndarray, float, np.void]:
+        """Velocities after it, fraction of the energy that is gained, and the working memory."""
+        n = self.system.count
+        p, w = system_record(with_contacts(self.system, list(mus), laws), G), working_memory()
+        w["drive"][:], w["kind"][:] = -1, 1
+        w["q"], w["v"] = posed(p, self.theta.tolist(), self.omega.tolist())
+        for k in range(n):
+            below = (self.theta[k - 1], self.omega[k - 1]) if k else (0.0, 0.0)
+            turned, turning = self.theta[k] - below[0], self.omega[k] - below[1]
+            full = turned == 0.0 and turning == 0.0
+            w["old_closed"][k] = 1 if full else (int(turned < 0), int(turned > 0))
+        w["closed"], w["touching"] = w["old_closed"], w["old_closed"]
+        w["touching"][self.contact] = 1
+        before, after = hit(p, w)
+        return w["v"][: 3 * n].copy(), (after - before) / before, w
+
+
+def random_impact(rng: np.random.Generator, bodies: int) -> Impact:
+    """Draw an impact: the other contacts are full or rock."""
+    system = random_column(rng, bodies).system()
+    contact, end = int(rng.integers(bodies)), int(rng.integers(2))
+    theta, omega = np.zeros(bodies), np.zeros(bodies)
+    for k in range(bodies):
+        below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
+        theta[k], omega[k] = below
+        if k == contact:
+            side = 2 * end - 1
+            theta[k] -= side * 1e-13
+            omega[k] += side * rng.uniform(0.1, 2.0)
+        elif rng.uniform() < 0.5:
+            theta[k] += rng.choice([-1, 1]) * rng.uniform(0.01, 0.2)
+            omega[k] += rng.normal(0, 0.7)
+    return Impact(system, theta, omega, contact, end)
+
+
+def drawn_laws(system: System, law: str, factor: float) -> list[ImpactLaw]:
+    """Give every contact a multiple of its own momentum value, as far as the lone body may have it."""
+    found = []
+    for shape in system.carried:
+        values = [
+            min(
+                factor * geometry.momentum_restitution(shape, pivot),
+                geometry.largest_restitution(shape, pivot),
+            )
+            for pivot in (1, -1)
+        ]
+        found.append(ImpactLaw(law, *values) if min(values) > 0.05 else ImpactLaw())
+    return found
+
+
+def jumps(at: list[float], outcome: object, scale: float) -> int:
+    """Count the intervals in which an outcome still jumps after twenty halvings."""
+    found = 0
+    values = [outcome(x) for x in at]  # type: ignore[operator]
+    for (x, early), (y, late) in zip(
+        zip(at, values, strict=True), list(zip(at, values, strict=True))[1:], strict=False
+    ):
+        low, high, a, b = x, y, early, late
+        while np.abs(a - b).max() > 0.05 * scale and high - low > 1e-6:
+            middle = (low + high) / 2
+            half = outcome(middle)  # type: ignore[operator]
+            if np.abs(half - a).max() > np.abs(half - b).max():
+                high, b = middle, half
+            else:
+                low, a = middle, half
+        found += np.abs(a - b).max() > 0.05 * scale
+    return found
+
+
+def survey(number: int, seed: int) -> dict[str, int]:
+    """Look at random impacts of one to four bodies under every law and a ladder of values."""
+    rng = np.random.default_rng(seed)
+    counts = dict.fromkeys(
+        ("gains", "stops", "jumps in e", "jumps in mu", "gives way", "several"), 0
+    )
+    for _ in range(number):
+        impact = random_impact(rng, int(rng.integers(1, 5)))
+        law, mus = str(rng.choice(LAWS)), rng.uniform(0.1, 1.5, impact.system.count)
+        factor = rng.uniform(0.7, 1.2)
+        laws = drawn_laws(impact.system, law, factor)
+        v, gain, w = impact.outcome(mus, laws)
+        plastic, _, _ = impact.outcome(mus, [ImpactLaw()] * impact.system.count)
+        counts["gains"] += gain > 1e-12
+        counts["gives way"] += int(w["given_way"])
+        counts["several"] += w["several"] > 0
+        moving = np.abs(impact.omega).max()
+        counts["stops"] += np.abs(v).max() < 1e-9 * moving < np.abs(plastic).max()
+
+        def by_factor(
+            x: float, i: Impact = impact, law: str = law, mus: np.ndarray = mus
+        ) -> np.ndarray:
+            return i.outcome(mus, drawn_laws(i.system, law, x))[0]
+
+        def by_friction(
+            x: float, i: Impact = impact, laws: list = laws, mus: np.ndarray = mus
+        ) -> np.ndarray:
+            return i.outcome(x * mus, laws)[0]
+
+        scale = float(np.abs(plastic).max() + np.abs(v).max())
+        counts["jumps in e"] += jumps([0.7, 0.85, 0.99, 1.0, 1.01, 1.1, 1.2], by_factor, scale)
+        counts["jumps in mu"] += jumps([0.5, 0.8, 1.0, 1.3, 2.0], by_friction, scale)
+    return counts
+
+
+def test_no_impact_gains_energy_or_stops_dead() -> None:
+    counts = survey(300, seed=3)
+    print(counts)
+    assert counts["gains"] == 0 and counts["stops"] == 0
+    assert counts["jumps in e"] <= 6 and counts["jumps in mu"] <= 15
+
+
+@pytest.mark.slow
+def test_of_ten_thousand_impacts_none_gains_energy_or_stops_dead() -> None:
+    counts = survey(10_000, seed=4)
+    print(counts)
+    assert counts["gains"] == 0 and counts["stops"] == 0
+    assert counts["jumps in e"] <= 200 and counts["jumps in mu"] <= 500
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
+def test_with_much_friction_impacts_are_those_of_pure_rocking(stacks: bool, law: str) -> None:
+    rng = np.random.default_rng(11)
+    compared = 0
+    for _ in range(8):
+        body = random_stack(rng) if stacks else random_block(rng)
+        laws = drawn_laws(body.system(), law, rng.uniform(0.8, 1.2))
+        system = with_contacts(body, [1e6] * body.system().count, laws)
+        values = [None if np.isnan(each.right) else (each.right, each.left) for each in laws]
+        measured = (
+            MeasuredRestitution(values if stacks else values[0], law) if any(values) else None
+        )
+        motion = random_motion(rng)
+        slow, fast = run(system, motion), simulate(body, motion, DT, restitution=measured)
+        times = fast.events["time"].to_numpy()
+        if len(times) < 5 or fast.lost_contact < times[4] or slow.work["given_way"]:
+            continue
+        n = int(np.searchsorted(fast.time, times[4]))
+        np.testing.assert_allclose(slow.theta[:n], fast.theta[:n], atol=2e-7)
+        compared += 1
+    assert compared >= 3

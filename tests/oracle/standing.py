@@ -1,0 +1,66 @@
+"""How planar bodies stand on each other, from the definitions of a system alone."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from rockfrag.system import System
+
+
+class StandingBody(NamedTuple):
+    """One body as it stands.
+
+    Attributes
+    ----------
+    mass, inertia
+        [kg], about the centre [kg m²].
+    centre
+        Centre of gravity on the ground's frame, shape (2,) [m].
+    corners
+        Left and right end of its contact from its centre, shape (2, 2) [m].
+    edges
+        Left and right end of its face from its centre, shape (2, 2) [m].
+    base, face
+        Angles of base and face, clockwise [rad].
+    """
+
+    mass: float
+    inertia: float
+    centre: np.ndarray
+    corners: np.ndarray
+    edges: np.ndarray
+    base: float
+    face: float
+
+
+def turn(angle: float) -> np.ndarray:
+    """Matrix of a clockwise rotation."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, s], [-s, c]])
+
+
+def standing(system: System) -> list[StandingBody]:
+    """Return the bodies from below."""
+    found: list[StandingBody] = []
+    origin, angle = np.zeros(2), 0.0  # of the face below
+    low, high = -math.inf, math.inf  # its ends
+    for body, contact in zip(system.in_plane().bodies, system.contacts, strict=True):
+        own = origin + turn(angle) @ [contact.offset[0] if found else 0.0, 0.0]
+        middle = np.array([(body.base.left + body.base.right) / 2, 0.0])
+        tilted = turn(contact.tilt) @ (np.array([body.centre[0], body.centre[2]]) - middle)
+        centre = own + turn(angle) @ (middle + tilted)
+        shift = contact.offset[0] if found else 0.0
+        ends = max(body.base.left, low - shift), min(body.base.right, high - shift)
+        corners = np.array([own + turn(angle) @ [x, 0.0] for x in ends]) - centre
+        face = angle + contact.tilt
+        outline = body.face or body.base
+        edges = [own + turn(face) @ [x, body.height] for x in (outline.left, outline.right)]
+        found.append(
+            StandingBody(
+                body.mass, body.inertia, centre, corners, np.array(edges) - centre, angle, face
+            )
+        )
+        origin, angle = own + turn(face) @ [0.0, body.height], face
+        low, high = outline.left, outline.right
+    return found
