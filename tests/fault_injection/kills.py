@@ -4,10 +4,12 @@ import random
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
+from pathlib import Path
 
 import psutil
 
@@ -71,12 +73,13 @@ def killed(study: Study, tally: Tally, rng: random.Random, kind: Kind) -> None:
 
 def compiling(study: Study, tally: Tally, rng: random.Random) -> None:
     """Kill a job, or all processes, while machine code is made, of which there is none at first."""
-    cache = study.folder.parent / "machine code"
+    cache = Path(tempfile.mkdtemp(prefix="machine code "))
     study.more["NUMBA_CACHE_DIR"] = str(cache)
     for number in range(COMPILING):
         shutil.rmtree(cache, ignore_errors=True)
         study.forget("report.html", "sweep/*")
         _disturbed(study, tally, rng, (job, everything)[number % 2], 15.0)
+    shutil.rmtree(cache, ignore_errors=True)
 
 
 def _disturbed(study: Study, tally: Tally, rng: random.Random, kind: Kind, moment_s: float) -> None:
