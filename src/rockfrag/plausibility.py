@@ -33,6 +33,15 @@ LARGEST_PEAK = 50.0
 LARGEST_IN_G = 2.0
 """Peaks of more than this many g are rare: a number above it is hardly one of g."""
 
+FLOOR_MASSES = (1e3, 1e9)
+"""Least and largest mass of a floor of a building [kg]: a wooden attic, and more than any palace's."""
+
+STOREY_HEIGHTS = (1.0, 30.0)
+"""Least and largest height of a storey [m]: a crawl space, and the nave of a cathedral."""
+
+FIRST_PERIODS = (0.01, 20.0)
+"""Shortest and longest first period of a building [s]."""
+
 SHORTEST_STEP = 1e-5
 """Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
 

@@ -177,6 +177,10 @@ def required_corner(
     payload
         Mass on the table [kg].
 
+    Returns
+    -------
+    The frequency [Hz].
+
     Raises
     ------
     InputError
@@ -212,7 +216,9 @@ def produced_motion(
     motion
         Wanted motion.
     amplitude_g
-        Peak of the wanted motion [g]; that of the produced one is a little different.
+        Peak of the wanted motion [g]. That of the produced one is another, as the filter takes out what the
+        stroke cannot hold: a fifth less for a long pulse, a tenth more where the filter takes what was
+        opposed to the peak. The provenance has both.
     payload
         Mass on the table [kg].
 
@@ -243,6 +249,10 @@ def limits_g(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) ->
         Motions as they are.
     payload
         Mass on the table [kg].
+
+    Returns
+    -------
+    Largest amplitudes [g], by the names of the motions.
     """
     return {motion.name: shaker.limit(motion, payload)[0] for motion in motions}
 
