@@ -203,6 +203,7 @@ BUILT_IN = (
     "rockfrag.engines.two_blocks",
     "rockfrag.engines.single",
     "rockfrag.engines.planar.engine",
+    "rockfrag.engines.spatial.engine",
 )
 """Modules with an ``ENGINE`` each, in the order in which they are asked; loaded when an engine is first wanted."""
 
