@@ -142,9 +142,7 @@ def _simulate(options: argparse.Namespace) -> int:
         f"{options.record}: peak {peak:.4f} g, {motion.acceleration.size} samples of {motion.dt} s"
     )
     if response.overturned:
-        # of one body there is no other
-        which = f"the {response.overturned_body}, " if len(body.blocks) > 1 else ""
-        print(f"overturned: {which}at {response.overturning_time:.3f} s")
+        print(f"overturned: the {response.overturned_body}, at {response.overturning_time:.3f} s")
     else:
         print("not overturned")
     largest = abs(response.theta).max(axis=0)
@@ -234,6 +232,7 @@ def _play(options: argparse.Namespace) -> int:
 
 def _block(option: str, given: Sequence[str]) -> "Block":
     """Make a block of width, height and mass as people write them."""
+    from rockfrag.input_checks import positive_number
     from rockfrag.plausibility import STONE, check_density, size_warning
     from rockfrag.rocking import Block
 
@@ -244,6 +243,8 @@ def _block(option: str, given: Sequence[str]) -> "Block":
             )
         width, height = (quantity(text, "m", "m") for text in given[:2])
         mass = quantity(given[2], "kg", "kg") if len(given) == 3 else STONE * width**2 * height
+        for name, value in (("width", width), ("height", height), ("mass", mass)):
+            positive_number(name, value)
         check_density(width, height, mass)
         block = Block(width, height, mass)
     except InputError as error:
