@@ -31,10 +31,14 @@ def digest(arrays: list[NDArray[Any]]) -> str:
 def ensemble(threads: int, *arguments: Any, **settings: Any) -> str:
     """Digest of every array of an ensemble's result."""
     found = overturns(*arguments, threads=threads, **settings)
+    # as the kernels number bodies: 2 is the uppermost one, 1 the one below it
+    lone = np.array([count == 1 for count in found.counts])[:, np.newaxis, np.newaxis]
+    fallen = np.where(lone & found.overturned, 2, found.overturned_body).astype(np.int8)
+    below = np.where(lone, 0.0, found.peak_rotation[..., 0])
     return digest(
         [
-            found.overturned, found.overturned_body, found.overturning_time, found.peak_rotation,
-            found.peak_rotation_pedestal, found.peak_velocity, found.impacts, found.closest_approach,
+            found.overturned, fallen, found.certain_time, found.of_top("peak_rotation"), below,
+            found.of_top("peak_velocity"), found.impacts, found.unstable_distance,
         ]
     )  # fmt: skip
 
@@ -55,9 +59,14 @@ def histories(bodies: list[Body], count: int, **settings: Any) -> str:
         body = bodies[i % len(bodies)]
         response = simulate(body, rng.uniform(0.1, 0.9) * shaken[i], DT, **settings)
         arrays += [response.theta, response.omega, response.alpha, response.state]
-        arrays += [response.energy.to_numpy(), response.normal_force]
+        energy = response.energy
+        if response.system.count == 1:
+            # the kernels' lower body, which a lone one has not
+            energy = energy.assign(lost_contact_0=0.0)
+            energy = energy[[*energy.columns[:4], "lost_contact_0", *energy.columns[4:-1]]]
+        arrays += [energy.to_numpy(), response.normal_force]
         arrays += [response.events[["time", "energy_after"]].to_numpy()]
-        arrays += [np.array([response.closest_approach, response.impacts, response.grazings])]
+        arrays += [np.array([response.unstable_distance, response.impacts, response.grazings])]
     return digest(arrays)
 
 

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.kernels.lanes import block, stack_one, stack_two
 from rockfrag.engines.kernels.lanes.case import LANES
+from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.rocking import ensemble
-from rockfrag.rocking.ensemble import EnsembleResult, overturns
+from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block, Body, Stack
 
@@ -46,7 +47,7 @@ def _least_seconds(clock: Callable[[], float], work: Callable[[], object], repea
     return best
 
 
-def all_cases(cases: Cases, threads: int = 1, **settings: float) -> EnsembleResult:
+def all_cases(cases: Cases, threads: int = 1, **settings: float) -> Outcomes:
     return overturns(
         cases.bodies, cases.accelerations, cases.dt, cases.scales, threads=threads, **settings
     )

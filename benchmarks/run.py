@@ -35,11 +35,11 @@ from measures import (
 )  # fmt: skip
 from scipy_stack import scipy_stack
 
+from rockfrag.engines.steps import STEP
 from rockfrag.figure_style import save_figure
 from rockfrag.files import write_table, write_text
 from rockfrag.report.figures.benchmark import draw_benchmark
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP
 from rockfrag.rocking.parquet import stream_overturns
 from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.system.blocks import Block, Body, Stack

@@ -84,7 +84,7 @@ RESULTS = {
     "Motion": lambda: Motion(PULSE, 0.01, metadata={str(i): i for i in range(9)}),
     "Response of a block": lambda: simulate(STATUE, 4 * PULSE, 0.01),
     "Response of a stack": lambda: simulate(STACK, 4 * PULSE, 0.01),
-    "EnsembleResult": lambda: overturns([STATUE, STACK], PULSE, 0.01, np.arange(2.5, 8, 0.1)),
+    "Outcomes": lambda: overturns([STATUE, STACK], PULSE, 0.01, np.arange(2.5, 8, 0.1)),
     "Thresholds": lambda: find_thresholds(
         [STATUE] * 9, PULSE, 0.01, 8.0, tolerance=0.1, smallest_window=0.5
     ),

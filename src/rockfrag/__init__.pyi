@@ -12,6 +12,7 @@ from . import (
     system as system,
 )
 from .assess.request import read_request as read_request
+from .engines.response import Response as Response
 from .errors import InputError as InputError
 from .fragility.estimators import (
     fit_cloud as fit_cloud,
@@ -21,17 +22,17 @@ from .fragility.estimators import (
 from .fragility.lognormal import fit_lognormal as fit_lognormal
 from .motions.measures import measure_motion as measure_motion
 from .motions.spectra import response_spectrum as response_spectrum
+from .outcomes.outcomes import Outcomes as Outcomes
 from .records.ground_motion import GroundMotion as GroundMotion
 from .records.motion import Motion as Motion
 from .records.read import read_motion as read_motion
 from .records.write import write_motion as write_motion
-from .rocking.ensemble import EnsembleResult as EnsembleResult, overturns as overturns
+from .rocking.ensemble import overturns as overturns
 from .rocking.measured_restitution import MeasuredRestitution as MeasuredRestitution
 from .rocking.parquet import (
     stream_histories as stream_histories,
     stream_overturns as stream_overturns,
 )
-from .rocking.response import Response as Response
 from .rocking.simulation import simulate as simulate
 from .rocking.spectra import (
     RockingSpectrum as RockingSpectrum,

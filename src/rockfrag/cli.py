@@ -16,7 +16,7 @@ from rockfrag.units import quantity
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
-    from rockfrag.rocking import Block, Body
+    from rockfrag.rocking import Block, Body, Response
 
 MOST_EVENTS = 30
 """Lines of the pattern history that are printed unless all are asked for."""
@@ -68,6 +68,13 @@ def make_parser() -> argparse.ArgumentParser:
     _add_case(one)
     one.add_argument("--pga", type=float, metavar="G", help="scale the record to this peak [g]")
     one.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
+    one.add_argument(
+        "--friction", nargs="+", type=float, metavar="MU",
+        help="coefficient of friction of all contacts, or of the ground and of the interface",
+    )  # fmt: skip
+    one.add_argument(
+        "--vertical", metavar="RECORD", help="file with the vertical component of the record"
+    )
     one.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
     one.add_argument("--all-events", action="store_true", help="print the whole pattern history")
     one.set_defaults(run=_simulate)
@@ -119,25 +126,32 @@ def _simulate(options: argparse.Namespace) -> int:
         acceleration = scale_to_pga(motion, options.pga).acceleration
     if doubt := _acceleration_doubt(float(abs(acceleration).max()), body):
         print(f"warning: {options.record}: {doubt}", file=sys.stderr)
+    up = _vertical(options, acceleration.max() / motion.acceleration.max())
     restitution = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution, restitution)
     with warnings.catch_warnings():
-        # what `simulate` doubts has been said
+        # what `simulate` doubts of the acceleration has been said
         warnings.simplefilter("ignore", UserWarning)
-        response = simulate(body, acceleration, motion.dt, restitution=restitution)
+        response = simulate(
+            body, acceleration, motion.dt,
+            restitution=restitution, friction=_friction(options), vertical=up,
+        )  # fmt: skip
     peak = abs(acceleration).max() / GRAVITY
     print(
         f"{options.record}: peak {peak:.4f} g, {motion.acceleration.size} samples of {motion.dt} s"
     )
     if response.overturned:
-        print(f"overturned: the {response.overturned_body}, at {response.overturning_time:.3f} s")
+        # of one body there is no other
+        which = f"the {response.overturned_body}, " if len(body.blocks) > 1 else ""
+        print(f"overturned: {which}at {response.overturning_time:.3f} s")
     else:
         print("not overturned")
     largest = abs(response.theta).max(axis=0)
     print("largest rotation [rad]: " + ", ".join(f"{value:.5f}" for value in largest))
     print(f"impacts: {response.impacts}")
-    print("friction needed: " + ", ".join(f"{value:.3f}" for value in response.friction_demand))
+    for line in _contacts(response, options.friction is not None):
+        print(line)
     print(_history(response.events, options.all_events))
     if options.plot:
         from rockfrag.figure_style import save_figure
@@ -145,6 +159,46 @@ def _simulate(options: argparse.Namespace) -> int:
         save_figure(response.plot(f"{motion.name}, peak {peak:.3f} g"), options.plot)
         print(f"drawn in {options.plot}")
     return 0
+
+
+def _friction(options: argparse.Namespace) -> "dict[str, float] | float | None":
+    """Return the friction that the options tell, of each contact by its name."""
+    given = options.friction
+    if given is None or len(given) == 1:
+        return None if given is None else float(given[0])
+    if not options.pedestal or len(given) != 2:
+        raise InputError(
+            f"--friction: expected one coefficient, or with --pedestal those of the ground and of the interface, "
+            f"got {len(given)}."
+        )
+    return {"ground": given[0], "interface": given[1]}
+
+
+def _vertical(options: argparse.Namespace, factor: float) -> "Motion | None":
+    """Return the vertical component that the options tell, scaled as the record is."""
+    if options.vertical is None:
+        return None
+    from rockfrag.records.read import read_motion
+
+    up = read_motion(options.vertical, options.unit, None, options.dt)
+    return up.after("scale", factor * up.acceleration, factor=factor)
+
+
+def _contacts(response: "Response", loose: bool) -> list[str]:
+    """Say how far contacts have slid; in pure rocking what friction they asked, and what that means."""
+    if loose:
+        slips = ", ".join(f"{1000 * value:.1f}" for value in abs(response.slip).max(axis=0))
+        return [f"largest slip [mm]: {slips}"]
+    demand = response.friction_demand
+    lines = ["friction needed: " + ", ".join(f"{value:.3f}" for value in demand)]
+    if response.lost_contact == response.lost_contact:
+        lines.append(
+            f"at {response.lost_contact:.3f} s a real body would have left the ground, and what follows is no "
+            "answer; give --friction to let it fly"
+        )
+    else:
+        lines.append("on smoother ground it slides first; give --friction to let it")
+    return lines
 
 
 def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
@@ -197,7 +251,7 @@ def _acceleration_doubt(peak: float, body: "Body") -> str:
     from rockfrag.rocking.inputs import least_uplift
     from rockfrag.units import GRAVITY
 
-    return peak_warning(peak, least_uplift(body, GRAVITY))
+    return peak_warning(peak, least_uplift(body.system(), GRAVITY))
 
 
 def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]

@@ -1,7 +1,7 @@
 """How every figure of a report looks, and how it is written to the same bytes in every run."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -94,10 +94,27 @@ def plain_log(axes: Axes, which: str) -> None:
     axis = axes.xaxis if which == "x" else axes.yaxis
     low, high = axes.get_xlim() if which == "x" else axes.get_ylim()
     decades = np.log10(high / low)
-    steps = (1.0, 2.0, 5.0) if decades < 2.5 else (1.0, 3.0) if decades < 4 else (1.0,)
+    near = (1.0, 2.0, 3.0, 5.0, 7.0)
+    steps: tuple[float, ...] = (
+        near
+        if decades < 1
+        else (1.0, 2.0, 5.0)
+        if decades < 2.5
+        else (1.0, 3.0)
+        if decades < 4
+        else (1.0,)
+    )
     axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=30))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def letter_panels(axes: Iterable[Axes]) -> None:
+    """Name panels (a), (b), … above their upper left corners, where there is more than one."""
+    panels = list(axes)
+    for letter, panel in zip("abcdefghijklmnop", panels if len(panels) > 1 else [], strict=False):
+        title = panel.get_title(loc="left")
+        panel.set_title(f"({letter}) {title}".strip(), loc="left", pad=3)
 
 
 def note_figure(words: str) -> Figure:

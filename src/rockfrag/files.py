@@ -76,15 +76,22 @@ def file_name(name: str) -> str:
     return f"{plain}-{digest}"
 
 
-def distinct_file_names(names: Iterable[str]) -> None:
+def distinct_file_names(names: Iterable[str], found: dict[str, str] | None = None) -> None:
     """Check that names can be used, and made into files that stay apart where case is ignored too.
+
+    Parameters
+    ----------
+    names
+        The names.
+    found
+        Names that were checked before, by what they are compared as; these are added.
 
     Raises
     ------
     InputError
         As :func:`check_name`, or if a name is given twice, or two would share a file name.
     """
-    found: dict[str, str] = {}
+    found = {} if found is None else found
     for name in names:
         check_name(name)
         other = found.setdefault(file_name(name).casefold(), name)

@@ -33,6 +33,15 @@ LARGEST_PEAK = 50.0
 LARGEST_IN_G = 2.0
 """Peaks of more than this many g are rare: a number above it is hardly one of g."""
 
+FLOOR_MASSES = (1e3, 1e9)
+"""Least and largest mass of a floor of a building [kg]: a wooden attic, and more than any palace's."""
+
+STOREY_HEIGHTS = (1.0, 30.0)
+"""Least and largest height of a storey [m]: a crawl space, and the nave of a cathedral."""
+
+FIRST_PERIODS = (0.01, 20.0)
+"""Shortest and longest first period of a building [s]."""
+
 SHORTEST_STEP = 1e-5
 """Shortest sampling interval [s] of a record; recorders take at most some thousand samples a second."""
 
@@ -137,3 +146,21 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
             f"{GRAVITY:g}"
         )
     return ""
+
+
+def gravity_warning(g: float) -> str:
+    """Say that an acceleration of gravity [m/s²] looks like one in cm/s², or return an empty text."""
+    if g <= LARGEST_GRAVITY:
+        return ""
+    return f"an acceleration of gravity of {g:g} m/s² is that of no planet; if it is in cm/s², divide it by 100"
+
+
+LARGEST_GRAVITY = 100.0
+"""Largest acceleration of gravity that is no mistake of unit [m/s²]."""
+
+
+def interval_warning(dt: float) -> str:
+    """Say that a sampling interval [s] is too long for strong motion, or return an empty text."""
+    if dt <= LONGEST_STEP:
+        return ""
+    return f"a sampling interval of {dt:g} s is too long for strong motion; check its unit"

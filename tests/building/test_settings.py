@@ -36,8 +36,21 @@ def replace(key, value):
         (replace("masses_kg", [350000.0] * 5), "6 entries and masses_kg 5"),
         (
             replace("storey_heights_m", [4.0] * 10_000),
-            "storey_heights_m: expected a list of heights",
+            "storey_heights_m: expected a list of 1 to 100 heights",
         ),
+        (
+            replace("masses_kg", [350.0] * 6),
+            r"masses_kg\[0\]: 350 kg is no building's.*check the unit",
+        ),
+        (replace("masses_kg", [1e-9] * 6), "is no building's"),
+        (
+            replace("storey_heights_m", [450.0] * 6),
+            r"storey_heights_m\[0\]: 450 m is no building's",
+        ),
+        (replace("first_period_s", 1e-6), "first_period_s: the first period would be 1e-06 s"),
+        (replace("first_period_s", 1e6), r"first_period_s: the first period would be 1e\+06 s"),
+        (replace("floors", {"GF": 0, "gf": 1}), "gf and GF would share a file name"),
+        (replace("masses_kg", [350000.0] * 101), "expected a list of 1 to 100 masses"),
         (replace("storey_heights_m", []), "storey_heights_m: expected a list"),
         (replace("masses_kg", ["heavy"] * 6), r"masses_kg\[0\]: expected a mass such as"),
         (replace("first_period_s", 1e-300), "first_period must be positive numbers of s"),
@@ -66,6 +79,14 @@ def test_unphysical_buildings_are_refused_in_one_sentence(settings, change, mess
     assert text.startswith("building.yaml: ")
     assert text.endswith((".", "?"))
     assert "\n" not in text
+
+
+@pytest.mark.parametrize("stiffness", [1e-3, 1.0, 1e15])
+def test_stiffnesses_of_no_building_do_not_blame_the_record(settings, stiffness):
+    del settings["first_period_s"]
+    settings["storey_stiffnesses_N_m"] = [stiffness] * 6
+    with pytest.raises(InputError, match="storey_stiffnesses_N_m: the first period would be"):
+        make_building(settings)
 
 
 def test_negative_stiffness_is_refused(settings):

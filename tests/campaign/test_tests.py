@@ -38,7 +38,7 @@ def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(
 def test_verdicts_of_other_programs_follow_the_tests(tmp_path: Path):
     codes = table(tmp_path, "test,dem,fem\nC,1,0\nA,0,0\nB,0,1\n", "codes.csv")
     found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes
-    assert found.to_dict("list") == {"dem": [False, False, True], "fem": [False, True, False]}
+    assert found.to_dict("list") == {"dem": [0, 0, 1], "fem": [0, 1, 0]}
 
 
 @pytest.mark.parametrize(
@@ -64,9 +64,16 @@ def test_an_object_that_fell_below_what_it_survived_is_refused(tmp_path: Path):
         read_campaign(table(tmp_path, "test,motion,low,high\nA,1,0.3,0.2\n"), columns, {})
 
 
-def test_a_missing_verdict_of_another_program_is_named(tmp_path: Path):
+def test_another_program_is_compared_as_far_as_its_outcomes_are_given(tmp_path: Path):
     codes = table(tmp_path, "test,dem\nC,1\nA,0\n", "codes.csv")
-    with pytest.raises(InputError, match="no verdict for 1 of 3 tests, B first"):
+    found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes["dem"]
+    assert found.isna().tolist() == [False, True, False]
+    assert found.dropna().tolist() == [0, 1]
+
+
+def test_a_table_of_other_tests_is_refused(tmp_path: Path):
+    codes = table(tmp_path, "test,dem\nX,1\nY,0\n", "codes.csv")
+    with pytest.raises(InputError, match="has none of the 3 tests"):
         read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes)
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.planar.records import posed, working_memory
+from rockfrag.engines.planar.records import posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at, solve, solve_generally
-from rockfrag.rocking.contact.friction import contact_record, interface_frictions
+from rockfrag.rocking.options import system_of
 
 from .cases import random_block, random_stack
 
@@ -29,7 +29,7 @@ def test_formulas_give_what_elimination_gives(stacks: bool, flat: bool) -> None:
     rng = np.random.default_rng(3)
     for _ in range(75):
         body = random_stack(rng) if stacks else random_block(rng)
-        p = contact_record(body, interface_frictions(body, 0.5), 9.81)
+        p = system_record(system_of(body, 0.5), 9.81)
         top = int(p["count"]) - 1
         theta, omega = np.zeros(top + 1), np.zeros(top + 1)
         if not flat:

@@ -19,13 +19,13 @@ GUEST = re.compile(
 )
 NO_NUMBER = re.compile(r"\b(?:nan|NaN|NaT|inf|infinity|null|True|False)\b|<NA>|mathdefault|\(s\)")
 INTERVAL = re.compile(r"(?:([−\d.]+) )?\[([−\d.]+|open), ([−\d.]+|open)\]")
-NOUNS = "record|test|motion|event|earthquake|pair|floor|object|configuration|sweep|departure|building|row"
+NOUNS = "record|test|motion|event|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
 SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
 VOID = {"meta", "link", "br", "img", "input", "hr"}
 
 
-MOST_WORDS = 2500
+MOST_WORDS = 900
 """Words of a page before anything on it is opened."""
 
 
@@ -171,7 +171,7 @@ def check_first_page(results: Results) -> None:
     known = {f"{value:.{digits}f}" for value in values for digits in (1, 2, 3)}
     known |= {f"{100 * abs(value - 1):.{digits}f}" for value in values for digits in (0, 1)}
     counts = {str(n) for n in range(1 + max(len(one) for one in tables))}
-    levels = {f"{100 * results.study.fragility.confidence:g}", "95", "80", "10"}
+    levels = {f"{100 * results.study.fragility.confidence:g}", "95", "80", "50", "10"}
     strange = set(re.findall(r"\d+(?:\.\d+)?", text)) - known - counts - levels
     # a ratio of amplitudes over sweeps is of no table of its own
     strange = {one for one in strange if f"{one} times" not in text}
@@ -179,7 +179,15 @@ def check_first_page(results: Results) -> None:
 
 
 def words_before_opening(page: str) -> int:
-    """Words of a page outside its chapters, with the headings and messages of these."""
+    """Words of a page outside its drawings before anything is opened, with the summaries of what can be."""
+    return len(open_words(page))
+
+
+def open_words(page: str) -> list[str]:
+    """Words that stand open on a page, outside its drawings."""
     shown = re.sub(r"<(script|style|svg|head)\b.*?</\1>", " ", page, flags=re.DOTALL)
-    shown = re.sub(r'<div class="body">.*?</div>\s*</details>', " ", shown, flags=re.DOTALL)
-    return len(re.sub(r"<[^>]*>", " ", shown).split())
+    inside = r"(?:(?!<details\b).)*?"
+    innermost = rf"<details\b[^>]*>\s*<summary\b[^>]*>({inside})</summary>{inside}</details>"
+    while (fewer := re.sub(innermost, r"\1", shown, flags=re.DOTALL)) != shown:
+        shown = fewer
+    return re.sub(r"<[^>]*>", " ", shown).split()

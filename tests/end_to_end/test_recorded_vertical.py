@@ -68,7 +68,9 @@ def test_each_verdict_is_that_of_both_components_scaled_together(results: Path) 
         factor = row["amplitude_g"] * GRAVITY / np.abs(across).max()
         response = simulate(BLOCK, factor * across, 0.02, vertical=factor * up)
         assert response.overturned == row["overturned"]
-        assert row["lightest"] == pytest.approx(1 + min((factor * up).min(), 0) / GRAVITY, abs=1e-9)
+        assert row["minimum_gravity_ratio"] == pytest.approx(
+            1 + min((factor * up).min(), 0) / GRAVITY, abs=1e-9
+        )
     factors = rows["amplitude_g"].to_numpy() * GRAVITY / np.abs(across).max()
     with pytest.warns(LightBodies):
         fell = overturns(BLOCK, across, 0.02, factors, vertical=[up])
@@ -78,7 +80,7 @@ def test_each_verdict_is_that_of_both_components_scaled_together(results: Path) 
 def test_the_report_says_in_how_many_cases_bodies_may_fly(results: Path) -> None:
     sweeps = [pd.read_parquet(path) for path in (results / "sweep").glob("*.parquet")]
     cases = pd.concat(sweeps)
-    light = int((cases["lightest"] < LIGHT).sum())
+    light = int((cases["minimum_gravity_ratio"] < LIGHT).sum())
     assert 0 < light < len(cases)
     words = (results.parents[1] / "words.txt").read_text()
     assert "The vertical components of the records shake them too" in words

@@ -50,6 +50,7 @@ class Stub:
 
 @pytest.fixture
 def two(monkeypatch):
+    contract.engines()
     monkeypatch.setattr(contract, "_ENGINES", [])
     register_engine(Stub("fast", Wish.TWO_BODIES, Wish.RESTITUTION))
     register_engine(Stub("slow", Wish.TWO_BODIES, Wish.FRICTION, Wish.VERTICAL))

@@ -230,14 +230,17 @@ def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_
     write_simcenter(curves, tmp_path / "d.csv", tmp_path / "d.json")
     space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
     model = ElementTree.parse(tmp_path / "model.xml").getroot()
-    said = model.find(".//n:description", space).text
+    description = model.find(".//n:description", space).text
+    said = (tmp_path / "model.xml").read_text()
     told = json.loads((tmp_path / "d.json").read_text())["ROCKFRAG.T1"]["Comments"]
     for text in (said, told):
-        assert "4 motions of 3 events" in text
-        assert "90% limits: theta" in text and "of the model 0.195" in text
+        assert "4 motions of 3 earthquakes" in text
+        assert "90 % limits: theta" in text and "of the model 0.195" in text
         assert "Goodness of fit p = " in text
-        assert "rests on 4 motions only" in text
-    assert "<!-- T1: rocks:" in (tmp_path / "model.xml").read_text()
+        assert "based on only 4 motions" in text
+    assert "<!-- T1: rocks:" in said
+    # a warning that all functions share is said once, and nothing is said twice
+    assert said.count("based on only 4 motions") == description.count("based on only") == 1
 
 
 def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
@@ -247,7 +250,9 @@ def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
     root = ElementTree.parse(tmp_path / "model.xml").getroot()
     assert root.find(".//n:limitStates", space).text == "rocks overturned"
     function = root.find(".//n:fragilityFunction", space)
-    assert [p.get("ls") for p in function.findall("n:params", space)] == ["rocks", "overturned"]
+    kinds = ("n:params", "n:poes")
+    states = [one.get("ls") for kind in kinds for one in function.findall(kind, space)]
+    assert states == ["rocks", "overturned"]
     write_simcenter(curves.iloc[::-1], tmp_path / "d.csv", tmp_path / "d.json")
     row = pd.read_csv(tmp_path / "d.csv").iloc[0]
     # an exact threshold is written as steep as the formats take it

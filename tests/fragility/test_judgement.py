@@ -33,7 +33,7 @@ def test_a_true_curve_passes_and_a_wrong_shape_fails():
     wrong = cloud(800, 1, lambda im: np.where(im > 1.0, 0.5, lognormal(im)))
     judged = goodness_of_fit(wrong, fit_lognormal(wrong), replicates=200)
     assert judged.p_value < 0.01
-    assert "does not describe" in judged.words
+    assert "is rejected" in judged.words
 
 
 def test_p_values_of_true_curves_are_uniform():
@@ -105,7 +105,7 @@ def test_proportional_measures_are_equals_and_make_no_surface():
     data = cloud(300, 5, lognormal)
     table = pd.DataFrame({"a_g": data.im, "b_g": 2.0 * data.im, "overturned": data.overturned})
     choice = recommend_measure(table, ["a_g", "b_g"], motion=None, replicates=20)
-    assert "do not tell it from" in choice.words
+    assert "is not distinguishable from" in choice.words
     assert choice.pair is None
     with pytest.raises(InputError, match="proportional"):
         fit_surface(table, ["a_g", "b_g"])

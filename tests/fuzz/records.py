@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from obspy import Stream, Trace, UTCDateTime
 
+from rockfrag.errors import InputError
 from rockfrag.records.catalogue import load_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
@@ -30,9 +31,18 @@ def records(folder: Path) -> Callable[[random.Random], tuple[Path, Callable[[], 
         name, content, read = rng.choice(seeds)
         path = folder / name
         path.write_bytes(damage(content, rng.choice(seeds)[1], rng))
-        return path, lambda: read(path)
+        return path, lambda: _naming(path, read)
 
     return one
+
+
+def _naming(path: Path, read: Callable[[Path], None]) -> None:
+    """Read a file, and see that a refusal names it."""
+    try:
+        read(path)
+    except InputError as error:
+        assert path.name in str(error), f"{path.name} is not in {str(error)[:200]!r}"
+        raise
 
 
 def _read_all(path: Path) -> None:

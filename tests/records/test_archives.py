@@ -1,13 +1,17 @@
 """Archives of data centres: members are read with their units, named, and unpacked within bounds."""
 
+import gzip
 import io
 import tarfile
+import tracemalloc
 import zipfile
 
 import numpy as np
 import pytest
+from obspy import Stream, Trace
 
 from rockfrag.errors import InputError
+from rockfrag.records.formats import obspy_native
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record
 from rockfrag.records.sources import archive as archives
@@ -125,3 +129,31 @@ def test_workbooks_locks_and_damage_are_told(tmp_path):
     damaged.write_bytes(damaged.read_bytes()[:80])
     with pytest.raises(InputError, match="cannot be unpacked"):
         read_record(damaged)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("content", [b"\x00", b"0 0\n", b"1", b"1.5 2.5\n", b"\n"])
+def test_a_packed_file_of_a_gigabyte_is_refused_within_little_memory(tmp_path, content):
+    path = tmp_path / "packed.txt.gz"
+    block = content * (2**20 // len(content))
+    with gzip.open(path, "wb", compresslevel=1) as file:
+        for _ in range(300):
+            file.write(block)
+    tracemalloc.start()
+    with pytest.raises(InputError, match=r"packed\.txt\.gz"):
+        read_record(path)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 2**28
+
+
+def test_miniseed_of_more_samples_than_memory_holds_is_refused(tmp_path, monkeypatch):
+    """Steim's compression packs seven samples of a quiet record into four bytes."""
+    path = tmp_path / "quiet.mseed"
+    trace = Trace(np.zeros(100_000, dtype=np.int32), {"station": "A", "channel": "HNE"})
+    Stream([trace]).write(str(path), format="MSEED", encoding="STEIM2")
+    assert path.stat().st_size < 100_000
+    monkeypatch.setattr(obspy_native, "MOST_SAMPLES", 99_999)
+    monkeypatch.setattr(obspy_native, "_SMALL", 0)
+    with pytest.raises(InputError, match="100,000 samples are more than the 99,999 of a record"):
+        read_record(path)

@@ -215,6 +215,14 @@ class TestWords:
         with pytest.raises(NotAcceleration, match=r"velocity|displacement"):
             read_record(write(f"{words}\n{column()}"), 0.01)
 
+    @pytest.mark.parametrize(
+        "line",
+        ["Shear wave velocity (m/s): 760", "Corrected for displacement", "N: 37", "Vs30 = 760 m/s"],
+    )
+    def test_a_fact_about_the_site_is_none_about_the_samples(self, write, line):
+        motion = read_motion(write(f"{line}\n{column()}"), unit="g", dt=0.01)
+        assert motion.acceleration.size == N
+
 
 class TestQuantities:
     @pytest.mark.parametrize(
@@ -328,6 +336,12 @@ class TestLayouts:
         assert read_motion(write(tabs), unit="g").dt == 0.01
         motion = read_motion(write(column("{:.5f}").replace(".", ",")), unit="g", dt=0.01)
         np.testing.assert_allclose(motion.acceleration, WAVE * GRAVITY, atol=1e-4)
+
+    def test_a_table_that_numbers_its_rows_is_read_by_its_titles(self, write):
+        rows = "".join(f"{i},{i * 0.01:.2f},{v:.6f}\n" for i, v in enumerate(WAVE))
+        motion = read_motion(write(",Time (s),Acc (g)\n" + rows))
+        np.testing.assert_allclose(motion.acceleration, WAVE * GRAVITY, atol=1e-5)
+        assert motion.dt == 0.01
 
     def test_foreign_formats_say_how_to_convert(self, write):
         for start in ("WID2 2009/04/06", "BEGIN GSE2.0\nMSG_TYPE DATA"):

@@ -118,7 +118,11 @@ def effects() -> pd.DataFrame:
 def test_the_forest_draws_an_interval_only_where_there_is_one():
     figure = forest_figure(effects())
     labels = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
-    assert labels == ["all pairs (3 events)", "cellar (3 events)", "attic (1 event)"]
+    assert labels == [
+        "all pairs (3 earthquakes)",
+        "cellar (3 earthquakes)",
+        "attic (1 earthquake)",
+    ]
     lines = [line for line in figure.axes[0].lines if len(line.get_xdata()) == 2]
     assert len(lines) == 2  # that of one, and one interval
 
@@ -151,11 +155,15 @@ def test_the_map_has_a_bar_for_each_range_that_overturns(
 
 
 def test_the_shakers_limits_stand_beside_the_objects():
-    limits = pd.DataFrame({"motion": ["a", "b"], "limit_g": [0.4, 1.5]})
+    limits = pd.DataFrame(
+        {"motion": ["a", "b"], "limit_g": [0.4, 1.5], "limited_by": ["stroke", "force"]}
+    )
     tests = laboratory().iloc[:2].assign(motion=["a", "b"], pedestal="NP", amplitude_g=[0.5, 0.6])
     axes = shaker_limits(limits, tests).axes[0]
     assert [bar.get_width() for bar in axes.patches] == [1.5, 0.4]
     assert sorted(x for line in axes.lines for x in line.get_xdata()) == [0.5, 0.6]
+    # each bar says what ends it
+    assert {text.get_text().strip() for text in axes.texts} == {"stroke", "force"}
 
 
 def test_a_configuration_without_a_curve_keeps_its_verdicts():
@@ -167,6 +175,7 @@ def test_a_configuration_without_a_curve_keeps_its_verdicts():
             "unit": "g",
             "theta": [0.4, np.nan],
             "beta": [0.3, np.nan],
+            "p_fit": [0.5, np.nan],
         }
     )
     bands = pd.concat(
@@ -185,9 +194,8 @@ def test_a_configuration_without_a_curve_keeps_its_verdicts():
         share_lower=0.0, share_upper=0.5
     )
     figure = fragility_figure(curves, bands, bins)
-    labels = [line.get_label() for line in figure.axes[0].lines]
-    assert "jug: no curve" in labels
-    assert any(label.startswith("vase: θ = 0.4 g") for label in labels)
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert titles == ["(a) vase: θ = 0.4 g, β = 0.30", "(b) jug: no median"]
 
 
 HARD_NAMES = ("Büste “Ä”", "a$b$c", "x_{1}^2 \\alpha $", "<b>&amp;", "n" * 200, "日本")

@@ -1,4 +1,4 @@
-"""Departures from the ideal model in words that stand in a sentence."""
+"""Perturbed parameters in words that stand in a sentence, and what is said of them."""
 
 import re
 
@@ -13,7 +13,7 @@ def test_a_departure_reads_as_english_in_the_middle_of_a_sentence(factor):
     at = factor.at("-2.5")
     for words in (factor.title, at):
         # a noun with its article, or in the plural
-        assert re.match(r"(the|a) [a-z]|[a-z]+s of ", words), words
+        assert re.match(r"(the|a|neglecting) [a-z]|[a-z]+s of ", words), words
         # commas part one departure from the next
         assert not re.search(r"[,:;]", words), words
     # a level has its unit, or is a factor or a coefficient
@@ -30,9 +30,10 @@ def test_departures_are_named_by_factor_and_level_in_the_order_of_the_figure():
             "ratio_lower": 0.9,
             "ratio": 1.0,
             "ratio_upper": 1.1,
+            "p": 0.5,
         }
     )
     assert departures(effects)["name"].tolist() == [
         "the object's restitution everywhere × 1",
-        "the mass of a table of 10 kg not counted",
+        "neglecting the mass of a 10 kg table",
     ]

@@ -35,28 +35,27 @@ def table_of(*amplitudes: float, pedestal: str = "NP", fallen: str = "statue") -
 
 def test_tests_that_never_overturned_are_named_with_the_amplitude_that_they_survived():
     finding = amplitudes_found(table_of(0.5, NAN))
-    assert finding.headline == "1 of 2 simulated tests has an overturning amplitude"
-    assert "Not overturned, up to 2.00 g at most: test 1." in finding.text
-    assert "is 0.50 g" in finding.text
+    assert finding.headline == "1 of 2 simulated tests overturns, at 0.50 g"
+    assert "Not overturned by up to 2.00 g: test 1." in finding.numbers
 
 
 def test_where_nothing_overturned_no_amplitude_is_spoken_of():
     finding = amplitudes_found(table_of(NAN, NAN))
-    assert finding.headline == "Nothing overturned"
-    assert "lies between" not in finding.text
+    assert finding.headline == "No simulated test overturns"
+    assert " at " not in finding.headline
 
 
 def test_overturning_at_the_first_step_is_no_amplitude():
     finding = amplitudes_found(table_of(0.0, 0.0))
-    assert finding.headline == "No test has an overturning amplitude"
-    assert "Overturned at the first step already: test 0 and test 1." in finding.text
+    assert finding.headline == "All 2 simulated tests overturn, at the first step"
+    assert "only an upper bound is known: test 0 and test 1." in finding.numbers
 
 
 def test_only_what_stood_on_a_pedestal_can_be_said_to_have_fallen_from_it():
-    assert "pedestal" not in amplitudes_found(table_of(0.5, 0.6)).text
-    assert "never the pedestal" in amplitudes_found(table_of(0.5, pedestal="P")).text
+    assert "pedestal" not in amplitudes_found(table_of(0.5, 0.6)).said
+    assert "never the pedestal" in amplitudes_found(table_of(0.5, pedestal="P")).said
     fallen = amplitudes_found(table_of(0.5, 0.6, pedestal="P", fallen="pedestal"))
-    assert "it was the pedestal that fell" in fallen.text
+    assert "The pedestal itself fell" in fallen.said
 
 
 def means_of(**objects: float) -> pd.DataFrame:
@@ -77,7 +76,7 @@ def test_slenderness_is_spoken_of_only_where_objects_differ_in_it():
     slenderness = {"low": 2.0, "high": 5.0, "also": 5.0}
     (found,) = objects_compared(means_of(high=0.3, low=0.6), slenderness)
     assert found.headline == "More slender objects overturn earlier"
-    assert "low 0.600 g and high 0.300 g" in found.text
+    assert "low 0.600 g and high 0.300 g" in found.numbers
     (found,) = objects_compared(means_of(high=0.7, low=0.6), slenderness)
     assert "not simply follow" in found.headline
     assert objects_compared(means_of(low=0.6), slenderness) == []
@@ -117,10 +116,13 @@ def effects(lower: float, ratio: float, upper: float, **changes: object) -> pd.D
     [
         (effects(1.05, 1.2, 1.4), "raises the overturning amplitude by 20.0 %"),
         (effects(0.7, 0.8, 0.9), "lowers the overturning amplitude by 20.0 %"),
-        (effects(0.8, 1.1, 1.5), "cannot be told from none"),
+        (effects(0.8, 1.1, 1.5), "not distinguishable from zero"),
         (effects(0.98, 1.01, 1.03, equivalent=True), "less than 10 %"),
-        (effects(NAN, 1.1, NAN, pairs=1, units=1), "In 1 pair the pedestal raises"),
-        (effects(1.0, 1.0, 1.0), "the amplitudes are the same"),
+        (
+            effects(NAN, 1.1, NAN, pairs=1, units=1),
+            "The pedestal raises the amplitude by 10.0 % in 1 pair",
+        ),
+        (effects(1.0, 1.0, 1.0), "The amplitudes with and without pedestal are the same"),
     ],
 )
 def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(
@@ -128,26 +130,26 @@ def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(
 ):
     (found,) = pedestal_effect(table)
     assert words in found.headline
-    assert "nan" not in found.text
+    assert "nan" not in found.said
 
 
 def test_without_an_interval_it_is_said_why():
     (found,) = pedestal_effect(effects(NAN, 1.1, NAN, pairs=1, units=1))
-    assert "from 1 event there is no interval" in found.text
+    assert "from 1 earthquake there is no interval" in found.said
     (found,) = pedestal_effect(effects(1.0, 1.0, 1.0))
-    assert "[" not in found.text
-    assert "80 %" not in found.text
+    assert "[" not in found.said
+    assert "80 %" not in found.said
 
 
 def test_pairs_that_give_a_bound_only_are_counted():
     (found,) = pedestal_effect(effects(1.05, 1.2, 1.4, at_bound=3))
-    assert "3 of which with one test that gives a bound only" in found.text
+    assert "3 of which have one test that gives a bound only" in found.numbers
 
 
 def test_what_the_steps_hide_is_said():
     (found,) = pedestal_effect(effects(0.98, 1.0, 1.02, tied=30, resolution_ratio=1.05))
-    assert "30 of 36 pairs overturned in the same step" in found.text
-    assert "below 5.0 % are hidden" in found.text
+    assert "30 of 36 pairs overturned in the same step" in found.numbers
+    assert "hide effects below 5.0 %" in found.numbers
 
 
 def test_without_any_pair_the_effect_is_not_known():
@@ -163,18 +165,32 @@ def test_floors_are_compared_where_there_are_two():
     assert "all 2 floors" in found[1].headline
 
 
-def validity(friction: list[float], force: list[float]) -> pd.DataFrame:
-    return pd.DataFrame({"friction_demand": friction, "least_normal_force_n": force})
+def validity(friction: list[float], force: list[float], sides: str = "") -> pd.DataFrame:
+    """Tests without a pedestal, or with (P) and without one (N) as ``sides`` says."""
+    pedestal = [{"P": "P", "N": "NP"}[side] for side in sides or "N" * len(friction)]
+    return pd.DataFrame(
+        {"pedestal": pedestal, "friction_demand": friction, "least_normal_force_n": force}
+    )
 
 
-def test_friction_counts_the_tests_that_a_usual_surface_would_hold():
+def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
     (found,) = model_allowed(validity([0.3, 0.5, 1.3, math.inf], [5, 5, 5, -1]))
-    assert "2 of 4 tests would rock without sliding" in found.headline
-    assert "between 0.30 and 1.30" in found.text
-    assert "In 1 of 4 tests no friction would be enough" in found.text
-    assert "In 1 of 4 tests a block would have lifted off" in found.text
-    assert "inf" not in found.text
+    assert found.headline == "2 of 4 tests require a friction coefficient above 0.6"
+    assert "0.30 to 1.30" in found.numbers
+    assert "No friction would be enough in 1 of 4 tests" in found.numbers
+    assert "would have lifted off in 1 of 4 tests" in found.numbers
+    assert "inf" not in found.said
     assert model_allowed(validity([], [])) == []
+
+
+def test_what_friction_says_of_the_pedestal_is_said_where_both_sides_were_tested():
+    (found,) = model_allowed(validity([0.2, 0.3, 0.7, 1.4], [5, 5, 5, 5], "NNPP"))
+    assert found.headline == (
+        "All 2 tests with the pedestal require a friction coefficient above 0.6, and none of 2 tests "
+        "without"
+    )
+    assert "with the pedestal 0.70 to 1.40" in found.numbers
+    assert "without 0.20 to 0.30" in found.numbers
 
 
 def windows(*counts: int) -> pd.DataFrame:
@@ -190,8 +206,9 @@ def test_survival_windows_are_counted_over_the_sweeps_that_overturn():
         }
     )
     found = windows_found(windows(2, 0), tests)
-    assert found.headline == "1 of 2 overturning sweeps has survival windows"
-    assert "2.00 times" in found.text
-    assert windows_found(windows(0, 0), tests).headline == "No sweep has survival windows"
-    assert "everything overturned" in windows_found(windows(0, 0), tests).text
-    assert windows_found(windows(0).assign(first_upper=NAN), tests).headline == "No sweep overturns"
+    assert found.headline.startswith("Non-monotone response: in 1 of 2 analyses")
+    assert "2.00 times" in found.numbers
+    assert windows_found(windows(0, 0), tests).headline.startswith("Every motion stronger")
+    assert windows_found(windows(0).assign(first_upper=NAN), tests).headline.startswith(
+        "Nothing overturns"
+    )

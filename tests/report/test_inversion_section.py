@@ -31,18 +31,17 @@ def test_what_gives_the_effect_is_named_for_a_reader():
         [pair | {"simulated_ground": 1.104, "simulated_above": 0.951}, row("pedestal_lean_deg")],
         {"ground": 10, "above": -5},
     )
-    assert (
-        "two together can: the object's restitution everywhere with the object off" in found.message
-    )
+    said = " ".join([found.message, *found.paragraphs])
+    assert "Pairs that can: the object's restitution everywhere with the object off" in said
     assert "1.104, 0.951" in found.parts[0]
-    assert "A pedestal that leans by −2°" in found.parts[0]
+    assert "A pedestal leaning by −2°" in found.parts[0]
 
 
 @pytest.mark.parametrize("wanted", [{"ground": 10}, {"above": -5}])
 def test_a_place_that_is_not_asked_for_has_no_column(wanted):
     found = section([row("pedestal_lean_deg", plausible=False)], wanted)
-    assert ("P/NP above" in found.parts[0]) == ("above" in wanted)
-    assert "1 of 1 mechanisms are excluded" in found.message
+    assert (">above it<" in found.parts[0]) == ("above" in wanted)
+    assert "rules out 1 of the 1 mechanisms" in " ".join(found.paragraphs)
 
 
 def test_a_study_that_asks_for_no_effect_has_no_such_section():

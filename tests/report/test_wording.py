@@ -57,7 +57,7 @@ def test_numbers_of_things_agree_with_their_nouns():
     assert counted(1, "record") == "1 record"
     assert counted(2, "record") == "2 records"
     assert counted(0, "pair") == "no pair"
-    assert of_all(1, 1, "test") == "the one test"
+    assert of_all(1, 1, "test") == "the only test"
     assert of_all(3, 3, "test") == "all 3 tests"
     assert of_all(1, 3, "test") == "1 of 3 tests"
     assert of_all(0, 3, "test") == "none of 3 tests"

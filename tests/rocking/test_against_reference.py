@@ -55,7 +55,7 @@ def agree(seed, lone):
     fast = simulate(body, motion, DT, restitution=restitution)
     plain = simulate_reference(body, motion, DT, restitution=restitution)
     verdict = overturns(body, motion, DT, [1.0], restitution=[restitution])
-    if fast.closest_approach > MARGIN:
+    if fast.unstable_distance > MARGIN:
         assert fast.overturned == plain.overturned == bool(verdict.overturned[0, 0, 0])
     grazing = first_grazing(fast)
     n = min(len(fast.time), len(plain.time), int(np.searchsorted(fast.time, grazing)))

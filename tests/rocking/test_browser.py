@@ -11,10 +11,11 @@ import sys
 import numpy as np
 import pytest
 
+from rockfrag.engines.records import body_record
+from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.rocking import Block, Stack, simulate
-from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.browser import driver_text, module_bytes
-from rockfrag.rocking.inputs import STEP, free_samples, step_count
+from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
@@ -165,12 +166,12 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
                 vertical=vertical,
             )
         )
-        records.append(body_record(body, restitution, linear))
+        records.append(body_record(system_of(body, restitution=restitution), linear))
         assert math.isfinite(responses[-1].theta[-1, -1])
     said, numbers = in_node(tmp_path, cases, motion)
     found = iter(np.split(numbers, np.cumsum([n for one in said for n in lengths(one)])))
     for case, one, response, record in zip(cases, said, responses, records, strict=True):
-        body, events = response.body, response.events
+        body, events = response.system, response.events
         assert one["record"] == record.tobytes().hex()
         assert one["shaking"] == {
             "substeps": step_count(body, case["dt"], GRAVITY, STEP),
@@ -178,7 +179,7 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         }
         assert one["done"] == len(response.time)
         history = dict(zip(HISTORY, (next(found) for _ in HISTORY), strict=True))
-        blocks = ("2",) if isinstance(body, Block) else ("1", "2")
+        blocks = ("1", "2")[-body.count :]
         for name in ("theta", "omega", "alpha", "state"):
             short = "c" if name == "state" else name
             columns = np.column_stack([history[short + block] for block in blocks])
@@ -192,7 +193,7 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         assert (one["fallen"] > 0) == response.overturned
         assert one["fallTime"] == response.overturning_time or not response.overturned
         assert (one["impacts"], one["grazings"]) == (response.impacts, response.grazings)
-        assert one["closest"] == response.closest_approach or one["closest"] is None
+        assert one["closest"] == response.unstable_distance or one["closest"] is None
         assert one["alike"], "a verdict alone is that of the history"
     assert len(list(found)) == 1, "what is left is empty"
     assert sum(response.overturned for response in responses) > 5

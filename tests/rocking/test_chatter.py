@@ -16,10 +16,10 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
     fill_constants,
     number_of,
 )
+from rockfrag.engines.records import body_record
 from rockfrag.rocking import Block, Stack
-from rockfrag.rocking.body_record import body_record
 
-BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)))
+BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
 
 
 @entry_kernel

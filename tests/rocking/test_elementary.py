@@ -155,7 +155,7 @@ for body in bodies:
         for values in (response.theta, response.omega, response.energy.to_numpy(), response.normal_force):
             digest.update(values.tobytes())
 result = overturns(bodies, motion, 0.01, np.linspace(0.3, 2.0, 50))
-for values in (result.overturned, result.peak_rotation, result.peak_velocity, result.closest_approach):
+for values in (result.overturned, result.peak_rotation, result.peak_velocity, result.unstable_distance):
     digest.update(values.tobytes())
 print(digest.hexdigest())
 """

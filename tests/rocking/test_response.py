@@ -75,10 +75,11 @@ def test_the_energy_ledger_closes(response: Response) -> None:
     energy = response.energy
     scale = energy["kinetic"].max() + energy["input"].abs().max()
     assert energy["residual"].abs().max() < 1e-6 * scale
-    for column in ("lost_ground", "lost_interface"):
+    columns = [f"lost_contact_{k + 1}" for k in range(response.system.count)]
+    for column in columns:
         assert (np.diff(energy[column]) >= -1e-15 * scale).all()
     lost = (response.events["energy_before"] - response.events["energy_after"]).sum()
-    total = energy[["lost_ground", "lost_interface"]].iloc[-1].sum()
+    total = energy[columns].iloc[-1].sum()
     assert total == pytest.approx(lost, rel=1e-9)
 
 
@@ -188,6 +189,7 @@ def test_forces_of_a_rocking_block_follow_from_newton() -> None:
     assert response.normal_force[rows, 0] == pytest.approx(T2.mass * (G + rise), rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
 def test_a_heavy_blow_is_reported_as_a_jump() -> None:
     # thrown off the ground: a rotation this fast needs a pull at the pole
     response = simulate(T2, np.zeros(10), 0.001, theta0=0.0, omega0=12.0)
@@ -198,7 +200,7 @@ def test_a_heavy_blow_is_reported_as_a_jump() -> None:
 def test_overturning_has_a_time_and_a_body() -> None:
     stack = Stack(P, T3)
     response = simulate(stack, shaking(2, 0.6), DT)
-    assert response.overturned and response.overturned_body == "statue"
+    assert response.overturned and response.overturned_body == "upper body"
     assert 0 < response.overturning_time <= response.time[-1]
     calm = simulate(stack, shaking(2, 0.15), DT)
     assert not calm.overturned and calm.overturned_body == "" and math.isnan(calm.overturning_time)
@@ -208,10 +210,10 @@ def test_overturning_has_a_time_and_a_body() -> None:
 def test_a_pedestal_that_is_tall_and_thin_falls_with_its_statue() -> None:
     column = Stack(Block(0.3, 1.5, 50.0), Block(0.3, 0.3, 10.0))
     response = simulate(column, np.r_[np.full(80, 4.0), np.zeros(50)], 0.01)
-    assert response.overturned and response.overturned_body == "pedestal"
+    assert response.overturned and response.overturned_body == "lower body"
 
 
-def test_closest_approach_tells_how_near_the_verdict_was() -> None:
+def test_unstable_distance_tells_how_near_the_verdict_was() -> None:
     pulse = np.sin(np.linspace(0, np.pi, 101))
     dt = math.pi / (3 * T2.frequency()) / 100
     low, high = 1.5, 4.0
@@ -221,8 +223,8 @@ def test_closest_approach_tells_how_near_the_verdict_was() -> None:
         low, high = (low, middle) if fell else (middle, high)
     near = simulate(T2, low * T2.alpha * G * pulse, dt)
     far = simulate(T2, 0.7 * low * T2.alpha * G * pulse, dt)
-    assert not near.overturned and near.closest_approach < 1e-3
-    assert far.closest_approach > 0.1
+    assert not near.overturned and near.unstable_distance < 1e-3
+    assert far.unstable_distance > 0.1
 
 
 def test_patterns_have_the_thesis_s_names() -> None:

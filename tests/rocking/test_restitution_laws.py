@@ -9,10 +9,11 @@ from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.engines.kernels.equations import STATE
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import entry_kernel
+from rockfrag.engines.records import body_record
 from rockfrag.errors import InputError
 from rockfrag.rocking import MeasuredRestitution
-from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.measured_restitution import LAWS, largest_restitution
+from rockfrag.rocking.options import system_of
 from rockfrag.rocking.reference.model import Model
 
 STILL = np.zeros(300)
@@ -72,7 +73,7 @@ def compiled(body, restitution, old, closes, theta, omega):
     state["c1"], state["c2"] = old
     state["theta1"], state["theta2"] = theta
     state["omega1"], state["omega2"] = omega
-    impact_of(body_record(body, restitution), state, *closes, out)
+    impact_of(body_record(system_of(body, restitution=restitution)), state, *closes, out)
     return tuple(out["c"].tolist()), tuple(out["omega"].tolist()), int(out["gave_way"])
 
 

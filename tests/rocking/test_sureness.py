@@ -40,13 +40,13 @@ def test_a_smaller_perturbation_leaves_more_verdicts_as_they_are():
     assert shares[2] < 1
 
 
-def test_the_closest_approach_does_not_tell_what_flips():
+def test_the_unstable_distance_does_not_tell_what_flips():
     found = overturns(STACK, motion(0), DT, SCALES)
     sure = verdict_sureness(STACK, motion(0), DT, SCALES, perturbation=0.01, copies=12)
     unsure = sure < 1
     assert unsure.sum() > 3
     # most verdicts that do flip have kept away from every unstable equilibrium
-    assert np.median(found.closest_approach[unsure]) > 1e-3
+    assert np.median(found.unstable_distance[unsure]) > 1e-3
 
 
 @pytest.mark.parametrize(

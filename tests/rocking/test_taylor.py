@@ -15,10 +15,10 @@ from rockfrag.engines.kernels.equations import (
 )
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
+from rockfrag.engines.records import body_record
 from rockfrag.rocking import Block, Stack
-from rockfrag.rocking.body_record import body_record
 
-BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)))
+BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
 H, GROUND, RISE = 0.01, 2.0, -1.5
 GRAVITY, LIFT = 9.0, 3.0
 """Of a ground that moves vertically too."""

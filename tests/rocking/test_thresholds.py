@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.case_list import overturned_cases
+from rockfrag.rocking.ensemble import Options, overturns, prepared
 from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block
@@ -149,7 +149,8 @@ def test_scattered_cases_have_the_verdicts_of_the_grid(ensemble):
     grid = overturns(bodies, motions, 0.01, scales).overturned
     rng = np.random.default_rng(1)
     i, j, k = (rng.integers(0, n, 50) for n in grid.shape)
-    some = overturns_of_cases(bodies, motions, np.full(3, 0.01), i, j, scales[k])
+    cases = prepared(bodies, motions, 0.01, scales, Options())
+    some = overturned_cases(cases, i, j, scales[k])
     np.testing.assert_array_equal(some, grid[i, j, k])
 
 

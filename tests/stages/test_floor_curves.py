@@ -85,8 +85,7 @@ def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path
                 "floor": "hall",
                 "amplitude_g": a,
                 "overturned": a > falls,
-                "peak_slip_ground_m": 0.0004 if a < slides else 0.02,
-                "peak_slip_interface_m": 0.0,
+                "peak_slip_m": 0.0004 if a < slides else 0.02,
             }
             for a in np.geomspace(0.1, 2.0, 60)
         ]

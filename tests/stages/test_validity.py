@@ -33,7 +33,7 @@ def test_forces_are_those_of_one_history():
         response = simulate(BODY, scale_to_pga(known[row["motion"]], 0.4))
         assert row["friction_demand"] == response.friction_demand.max()
         assert row["least_normal_force_n"] == response.least_normal_force.min()
-        assert row["closest_approach"] == response.closest_approach
+        assert row["unstable_distance"] == response.unstable_distance
 
 
 def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch: pytest.MonkeyPatch):

@@ -48,13 +48,13 @@ def test_every_statement_has_one_row(ledger: pd.DataFrame) -> None:
 
 @pytest.mark.parametrize("number", [1, 2, 3, 4, 6, 7, 8, 10, 13, 15, 16, 20, 22, 24])
 def test_what_mechanics_settles_is_settled(ledger: pd.DataFrame, number: int) -> None:
-    assert ledger.loc[number, "verdict"] == "holds", ledger.loc[number]
+    assert ledger.loc[number, "verdict"] == "confirmed", ledger.loc[number]
 
 
 @pytest.mark.parametrize("number", [9, 11, 12, 21, 23])
 def test_what_holds_for_the_specimens_alone_says_so(ledger: pd.DataFrame, number: int) -> None:
     row = ledger.loc[number]
-    assert row["verdict"] == "holds for the specimens, exceptions elsewhere", row
+    assert row["verdict"] == "confirmed for the specimens, with exceptions elsewhere", row
 
 
 def test_identities_are_called_so(ledger: pd.DataFrame) -> None:
@@ -139,7 +139,7 @@ def test_pedestals_of_random_stacks_come_to_rest_under_a_rocking_statue(
 
 
 def test_without_a_measured_history_restitution_stays_open(ledger: pd.DataFrame) -> None:
-    assert ledger.loc[5, "verdict"] == "open"
+    assert ledger.loc[5, "verdict"] == "undecided"
     assert "no measured history" in ledger.loc[5, "remark"]
 
 
@@ -189,9 +189,9 @@ def test_what_the_data_cannot_say_is_open_with_the_reason(
     specimens: dict[str, Block], motions: list[Motion], opened: set[int]
 ) -> None:
     for row in theory_ledger(specimens, motions, seed=1).itertuples():
-        assert (row.verdict == "open") == (row.number in opened), row
+        assert (row.verdict == "undecided") == (row.number in opened), row
         if row.number in opened:
-            assert "not decidable" in row.remark
+            assert "cannot decide" in row.remark
 
 
 def test_printed_tables_say_nothing_about_other_specimens() -> None:
@@ -227,7 +227,7 @@ def test_existence_needs_one_motion_only(ledger: pd.DataFrame) -> None:
     """C16 says that there are ranges; motions without one do not make it false."""
     having, total = ledger.loc[16, "figure"].split(" motions")[0].split(" of ")
     assert 0 < int(having) <= int(total)
-    assert ledger.loc[16, "verdict"] == "holds"
+    assert ledger.loc[16, "verdict"] == "confirmed"
 
 
 def test_threshold_is_where_bisection_ends_and_simulations_start() -> None:
@@ -254,6 +254,6 @@ def test_thesis_motions_give_the_ledger(four_records: dict[str, Motion]) -> None
     motions = list(four_records.values())
     table = theory_ledger(THESIS_BODIES, motions, seed=1).set_index("number")
     for number in (8, 14, 15, 16, 17, 18):
-        assert table.loc[number, "verdict"] == "holds", table.loc[number]
+        assert table.loc[number, "verdict"] == "confirmed", table.loc[number]
     # four earthquakes cannot tell whether a spectrum is a better proxy than a peak
-    assert table.loc[19, "verdict"] == "open"
+    assert table.loc[19, "verdict"] == "undecided"

@@ -58,4 +58,4 @@ def test_the_granite_rock_runs_through_the_workflow(tmp_path: Path, shared: Path
     assert aic["PGV"] == pytest.approx(309.0, abs=0.1)
     page = (results / "report.html").read_text()
     assert "PGV predicts overturning best" in page
-    assert "Adding PGA does not help" in page
+    assert "Adding PGA does not improve the prediction" in page

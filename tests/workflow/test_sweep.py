@@ -49,8 +49,8 @@ def test_a_sweep_does_not_depend_on_threads_or_on_the_batch(body: Block | Stack)
 def test_below_its_threshold_a_block_never_moves():
     table = sweep(Configuration("X", "T", "", TOWER), motions(), AMPLITUDES)
     low = table["amplitude_g"] < 1 / 3
-    assert (table.loc[low, "peak_rotation_statue"] == 0).all()
-    assert table.loc[~low, "peak_rotation_statue"].iloc[-1] > 0
+    assert (table.loc[low, "peak_rotation_body_1"] == 0).all()
+    assert table.loc[~low, "peak_rotation_body_1"].iloc[-1] > 0
     assert set(table["overturned_body"]) <= {"", "statue"}
 
 

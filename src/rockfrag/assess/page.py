@@ -139,7 +139,7 @@ def _answer(found: Assessment) -> Answer:
             lambda: shares_figure(found),
         ),
         rests_on=[f"{found.motions.words}.", *main_assumptions(found)],
-        could_overturn=doubtful,
+        could_change=doubtful,
         questions=[
             ("What helps?", "remedies"),
             ("How does it stand best?", "arrangements"),
@@ -332,9 +332,8 @@ def _rules(found: Assessment) -> Section:
         "What rules of thumb say",
         "Checks of practice beside the simulation of this object.",
         [
-            "A ratio below 1 is cautious, above 1 unsafe. An object on a pedestal is checked alone and as "
-            "one body "
-            "with it, and the lower amplitude counts, as practice does with three models."
+            "A ratio below 1 is cautious, above 1 unsafe. An object on a pedestal is checked alone and as one "
+            "body with it, and the lower amplitude counts, as practice does with three models."
         ],
         [table_html(table, columns, "Rules held against every motion that topples the object.")],
     )

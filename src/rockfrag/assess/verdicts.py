@@ -11,9 +11,10 @@ from rockfrag.assess.hazard.measure import Measure
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.fragility.observations import Outcomes
+from rockfrag.outcomes.limit_states import limit_state_named
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.ensemble import EnsembleResult, overturns
+from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.system.blocks import Body
 
@@ -229,8 +230,9 @@ def _shaken(
         np.minimum(ladder.scales, believable_scales(motions.base)),
         restitution=restitution,
     )
+    rocked = limit_state_named("rocks").reached(result)
     return [
-        Verdicts(ladder, result.overturned[i], _rocked(result, i), motions.events)
+        Verdicts(ladder, result.overturned[i], rocked[i], motions.events)
         for i in range(len(bodies))
     ]
 
@@ -254,10 +256,11 @@ def _shaken_from_all_sides(
     for first, second in motions.pairs:
         place[second] = first
     found = []
+    moves = limit_state_named("rocks").reached(result)
     for i in range(len(bodies)):
         fell, rocked = (np.zeros(ladder.scales.shape, dtype=bool) for _ in range(2))
         np.logical_or.at(fell, of_row, result.overturned[i])
-        np.logical_or.at(rocked, of_row, _rocked(result, i))
+        np.logical_or.at(rocked, of_row, moves[i])
         found.append(Verdicts(ladder, fell[place], rocked[place], motions.events))
     return found
 
@@ -292,8 +295,3 @@ def share_with_sliding(
         friction=objects.friction,
     ).overturned[0, :, 0]
     return float(fallen[allowed].mean())
-
-
-def _rocked(result: EnsembleResult, i: int) -> NDArray[np.bool_]:
-    peaks = np.maximum(result.peak_rotation[i], result.peak_rotation_pedestal[i])
-    return np.asarray((peaks > 0) | result.overturned[i])

@@ -12,7 +12,10 @@ from rockfrag.building.model import (
     ShearBuilding,
     stiffnesses_for_period,
 )
+from rockfrag.building.modes import find_modes
 from rockfrag.errors import InputError
+from rockfrag.files import distinct_file_names
+from rockfrag.plausibility import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
 from rockfrag.schema import checked
 from rockfrag.yaml_file import read_yaml
 
@@ -68,11 +71,22 @@ def _building(settings: Mapping[str, Any]) -> ShearBuilding:
         )
     if ("first_period_s" in settings) == ("storey_stiffnesses_N_m" in settings):
         raise InputError("give either first_period_s or storey_stiffnesses_N_m, and not both.")
+    for key, values, unit, (least, most) in (
+        ("storey_heights_m", heights, "m", STOREY_HEIGHTS),
+        ("masses_kg", masses, "kg", FLOOR_MASSES),
+    ):
+        wrong = next((i for i, value in enumerate(values) if not least <= value <= most), None)
+        if wrong is not None:
+            raise InputError(
+                f"{key}[{wrong}]: {values[wrong]:g} {unit} is no building's, which have from {least:g} to "
+                f"{most:g} {unit}; check the unit."
+            )
+    distinct_file_names(settings.get("floors", {}))
     if "first_period_s" in settings:
         stiffnesses = stiffnesses_for_period(masses, heights, float(settings["first_period_s"]))
     else:
         stiffnesses = tuple(float(value) for value in settings["storey_stiffnesses_N_m"])
-    return ShearBuilding(
+    building = ShearBuilding(
         masses=masses,
         heights=heights,
         stiffnesses=stiffnesses,
@@ -83,6 +97,14 @@ def _building(settings: Mapping[str, Any]) -> ShearBuilding:
         name=settings.get("name", "building"),
         vertical_factors=settings.get("vertical_factors", {}),
     )
+    period, (shortest, longest) = float(find_modes(building).period[0]), FIRST_PERIODS
+    if not shortest <= period <= longest:
+        key = "first_period_s" if "first_period_s" in settings else "storey_stiffnesses_N_m"
+        raise InputError(
+            f"{key}: the first period would be {period:.3g} s, and those of buildings are from {shortest:g} to "
+            f"{longest:g} s; check the units."
+        )
+    return building
 
 
 def _damping(settings: Mapping[str, Any]) -> Damping:

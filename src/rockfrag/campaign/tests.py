@@ -146,15 +146,14 @@ def _with_verdicts(
 def _codes(
     path: str | os.PathLike[str] | None, column: str, tests: "pd.Series[str]"
 ) -> pd.DataFrame:
-    """Verdicts of other programs in the order of the tests."""
+    """Outcomes by other programs in the order of the tests, as far as they are given: 1, 0, or NaN for none."""
     if path is None:
         return pd.DataFrame(index=range(len(tests)))
     source = Path(path).name
     names = [name for name in read_titles(path) if name != column]
     table = read_columns(path, labels=[column], verdicts=names).set_index(column)
-    absent = sorted(set(tests) - set(table.index))
-    if absent:
+    if not set(tests) & set(table.index):
         raise InputError(
-            f"{source}: has no verdict for {len(absent)} of {len(tests)} tests, {absent[0]} first."
+            f"{source}: has none of the {len(tests)} tests; check that the column {column!r} has their names."
         )
-    return table.astype(bool).loc[list(tests)].reset_index(drop=True)
+    return table.astype(float).reindex(list(tests)).reset_index(drop=True)

@@ -46,6 +46,6 @@ def simulate_tests(
             threads=threads,
         )
         overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
-        rocked[:, first : first + len(batch)] = result.peak_rotation[:, :, 0] > 0
+        rocked[:, first : first + len(batch)] = result.peak_rotation[:, :, 0, 0] > 0
         done(first + len(batch))
     return overturned, rocked

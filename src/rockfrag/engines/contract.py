@@ -9,7 +9,7 @@
 3. **Who answers.**  The first engine in the registry that supports a system, its motion and the request.  Its name
    stands in ``Outcomes.engine``.  If none does, :func:`refusal` says in one sentence which wish cannot be met
    together with which.
-4. **The instant of a fall** (``fall_time``): the first sample at which a body lies on its side, turned by a
+4. **The instant of a fall** (``overturning_time``): the first sample at which a body lies on its side, turned by a
    quarter turn or more from the vertical or from the body that it stood on, or has left the edge of what it
    stood on.  An engine that stops before that leaves NaN there and writes ``certain_time``, the instant from which
    the fall was certain whatever followed.  The two are never mixed in one column.
@@ -28,7 +28,8 @@
 import math
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import cached_property
+from functools import cache, cached_property
+from importlib import import_module
 from itertools import combinations
 from typing import Any, Protocol, runtime_checkable
 
@@ -197,7 +198,20 @@ def by_wishes(engine: Engine, system: System, motion: GroundMotion, request: Req
     return Support(wishes(system, motion, request) - engine.meets)
 
 
+BUILT_IN = (
+    "rockfrag.engines.lone_block",
+    "rockfrag.engines.two_blocks",
+    "rockfrag.engines.single",
+    "rockfrag.engines.planar.engine",
+)
+"""Modules with an ``ENGINE`` each, in the order in which they are asked; loaded when an engine is first wanted."""
+
 _ENGINES: list[Engine] = []
+
+
+@cache
+def _load_built_in() -> None:
+    _ENGINES[:0] = [import_module(name).ENGINE for name in BUILT_IN]
 
 
 def register_engine(engine: Engine, before: str | None = None) -> Engine:
@@ -208,7 +222,7 @@ def register_engine(engine: Engine, before: str | None = None) -> Engine:
     InputError
         If the name is taken, or there is no engine to put it before.
     """
-    names = [other.name for other in _ENGINES]
+    names = [other.name for other in engines()]
     if engine.name in names:
         raise InputError(f"engine {engine.name!r} is registered already; give it another name.")
     if before is not None and before not in names:
@@ -224,6 +238,7 @@ def forget_engine(name: str) -> None:
 
 def engines() -> tuple[Engine, ...]:
     """Return the engines in the order in which they are asked."""
+    _load_built_in()
     return tuple(_ENGINES)
 
 
@@ -235,7 +250,7 @@ def engine_for(system: System, motion: GroundMotion, request: Request) -> Engine
     InputError
         If none does: which wish cannot be met together with which.
     """
-    for engine in _ENGINES:
+    for engine in engines():
         if engine.supports(system, motion, request):
             return engine
     raise InputError(refusal(system, motion, request))
@@ -246,12 +261,12 @@ def refusal(system: System, motion: GroundMotion, request: Request) -> str:
     wanted = wishes(system, motion, request)
     for many in range(1, len(wanted) + 1):
         for some in combinations(sorted(wanted, key=lambda wish: wish.name), many):
-            if not any(set(some) <= engine.meets for engine in _ENGINES):
+            if not any(set(some) <= engine.meets for engine in engines()):
                 first, *others = (wish.value for wish in some)
                 if not others:
                     return f"{first} is beyond every engine; leave it out."
                 return f"{first} cannot be had together with {' and '.join(others)}; leave one of them out."
-    reasons = [str(engine.supports(system, motion, request).reason) for engine in _ENGINES]
+    reasons = [str(engine.supports(system, motion, request).reason) for engine in engines()]
     said = next((reason for reason in reasons if reason), "there is no engine for it")
     return f"this system cannot be computed: {said}."
 

@@ -1,5 +1,6 @@
-"""What stands beside every fitted curve: does it describe the data, who moves it, what without a curve."""
+"""What is said beside every fitted curve: whether it describes the data, and which motion moves it most."""
 
+import re
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -16,10 +17,13 @@ from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.fragility.shares import Shares, shares_of_capacities, shares_of_verdicts
 
 TAILS = (
-    "The limits of β hold for lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
-    "goodness of fit seldom shows, nominal 90 % limits held in 82 %."
+    "The limits of β assume lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
+    "goodness of fit seldom shows, nominal 90 % limits contained the truth in 82 %."
 )
 """Said of every curve with limits of β, whether or not its fit is rejected; see the validation."""
+
+REJECTION = re.compile(r"The lognormal curve is rejected \(p = .*?\.(?= [A-Z]|$)")
+"""Finds the sentence about a rejected curve among its warnings."""
 
 FEWEST_MOTIONS = 10
 """Below so many motions every table and export says how few they are."""
@@ -127,15 +131,15 @@ def _checks(
     notes: list[str] = []
     if p_fit < REJECTED:
         notes.append(
-            f"The lognormal curve does not describe the data (p = {p_fit:.3f}): where it matters use the "
-            f"empirical shares{_known_points(shares, fit.unit, interval.level)}."
+            f"The lognormal curve is rejected (p = {p_fit:.3f}): use the nonparametric monotone curve"
+            f"{_known_points(shares, fit.unit, interval.level)}."
         )
     if interval.method == "jackknife" and np.isfinite(interval.beta).all():
         notes.append(TAILS)
     if fit.n_motions < FEWEST_MOTIONS and np.isfinite(fit.theta):
         notes.append(
-            f"The curve rests on {fit.n_motions} motion{'s' if fit.n_motions > 1 else ''} only; it "
-            "describes little beyond."
+            f"The curve is based on only {fit.n_motions} motion{'s' if fit.n_motions > 1 else ''} and describes "
+            "little else."
         )
     name, influence = _influence(interval, groups)
     return Checks(p_fit, test, residual, name, influence, shares, tuple(notes))
@@ -144,10 +148,10 @@ def _checks(
 def _known_points(shares: Shares, unit: str, level: float) -> str:
     """Say the median and β of the shares as far as these go from 16 to 84 %, with their limits."""
     if not np.isfinite(shares.theta):
-        return ", which do not go through a half"
+        return ", which does not reach a half"
     median = f"{shares.theta:.3g} {unit}{_limits_text(shares.theta_limits, level)}"
     if not np.isfinite(shares.beta):
-        return f", whose median is {median}, and which do not go from 16 to 84 %"
+        return f", whose median is {median} and which does not go from 16 to 84 %"
     return f", whose median is {median} and β {shares.beta:.2f}{_limits_text(shares.beta_limits, level)}"
 
 
@@ -157,7 +161,7 @@ def _limits_text(limits: tuple[float, float], level: float) -> str:
         return ""
     words = [f"from {low:.3g}"] if low > 0 else []
     words += [f"to {high:.3g}"] if np.isfinite(high) else []
-    return f" ({' '.join(words)}, {level:.0%} limits)" if words else " (without limits)"
+    return f" ({' '.join(words)}, {100 * level:g} % limits)" if words else " (without limits)"
 
 
 def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:

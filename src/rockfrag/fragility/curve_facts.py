@@ -28,12 +28,12 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
     """Say of a row of a fragility table what it rests on, in sentences; empty where nothing is known."""
     parts = []
     if _known(row, "n_motions"):
-        events = f" of {int(row['n_events'])} events" if _known(row, "n_events") else ""
+        events = f" of {int(row['n_events'])} earthquakes" if _known(row, "n_events") else ""
         parts.append(f"{int(row['n_motions'])} motions{events}.")
     if _known(row, "theta_lower") and _known(row, "beta_lower"):
         parts.append(
-            f"{float(row['level']):.0%} limits: theta {row['theta_lower']:.4g} to "
-            f"{row['theta_upper']:.4g}, beta {row['beta_lower']:.4g} to {row['beta_upper']:.4g}."
+            f"{100 * float(row['level']):g} % limits: theta {row['theta_lower']:.4g} to "
+            f"{row['theta_upper']:.4g}, beta {_beta_limits(row)}."
         )
     elif "theta_lower" in row:
         parts.append("No confidence limits.")
@@ -59,6 +59,13 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
     return " ".join(parts)
 
 
+def _beta_limits(row: Mapping[Hashable, Any]) -> str:
+    """Limits of β, or that the estimate is one: that of tests which a single threshold separates."""
+    if row["beta_lower"] <= 0 and row["beta_upper"] <= row.get("beta", math.inf):
+        return f"at most {row['beta_upper']:.4g} (not resolved)"
+    return f"{row['beta_lower']:.4g} to {row['beta_upper']:.4g}"
+
+
 def _known(row: Mapping[Hashable, Any], name: str) -> bool:
     value = row.get(name)
     return value is not None and math.isfinite(float(value))
@@ -73,4 +80,4 @@ def _without_form(row: Mapping[Hashable, Any]) -> str:
         )
         if math.isfinite(value):
             words.append(f"{name} {value:.4g} ({low:.4g} to {high:.4g})")
-    return f"In its place the never-falling share of the tests, without a form: {', '.join(words)}."
+    return f"Use the nonparametric monotone curve instead: {', '.join(words)}."

@@ -189,9 +189,9 @@ def _refitted_deviance(pooled: _Pooled, fit: FragilityFit, drawn: Floats) -> Flo
 
 def _words(deviance: float, p_value: float, bins: int, dependence: str) -> str:
     verdict = (
-        "the curve does not describe the verdicts; look at the empirical shares"
+        "the curve is rejected; use the nonparametric monotone curve"
         if p_value < 0.05
-        else "nothing speaks against the curve"
+        else "the curve is not rejected"
     )
     return (
         f"Deviance {deviance:.1f} in {bins} bins, p = {p_value:.3f} (parametric bootstrap of "

@@ -1,4 +1,4 @@
-"""Which intensity measure foretells overturning best, and how sure is that choice?"""
+"""Which intensity measure predicts overturning best, and how sure is that choice?"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -122,7 +122,7 @@ def recommend_measure(
 ) -> MeasureChoice:
     """Compare intensity measures on the same tests and recommend one, in words.
 
-    Motions (events where given) are held out in turn and foretold from the others; the measure with
+    Motions (events where given) are held out in turn and predicted from the others; the measure with
     the best score is recommended. Measures that the scores do not tell from it are named as equals,
     with the more efficient one (smaller β) first.
 
@@ -258,6 +258,13 @@ def _best_pair(
     return found
 
 
+_WORDS = {"mean_period_s": "mean period", "d5_95_s": "significant duration"}
+
+
+def _column(name: str) -> str:
+    return _WORDS.get(name, name)
+
+
 def p_text(p: float) -> str:
     """P value in words: never as zero."""
     return f"p = {p:.3f}" if p >= 0.001 else "p < 0.001"
@@ -265,12 +272,12 @@ def p_text(p: float) -> str:
 
 def _pair_words(name: str, p: float, gain: float) -> str:
     if gain > 0 and p < TOLD_APART_P:
-        return (
-            f"Adding {name} foretells held-out tests better ({p_text(p)}): use the surface in both."
-        )
+        return f"Adding {name} improves the prediction of held-out tests ({p_text(p)}): use the surface in both."
     if not np.isfinite(p):
-        return f"Whether {name} adds to it cannot be tested with one group of motions."
-    return f"Adding {name} does not help to foretell held-out tests: one measure is enough."
+        return f"One group of motions cannot show whether {name} adds to it."
+    return (
+        f"Adding {name} does not improve the prediction of held-out tests: one measure is enough."
+    )
 
 
 def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
@@ -279,7 +286,7 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
         return "The probability of overturning rises in none of the measures."
     if table["score"].isna().all():
         return (
-            "The measures cannot be compared: it takes two motions or events, and brackets of the "
+            "The measures cannot be compared: this needs two motions or earthquakes, and brackets of the "
             "overturning amplitude that do not all overlap."
         )
     best = table.iloc[0]
@@ -297,28 +304,34 @@ def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> st
             for row in equal.to_dict("records")
         )
         enough = groups >= FEWEST_GROUPS_TO_CHOOSE
-        advice = "any of them will do" if enough else "they are too few to rule these out"
+        advice = "any of them will do" if enough else "the tests are too few to rule these out"
         parts.append(
-            f"The tests do not tell it from {listed}: {advice}; it is named for its smaller β."
+            f"It is not distinguishable from {listed}: {advice}. It is preferred for its smaller β."
         )
     if len(worse):
         row = worse.iloc[0]
         parts.append(
-            f"{row['im']} is worse: {row['score']:.3f} ({p_text(float(row['p_worse']))}, t over {groups} groups "
-            "of tests that hang together)."
+            f"{row['im']} is worse: {row['score']:.3f} ({p_text(float(row['p_worse']))}, t-test over {groups} "
+            "groups of dependent tests)."
         )
     if len(others):
-        parts.append(f"It scores best in {best['chosen_share']:.0%} of bootstrap samples of them.")
-    if groups < FEWEST_GROUPS_TO_CHOOSE:
         parts.append(
-            f"{groups} groups are few: the choice may be another with further earthquakes."
+            f"It scores best in {100 * best['chosen_share']:.0f} % of bootstrap samples of these groups."
         )
+    if groups < FEWEST_GROUPS_TO_CHOOSE:
+        parts.append(f"{groups} groups are few: other earthquakes may change the choice.")
     for column in given:
         p = float(best[f"p_{column}"])
         if np.isnan(p):
-            parts.append(f"Its sufficiency against {column} cannot be tested with these motions.")
+            parts.append(
+                f"These motions cannot test its sufficiency with respect to {_column(column)}."
+            )
         elif p < SUFFICIENT_P:
-            parts.append(f"It is not sufficient: what it leaves depends on {column} ({p_text(p)}).")
+            parts.append(
+                f"It is not sufficient: its residuals depend on {_column(column)} ({p_text(p)})."
+            )
         else:
-            parts.append(f"Nothing shows that what it leaves depends on {column} (p = {p:.2f}).")
+            parts.append(
+                f"No dependence of its residuals on {_column(column)} is shown (p = {p:.2f})."
+            )
     return " ".join(parts)

@@ -1,7 +1,7 @@
 """Choice of the intensity measure from amplitude sweeps, one body at a time.
 
 A motion scaled up and down gives many verdicts but one capacity, so the measures are compared by
-how well they foretell the bracket of the first overturning of events that were held out: one
+how well they predict the bracket of the first overturning of events that were held out: one
 observation per motion.
 """
 

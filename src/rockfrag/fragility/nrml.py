@@ -3,7 +3,7 @@
 import math
 import os
 import re
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree
 
@@ -13,6 +13,7 @@ from scipy import constants, special
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
+from rockfrag.fragility.checks import REJECTION
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.identifiers import identifiers
 from rockfrag.fragility.observations import Floats
@@ -23,8 +24,8 @@ STATES = ("rocks", "slides", "overturned")
 
 STEP = 0.01
 """β with which an exact threshold, a step, is written [-]; the formats take no step."""
-CROSSING = 1e-3
-"""Levels are written where a state would be more probable than the state before it by this much [-]."""
+CROSSING = 1e-9
+"""Levels are written where a state would be more probable than the state before it by more than rounding [-]."""
 
 _STEPS = np.linspace(-4.0, 4.0, 33)
 """Levels of a discrete function around each median, in standard deviations."""
@@ -74,8 +75,8 @@ def write_nrml(
 ) -> None:
     """Write rows of a fragility table as an NRML 0.5 fragility model.
 
-    NRML has no place for confidence limits and numbers of motions, so the description says them for each
-    function, and a comment stands before it.
+    NRML has no place for confidence limits and numbers of motions, so a comment before each function gives them.
+    The description has what is to be warned of, each sentence once.
 
     Parameters
     ----------
@@ -125,7 +126,7 @@ def write_nrml(
     )
     description = ElementTree.SubElement(model, "description")
     ElementTree.SubElement(model, "limitStates").text = " ".join(known)
-    facts = []
+    warned: list[str] = []
     for name in sorted(rows):
         lacking = [state for state in known if state not in rows[name]]
         if lacking:
@@ -133,17 +134,33 @@ def write_nrml(
                 f"NRML: {name!r} has no curve for the limit state {lacking[0]}, which others have; leave "
                 "it or that state out."
             )
-        said = " ".join(f"{state}: {curve_facts(rows[name][state])}" for state in known)
-        facts.append(f"{name}: {said}")
+        said = " ".join(
+            f"{state}: {curve_facts({**rows[name][state], 'warnings': ''})}" for state in known
+        )
         # two hyphens would end the comment
-        model.append(ElementTree.Comment(f" {facts[-1].replace('--', '- -')} "))
+        model.append(ElementTree.Comment(f" {name}: {said} ".replace("--", "- -")))
+        warned += [str(rows[name][state].get("warnings") or "") for state in known]
         model.append(_function(name, {state: rows[name][state] for state in known}, by, shares))
     description.text = " ".join(
-        ["Free-standing bodies in earthquakes, lognormal in the intensity measure.", *facts]
+        [
+            "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
+            "goodness of fit and the number of its motions.",
+            *said_once(warned),
+        ]
     )
     ElementTree.indent(root, space="  ")
     text = ElementTree.tostring(root, encoding="unicode")
     write_text('<?xml version="1.0" encoding="UTF-8"?>\n' + text + "\n", path)
+
+
+def said_once(notes: Sequence[str]) -> list[str]:
+    """Sentences of several warnings, each once, without what is said of a single rejected curve."""
+    sentences = [
+        one
+        for note in notes
+        for one in re.split(r"(?<=\.)\s+(?=[A-Z])", REJECTION.sub("", note).strip())
+    ]
+    return [one for one in dict.fromkeys(sentences) if one]
 
 
 def _function(

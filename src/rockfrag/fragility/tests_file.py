@@ -116,17 +116,30 @@ def read_tests(
 
 
 def _warn_of_peaks(table: pd.DataFrame, name: str, source: str) -> None:
-    """Warn if peaks of acceleration look as if they were given in another unit than their title says."""
+    """Warn if peaks of a motion look as if they were given in another unit than their title says."""
     measure, _, unit = name.partition("_")
-    if measure not in ("pga", "pfa") or unit not in DIMENSIONS["acceleration"]:
-        return
-    peak = float(table[name].max())
-    if convert(peak, unit, "m_s2") > LARGEST_PEAK:
-        warnings.warn(
-            f"{source}, column {name!r}: the largest is {peak:.4g}, more than any table or earthquake has "
-            "shaken; mend the unit in the title.",
-            stacklevel=3,
-        )
+    for dimension, measures, si, (least, most) in _PEAKS:
+        if measure not in measures or unit not in DIMENSIONS[dimension]:
+            continue
+        peak = float(table[name].max())
+        if not least <= convert(peak, unit, si) <= most:
+            odd = (
+                "more than any table or earthquake has shaken"
+                if convert(peak, unit, si) > most
+                else "too little to overturn any free-standing object"
+            )
+            warnings.warn(
+                f"{source}, column {name!r}: the largest is {peak:.4g}, {odd}; mend the unit in the title.",
+                stacklevel=3,
+            )
+
+
+_PEAKS = (
+    ("acceleration", ("pga", "pfa"), "m_s2", (0.2, LARGEST_PEAK)),
+    ("velocity", ("pgv", "pfv"), "m_s", (0.005, 10.0)),
+)
+"""Plausible largest peaks of a table of tests: below 0.02 g only bodies more slender than 50 rock, and 5 mm/s
+overturn nothing taller than a centimetre."""
 
 
 def read_columns(

@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.outcomes.columns import Column, Table, column
+from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -38,9 +39,9 @@ class Outcomes:
         Names of the engines that answered.
     engine
         Which of them answered each case.
-    overturned, overturned_body, fall_time, certain_time, impacts, flights, given_way, paradoxes
+    overturned, overturned_body, overturning_time, certain_time, impacts, flights, given_way, paradoxes
         Of cases, see :func:`columns`.
-    unstable_distance, lightest, lost_contact
+    unstable_distance, minimum_gravity_ratio, lost_contact
         Likewise.
     peak_rotation, peak_velocity, turn, walk, fall_direction
         Of bodies.
@@ -59,7 +60,7 @@ class Outcomes:
         "Number from below of the body that fell first, from 1; 0 without a fall.",
         np.int8(0),
     )
-    fall_time: Floats = column(
+    overturning_time: Floats = column(
         "cases",
         "s",
         "Instant of the fall; NaN without a fall, or where the engine stops before it.",
@@ -86,7 +87,7 @@ class Outcomes:
         "cases", "", "Least distance to an unstable equilibrium; infinite if it never rocked, NaN not told.",
         math.inf,
     )  # fmt: skip
-    lightest: Floats = column(
+    minimum_gravity_ratio: Floats = column(
         "cases", "", "Least effective gravity over gravity while the ground moves.", 1.0
     )
     lost_contact: Floats = column(
@@ -133,6 +134,8 @@ class Outcomes:
     least_normal_force: Floats = column(
         "contacts", "N", "Least normal force until the fall was due; NaN not told.", NOT_TOLD
     )
+
+    __repr__ = short_repr
 
     @property
     def shape(self) -> tuple[int, int, int]:

@@ -11,14 +11,15 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.engines.contract import Cases, Request
+from rockfrag.engines.planar.ensemble import contact_outcomes
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.cluster_means import mean_effects
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.contact.ensemble import Moving, Standing, contact_outcomes
-from rockfrag.rocking.contact.friction import interface_frictions
-from rockfrag.rocking.inputs import STEP
-from rockfrag.system.blocks import Block, Body, Stack
-from rockfrag.units import GRAVITY
+from rockfrag.rocking.inputs import least_uplift
+from rockfrag.rocking.options import system_of
+from rockfrag.system.blocks import Body, Stack
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -203,21 +204,14 @@ def _outcomes(
 ) -> NDArray[np.void]:
     """Outcomes of the chosen frictions × motions; the others are zero."""
     rows, columns = np.flatnonzero(chosen.any(axis=1)), np.flatnonzero(chosen.any(axis=0))
-    still = [(0.0,) * len(frictions[0])] * len(rows)
-    lone = isinstance(body, Block)
-    coefficients = [
-        interface_frictions(body, frictions[row][0] if lone else frictions[row])
+    systems = tuple(
+        system_of(body, dict(zip(("ground", "interface"), frictions[row], strict=False)))
         for row in rows.tolist()
-    ]
-    standing = Standing([body] * len(rows), coefficients, still, still)
-    moving = Moving(
-        [motions[j].acceleration for j in columns.tolist()],
-        [],
-        np.array([motions[j].dt for j in columns.tolist()]),
-        np.ascontiguousarray(scales[columns]),
     )
+    shaking = tuple(GroundMotion(motions[j]) for j in columns.tolist())
+    grid = Cases(systems, shaking, np.ascontiguousarray(scales[columns]), Request(), threads)
     wanted = chosen[np.ix_(rows, columns)][..., np.newaxis]
-    found = contact_outcomes(standing, moving, wanted, GRAVITY, STEP, threads)[..., 0]
+    found = contact_outcomes(grid, wanted)[..., 0]
     outcomes = np.zeros(chosen.shape, found.dtype)
     outcomes[np.ix_(rows, columns)] = found
     return outcomes
@@ -225,11 +219,7 @@ def _outcomes(
 
 def _never_turns(body: Body, friction: tuple[float, ...]) -> bool:
     """Whether nothing can rise or slide off from rest, whatever the horizontal motion (docs/contact.md)."""
-
-    def slope(block: Block) -> float:
-        return min(math.tan(block.critical_angle(pole)) for pole in (+1, -1))
-
-    if isinstance(body, Block):
-        return body.lean == 0 and friction[0] < slope(body)
-    upright = body.pedestal.lean == 0 and friction[0] <= friction[1]
-    return upright and friction[0] < min(slope(body.statue), slope(body.rigidly_joined()))
+    system = body.system()
+    rises = least_uplift(system, 1.0)
+    upright = system.contacts[0].tilt == 0 and friction[0] == min(friction)
+    return upright and friction[0] < rises

@@ -274,10 +274,25 @@ def hotelling(values: Array, goal: Array, resolution: float) -> Array:
     return np.asarray(special.fdtrc(places, events - places, scaled))
 
 
-def inversion_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> str:
-    """Say in a sentence or two what would and what would not give the wanted effect."""
+def inversion_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> list[str]:
+    """Say what would and what would not produce the wanted effect, the most important sentence first.
+
+    Parameters
+    ----------
+    table
+        Mechanisms of :func:`invert`, with readable names in ``factor_1`` and ``factor_2``.
+    wanted
+        Ratio P/NP on the ``ground`` and ``above`` it [-].
+
+    Returns
+    -------
+    list of str
+        Sentences.
+    """
     asked = " and ".join(
-        f"{100 * (value - 1):+.0f} % {'on the ground' if name == 'ground' else 'above it'}"
+        f"{100 * (value - 1):+.0f} % {'on the ground' if name == 'ground' else 'above it'}".replace(
+            "-", "−"
+        )
         for name, value in wanted.items()
     )
     single = table[(table["factor_2"] == "") & (table["acts_on"] == "all floors")]
@@ -288,29 +303,32 @@ def inversion_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> str:
         for one, two in zip(reach["factor_1"], reach["factor_2"], strict=True)
         if two
     ]
-    first = (
-        f"No departure alone gives {asked} on all floors within the levels tried"
-        if not alone
-        else f"{', '.join(alone)} alone can give {asked}"
-    )
-    second = f"two together can: {'; '.join(pairs[:3])}" if pairs else "nor do any two together"
-    words = f"{first[:1].upper()}{first[1:]}; {second}."
+    if not alone and not pairs:
+        words = [
+            f"No perturbed parameter, alone or with a second one, produces {asked} within the values tried."
+        ]
+    else:
+        who = f"{', '.join(alone)} alone" if alone else "No single perturbed parameter"
+        words = [f"{who[:1].upper()}{who[1:]} can produce {asked} within the values tried."]
+        words.append(f"Pairs that can: {'; '.join(pairs[:3])}." if pairs else "No pair can.")
     if len(wanted) > 1:
-        words += f" {_one_place(table)}"
+        words.append(_one_place(table))
     excluded = int((~table["plausible"]).sum())
-    return f"{words} {excluded} of {len(table)} mechanisms are excluded by the model's own scatter."
+    many = f"{excluded} of the {len(table)}" if excluded else f"none of the {len(table)}"
+    words.append(f"The scatter between earthquakes rules out {many} mechanisms tried.")
+    return words
 
 
 def _one_place(table: pd.DataFrame) -> str:
-    """Say what a departure could do that acts on the ground alone, or above it alone."""
+    """Say what a parameter could do that acts on the ground alone, or above it alone."""
     local = table[table["acts_on"] != "all floors"]
     names = [
         f"{row['factor_1']} {_PLACES[row['acts_on']]}"
         for row in local[local["reaches"]].to_dict("records")
     ]
     if names:
-        return f"Acting at one place only, {', '.join(names[:3])} can."
-    return "None can that acts on the ground alone or above it alone."
+        return f"Mechanisms that act at one place only and can: {', '.join(names[:3])}."
+    return "No mechanism that acts on the ground alone, or above it alone, can."
 
 
 _PLACES = {"ground": "on the ground alone", "above": "above it alone"}

@@ -85,15 +85,16 @@ def units_needed(effect: Estimate, power: float = POWER) -> float:
 def power_note(effect: Estimate, unit: str = "event") -> str:
     """Say in words what the data could have shown and how much more would be needed."""
     if effect.units < 2:
-        return f"one {unit}: no power can be stated"
+        return f"one {unit} alone has no power"
     if not effect.se > 0:
-        return f"all {unit}s agree and their steps are not known: no power can be stated"
+        return f"all {unit}s agree and their steps are not known, so the power is not known"
     detectable = 100 * (detectable_ratio(effect) - 1)
-    seen = f"80 % power: {effect.units} {unit}s show a change of {detectable:.1f} % or more"
+    unit = {"event": "earthquake"}.get(unit, unit)
+    seen = f"{effect.units} {unit}s can detect a change of {detectable:.1f} % or more (80 % power)"
     if abs(effect.mean) <= effect.resolution:
         finest = 100 * math.expm1(effect.resolution)
-        return f"{seen}; the change seen is within the {finest:.1f} % that the steps resolve"
+        return f"{seen}; the change found is within the {finest:.1f} % that the steps resolve"
     needed = units_needed(effect)
     if math.isinf(needed):
-        return f"{seen}; no feasible number of {unit}s would show the change seen"
-    return f"{seen}; needed: {needed:.0f} {unit}s for the change seen, before any adjustment"
+        return f"{seen}; no feasible number of {unit}s can detect the change found"
+    return f"{seen}; the change found needs {needed:.0f} {unit}s, before any adjustment"

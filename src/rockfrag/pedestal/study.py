@@ -56,6 +56,9 @@ EFFECT_COLUMNS = [
     *("detectable_ratio", "resolution_ratio", "tied", "at_bound"),
 ]
 WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
+_UNITS = {"event": "earthquake"}
+STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
+"""Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""
 RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
 
 
@@ -97,13 +100,13 @@ def population(table: pd.DataFrame) -> str:
     events = int(table["event"].nunique())
     if events == 1:
         return (
-            "one event: the inference is about further motions of this event on the tested floors, "
+            "the inference is about further motions of this one earthquake on the tested floors, "
             "not about other earthquakes"
         )
     smallest = 2.0 ** (1 - events)
     return (
-        f"inference is about earthquakes of which these {events} are a sample, for the objects and "
-        f"floors tested; sign flips over {events} events give no p below {smallest:.3g}"
+        f"the inference is about earthquakes of which these {events} are a sample, for the objects and "
+        f"floors tested; sign flips over {events} earthquakes cannot give a p value below {smallest:.3g}"
     )
 
 
@@ -186,14 +189,14 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
     low, high = bca_interval(motions, seed)
     rows: list[tuple[str, float, float, float, float, float, int, str]] = [
         (
-            f"t on the means of {sampled_unit(table)}s",
+            f"t on the means of {_UNITS.get(sampled_unit(table), sampled_unit(table))}s",
             effect.mean,
             effect.lower,
             effect.upper,
             effect.p,
             np.nan,
             effect.units,
-            "holds its level in the crossed design; the verdicts rest on it",
+            "keeps its level in the crossed design; the conclusions rest on it",
         ),
         (
             "exact signed ranks and Hodges-Lehmann on motions",
@@ -203,10 +206,10 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
             ranks.p,
             ranks.smallest_p,
             ranks.units,
-            "treats motions of one event as independent",
+            "treats motions of one earthquake as independent",
         ),
         (
-            "sign flips over events",
+            "sign flips over earthquakes",
             effect.mean,
             np.nan,
             np.nan,
@@ -223,7 +226,7 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
             np.nan,
             np.nan,
             len(motions),
-            f"seed {seed}; treats motions of one event as independent",
+            f"seed {seed}; treats motions of one earthquake as independent",
         ),
     ]
     if censored is not None:
@@ -237,12 +240,16 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
                 one.p,
                 np.nan,
                 one.units,
-                f"{censored.tests} tests, {censored.censored} censored; jackknife over events",
+                f"{censored.tests} tests, {censored.censored} censored; jackknife over earthquakes",
             )
         )
     result = pd.DataFrame(rows, columns=WHOLE_COLUMNS)
     # what the steps hide is hidden from every method
     within = effect.resolution
+    by_steps = (result["upper"] <= result["estimate"] + within) & (
+        result["lower"] >= result["estimate"] - within
+    )
+    result["remark"] = result["remark"].where(~by_steps, result["remark"] + STEPS_DECIDE)
     result["lower"] = result["lower"].clip(upper=result["estimate"] - within)
     result["upper"] = result["upper"].clip(lower=result["estimate"] + within)
     for name in ("estimate", "lower", "upper"):
@@ -309,19 +316,19 @@ def ties_note(table: pd.DataFrame) -> list[str]:
     widest = float(table.loc[tied, "resolution"].max())
     if widest == 0:
         return [
-            f"{int(tied.sum())} of {len(table)} pairs have equal amplitudes, and the table does not give "
-            "the steps (lower_g, upper_g), so how small a difference they exclude is not known"
+            f"{int(tied.sum())} of {len(table)} pairs have equal amplitudes; the table does not give the steps "
+            "(lower_g, upper_g), so the difference that they exclude is not known"
         ]
     notes = [
         f"{int(tied.sum())} of {len(table)} pairs overturned in the same step: each of them excludes a "
-        f"change of {100 * math.expm1(widest):.1f} % or more, and nothing below; no interval is "
+        f"change of {100 * math.expm1(widest):.1f} % or more and no smaller one; no interval is "
         "narrower than the steps of the pairs that agree"
     ]
     if tied.mean() > 0.5:
         notes.append(
-            "most pairs agree, so the intervals are more cautious than their level says: in simulations "
-            "nominal 90 % held the truth in 99 to 100 %, and less than 1 % of tables without effect had "
-            "p < 0.05; few pairs that differ allow no sharper statement"
+            "most pairs agree, so the intervals are wider than their level says: in simulations nominal 90 % "
+            "intervals contained the truth in 99 to 100 %, and less than 1 % of tables without effect had "
+            "p < 0.05; a few pairs that differ do not allow sharper statements"
         )
     return notes
 

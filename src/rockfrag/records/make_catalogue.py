@@ -171,6 +171,7 @@ def make_catalogue(
         If nothing is found.
     """
     draft = CatalogueDraft(pd.DataFrame(columns=list(COLUMNS)))
+    paths = list(paths)
     rows: list[dict[str, Any]] = []
     groups: list[list[Component]] = []
     seen: dict[str, str] = {}
@@ -185,7 +186,8 @@ def make_catalogue(
         rows += _rows_of(group, draft)
     if not rows:
         more = f": {draft.errors[0]}" if draft.errors else "."
-        raise InputError(f"no horizontal component of acceleration was found{more}")
+        where = ", ".join(map(str, paths))
+        raise InputError(f"{where}: no horizontal component of acceleration was found{more}")
     _name_uniquely(rows)
     _note_names_of_one_day(rows, draft)
     draft.table = pd.DataFrame(rows, columns=list(COLUMNS)).fillna("")

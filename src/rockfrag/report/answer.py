@@ -1,9 +1,14 @@
-"""What stands first on the page of any study: the question, three sentences, one figure, and what they rest on."""
+"""What stands first on the page of any study: the question, what was found, what to do, and what it rests on."""
+
+import numpy as np
 
 from rockfrag.report.figures.answer import strength_figure
 from rockfrag.report.findings import (
     FRICTION,
+    ONE_MOTION,
     amplitudes_found,
+    friction_sentence,
+    headline_curves,
     objects_compared,
     pedestal_effect,
     recorded_found,
@@ -14,14 +19,14 @@ from rockfrag.report.part import Answer, FigureSpec, Finding, Results
 from rockfrag.report.wording import counted, listed, of_all, sentence
 
 FEW = 10
-"""Of fewer earthquakes than this the intervals rest on little."""
+"""Intervals over fewer earthquakes than this rest on little."""
 
 QUESTIONS = (
-    ("Will it fall in a repeat?", "as_recorded"),
-    ("Does the pedestal help?", "pedestal"),
-    ("How strong must it be?", "fragility"),
-    ("How sure is that?", "grounds"),
-    ("What if it were 5 cm wider?", "live"),
+    ("As recorded?", "as_recorded"),
+    ("With pedestal?", "pedestal"),
+    ("How strong?", "fragility"),
+    ("How sure?", "grounds"),
+    ("Try it", "live"),
 )
 """What a keeper asks, and the chapter with the answer; a study without pairs is not asked the second."""
 
@@ -32,8 +37,9 @@ def study_answer(results: Results) -> Answer:
         asked=_asked(results),
         sentences=sentences(results),
         figure=_figure(results),
+        advice=advice(results),
         rests_on=rests_on(results),
-        could_overturn=could_overturn(results),
+        could_change=could_change(results),
         questions=questions(results),
     )
 
@@ -46,28 +52,28 @@ def questions(results: Results) -> list[tuple[str, str]]:
 
 
 def _asked(results: Results) -> str:
-    study = results.study
-    sides = ", alone and on a pedestal," if study.has_pairs else ""
-    events = study.catalogue["event"].nunique()
-    where = (
-        f" felt on {counted(len(study.floors), 'floor')} of a building" if study.building else ""
-    )
-    fall = "falls" if len(results.objects) == 1 else "fall"
-    return (
-        f"How strong must shaking be that {listed(results.objects)}{sides} {fall}, judged by "
-        f" {counted(events, 'earthquake')}{where}?"
-    )
+    names = results.objects
+    which = f"the {len(names)} objects" if len(names) > MOST_NAMED else listed(names)
+    its = "its" if len(names) == 1 else "their"
+    sides = f", with and without {its} pedestal" if results.study.has_pairs else ""
+    return f"How strong must shaking be to overturn {which}{sides}?"
+
+
+MOST_NAMED = 4
+"""So many objects are named in the question."""
+
+
+def has_one_record(results: Results) -> bool:
+    """Whether a study has a single record, of which no fragility can be made."""
+    return len(results.records) == 1
 
 
 def sentences(results: Results) -> list[Finding]:
-    """How strong the shaking must be, what a repeat would do, and what the pedestal changes."""
-    curves = results.table("fragility")
-    level = f"{100 * results.study.fragility.confidence:g} %"
-    strong = strength_found(curves[curves["theta"].notna()], level)
-    found = [
-        strong or amplitudes_found(results.tests),
-        recorded_found(results.table("as_recorded")),
-    ]
+    """How strong the shaking must be, what the motions do as recorded, and what the pedestal changes."""
+    recorded = recorded_found(results.table("as_recorded"))
+    found = [_strength(results), recorded]
+    if has_one_record(results):
+        return [amplitudes_found(results.tests), recorded, ONE_MOTION]
     if results.study.has_pairs:
         return [*found, pedestal_effect(results.table("pedestal/effects"))[0]]
     slenderness = {name: results.study.specimens[name].slenderness for name in results.objects}
@@ -75,20 +81,52 @@ def sentences(results: Results) -> list[Finding]:
     return [*found, *objects_compared(results.table("mean_amplitudes"), slenderness), windows][:3]
 
 
-def _figure(results: Results) -> FigureSpec:
+def _strength(results: Results) -> Finding:
+    level = f"{100 * results.study.fragility.confidence:g} %"
     curves = results.table("fragility")
-    curves = curves[
-        (curves["im"] == curves["im"].iloc[0]) & (curves["estimator"] == "mean_probability")
-    ]
+    return strength_found(curves[curves["theta"].notna()], level) or amplitudes_found(results.tests)
+
+
+def advice(results: Results) -> list[str]:
+    """What to do: the weakest first, and what would make the result surer."""
+    words = []
+    if not has_one_record(results):
+        curves = headline_curves(results.table("fragility")).rows
+        curves = curves[curves["theta"].notna()]
+        if len(curves) > 1 and curves["theta"].min() < curves["theta"].max():
+            weakest = min(curves.to_dict("records"), key=lambda row: float(row["theta"]))
+            words.append(f"Secure {weakest['configuration']} first.")
+    validity = results.table("validity")
+    if not results.study.slides and len(validity):
+        demand = validity["friction_demand"].to_numpy(dtype=float)
+        if (~(demand <= FRICTION)).any():
+            words.append(
+                "Measure the friction of the contact surfaces: the objects may slide instead of rock."
+            )
+    events = results.study.catalogue["event"].nunique()
+    if events < FEW and not words[1:]:
+        words.append(
+            f"Add records of other earthquakes; {'one is' if events == 1 else f'{events} are'} too few."
+        )
+    return words
+
+
+def _figure(results: Results) -> FigureSpec:
+    curves = headline_curves(results.table("fragility")).rows
     # amplitudes are peaks of acceleration; a median in another measure has no place beside them
     curves = curves[(curves["unit"] == "g") & curves["theta"].notna()]
+    if has_one_record(results):
+        curves = curves.iloc[:0]
     names = [one.name for one in results.study.configurations]
     finding = sentences(results)[0]
+    caption = "Peak acceleration that overturns, one mark per test; arrows are bounds."
+    if len(curves):
+        level = f"{100 * results.study.fragility.confidence:g} %"
+        caption += f" Diamonds are medians with {level} intervals."
     return FigureSpec(
         "answer",
         f"Overturning amplitude of each configuration. {finding.said}",
-        "Peak acceleration of the motion that overturns. Marks are tests, those with arrows bounds; diamonds are "
-        "medians with their intervals.",
+        caption,
         lambda: strength_figure(results.tests, curves, names),
     )
 
@@ -100,11 +138,11 @@ def rests_on(results: Results) -> list[str]:
     moves = (
         "Rigid blocks that rock, slide and fly in the plane of the motion; impacts follow Coulomb's law."
         if study.slides
-        else "Rigid blocks that rock in the plane of the motion and neither slide nor jump; impacts conserve "
-        "angular momentum."
+        else "Rigid blocks that rock in the plane of the motion and neither slide nor jump. Energy loss at impact "
+        "follows Housner (conservation of angular momentum)."
     )
     if study.vertical:
-        moves += " The vertical components of the records shake them too."
+        moves += " The vertical components of the records act too."
     words = [
         moves,
         f"{counted(motions, 'record')} of {counted(events, 'earthquake')}, each scaled to "
@@ -113,65 +151,68 @@ def rests_on(results: Results) -> list[str]:
     ]
     if study.building is not None:
         words.append(
-            f"Floors are those of a model of a building ({study.building.name}); what is said of floors is "
-            "said of that model."
+            f"The floor motions are those of a building model ({study.building.name}), not measured."
         )
     return words
 
 
-def could_overturn(results: Results) -> list[str]:
-    """What would make the answer wrong, each with the numbers that say how likely that is."""
-    words = []
-    validity = results.table("validity")
-    if results.study.slides:
-        sliding = results.table("sliding")
-        other, cases = (
-            int(sliding[["saved", "felled"]].to_numpy().sum()),
-            int(sliding["cases"].sum()),
-        )
-        words.append(
-            f"Another friction: that of this study decides {of_all(other, cases, 'case')}, which nobody measured "
-            "on these surfaces."
-        )
-    elif len(validity):
-        demand = validity["friction_demand"].to_numpy(dtype=float)
-        slides = int((~(demand <= FRICTION)).sum())
-        words.append(
-            f"Sliding: {of_all(slides, len(demand), 'test')} {'needs' if slides == 1 else 'need'} more than the "
-            f"friction of dry stone ({FRICTION:g})."
-            if slides
-            else f"Sliding, on surfaces with less friction than dry stone ({FRICTION:g}), which holds every test."
-        )
+def could_change(results: Results) -> list[str]:
+    """What could change the answer, each with the numbers that say how likely that is."""
+    words = [_friction_words(results)]
     if results.study.vertical and not results.study.slides:
-        from rockfrag.rocking.ensemble import LIGHT
-
-        lightest = results.lightest
-        light = int((lightest < LIGHT).sum())
-        if light:
-            words.append(
-                f"Flight: in {of_all(light, len(lightest), 'case')} the ground takes more than half of all weight "
-                "away, where bodies may leave it; the key friction lets them fly."
-            )
+        words.append(_flight_words(results))
     events = results.study.catalogue["event"].nunique()
     if events < FEW:
         words.append(
-            f"Other earthquakes: {events} are few, and limits can only say what these have in common."
+            f"Other earthquakes: these {events} are few, and the intervals describe only what they have in common."
             if events > 1
-            else "Other earthquakes: from one of them nobody knows how much they differ."
+            else "Other earthquakes: a single one does not show how much earthquakes differ."
         )
     windows = results.table("survival_windows")
     fallen = windows[windows["first_upper"].notna()]
     with_windows = int((fallen["windows"] > 0).sum())
     if with_windows:
         words.append(
-            f"Luck: {of_all(with_windows, len(fallen), 'overturning sweep')} "
-            f"{'has' if with_windows == 1 else 'have'} amplitudes that are survived above one that overturns."
+            f"Non-monotone response: a stronger motion was survived in "
+            f"{of_all(with_windows, len(fallen), 'analysis', 'analyses')}."
         )
     curves = results.table("fragility")
-    doubtful = curves[curves["p_fit"] < 0.05]["configuration"].nunique()
-    if doubtful:
+    rejected = curves[curves["p_fit"] < 0.05]["configuration"].nunique()
+    if rejected:
         words.append(
-            f"The lognormal shape: it does not describe the verdicts of "
-            f"{of_all(doubtful, curves['configuration'].nunique(), 'configuration')} in every reading."
+            f"The lognormal shape: it is rejected for "
+            f"{of_all(rejected, curves['configuration'].nunique(), 'configuration')} in at least one reading."
         )
-    return [sentence(one) for one in words]
+    return [sentence(one) for one in words if one]
+
+
+def _friction_words(results: Results) -> str:
+    """What friction could change, of bodies that slide and of bodies that are assumed not to."""
+    if results.study.slides:
+        sliding = results.table("sliding")
+        other = int(sliding[["saved", "felled"]].to_numpy().sum())
+        cases = int(sliding["cases"].sum())
+        return (
+            f"Another friction: the assumed one decides {of_all(other, cases, 'outcome')}, and nobody measured "
+            "it on these surfaces."
+        )
+    validity = results.table("validity")
+    if validity.empty:
+        return ""
+    if not (~(validity["friction_demand"].to_numpy(dtype=float) <= FRICTION)).any():
+        return f"Sliding, on surfaces with a friction coefficient below {FRICTION:g} (dry stone)."
+    return f"Sliding: {friction_sentence(validity)}."
+
+
+def _flight_words(results: Results) -> str:
+    """In how many analyses the ground falls away so fast that bodies may leave it."""
+    from rockfrag.rocking.ensemble import LIGHT
+
+    light = int((results.lightest < LIGHT).sum())
+    if not light:
+        return ""
+    share = of_all(light, np.size(results.lightest), "analysis", "analyses")
+    return (
+        f"Flight: in {share} the ground takes away more than half of all weight, so that bodies may leave it; "
+        "the key friction lets them fly."
+    )

@@ -17,9 +17,18 @@ from rockfrag.report.figures.campaign import (
     tests_figure,
 )
 from rockfrag.report.page import Column, render, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
 from rockfrag.report.study_report import FIGURES, draw, write_captions
-from rockfrag.report.wording import counted, estimate, listed, number, of_all, probability, sentence
+from rockfrag.report.wording import (
+    agree,
+    counted,
+    estimate,
+    listed,
+    number,
+    of_all,
+    probability,
+    sentence,
+)
 from rockfrag.stages.campaign import OURS, TABLES
 from rockfrag.stages.digest import package_digest
 from rockfrag.study.campaign import CampaignStudy
@@ -55,7 +64,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
     page = render(
         title=study.title,
         lead=f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, "
-        f"{int(tests['overturned'].sum())} of them overturned, each simulated with the table’s own motion.",
+        f"{int(tests['overturned'].sum())} of them overturned; each is simulated with the measured table motion.",
         answer=answer,
         sections=sections,
         pictures=pictures,
@@ -78,7 +87,7 @@ def _percent(row: Row) -> str:
 
 
 def _who(name: str) -> str:
-    """Who gave verdicts, in words: thresholds by their measure, codes by their name."""
+    """Who predicted the outcomes, in words: thresholds by their measure, codes by their name."""
     if name == OURS:
         return "simulation"
     for start in ("threshold on ", "probit on "):
@@ -96,17 +105,17 @@ def _answer(
     near = int(tests["near_critical"].sum())
     specs = [one for section in sections for one in section.parts if isinstance(one, FigureSpec)]
     return Answer(
-        asked="How often does the simulation say of a test what happened on the table?",
+        asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
         figure=next((one for one in specs if one.name == "tests"), specs[0]),
         rests_on=[
             f"{counted(len(tests), 'test')} under {counted(tests['group'].nunique(), 'input motion')}, each "
             "simulated with the motion measured on the table; intervals resample input motions.",
-            "What nobody measured of the object is chosen by some motions and judged by the others.",
+            "Unmeasured properties of the object are fitted on some motions and judged on the others.",
         ],
-        could_overturn=[
-            f"{sentence(of_all(near, len(tests), 'test'))} {'is' if near == 1 else 'are'} near-critical: "
-            "plausible ways to set the object up disagree there by more than one in ten.",
+        could_change=[
+            f"{sentence(of_all(near, len(tests), 'test'))} {agree(near, len(tests), 'is', 'are')} near-critical: "
+            "plausible ways to set up the object disagree about the outcome in more than one of ten.",
             *(one.headline + "." for one in found[3:]),
         ],
     )
@@ -116,10 +125,10 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     ours, *rivals = tables["agreement"].to_dict("records")
     found = [
         Finding(
-            f"{number(100 * ours['right'], 1)} % of the verdicts are right",
-            f"Of tests whose motions had no part in choosing what was not measured, {_percent(ours)} are "
-            f"simulated as they happened; {number(ours['missed'], 0)} tests overturned in the laboratory and not "
-            f"in the simulation, {number(ours['false_alarms'], 0)} in the simulation only.",
+            f"The simulation predicts {number(100 * ours['right'], 1)} % of the outcomes",
+            f"{sentence(counted(round(ours['missed']), 'test'))} overturned in the laboratory only, "
+            f"{counted(round(ours['false_alarms']), 'test')} in the simulation only.",
+            f"Tests whose motions were not used to fit unmeasured properties: {_percent(ours)} predicted.",
         ),
         *_against_rivals(rivals),
         *_fragility_found(tables["fragility"]),
@@ -130,9 +139,10 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     if wrong.any():
         found.append(
             Finding(
-                f"{int((wrong & near).sum())} of {int(wrong.sum())} wrong verdicts are near-critical",
-                f"In {int(near.sum())} of {len(tests)} tests plausible ways to set up the object disagree by more "
-                "than one in ten; the others are decided whatever nobody measured.",
+                f"{sentence(of_all(int((wrong & near).sum()), int(wrong.sum()), 'wrong prediction'))} "
+                f"{agree(int((wrong & near).sum()), int(wrong.sum()), 'is', 'are')} near-critical",
+                f"Plausible ways to set up the object disagree about the outcome in {int(near.sum())} of "
+                f"{len(tests)} tests; the unmeasured properties do not decide the others.",
             )
         )
     return found
@@ -144,14 +154,16 @@ def _against_rivals(rivals: Sequence[Row]) -> list[Finding]:
     best = max(rivals, key=lambda row: float(row["right"]))
     name = _who(best["who"])
     more = estimate(100 * best["better"], 100 * best["better_lower"], 100 * best["better_upper"], 1)
-    clear = best["better_lower"] > 0
-    losing = best["better_upper"] < 0
+    adjusted = min(1.0, best["p"] * len(rivals))
+    clear = best["better_lower"] > 0 and adjusted < LEVEL
+    losing = best["better_upper"] < 0 and adjusted < LEVEL
     headline = (
-        f"Better than {name}, the best of {counted(len(rivals), 'rival')}"
+        f"The simulation is better than {name}, the best of {counted(len(rivals), 'alternative')}"
         if clear
         else f"{name.capitalize()} is better"
         if losing
-        else f"Not told apart from {name}, the best of {counted(len(rivals), 'rival')}"
+        else f"The simulation is not distinguishable from {name}, the best of "
+        f"{counted(len(rivals), 'alternative')}"
     )
     if best["better_lower"] <= 0:  # an estimate with a negative limit is not written as a ratio is
         more = (
@@ -161,10 +173,16 @@ def _against_rivals(rivals: Sequence[Row]) -> list[Finding]:
     return [
         Finding(
             headline,
-            f"On the same tests {name} is right in {_percent(best)}: a difference of {more} percentage points "
-            f"(p {_p(best['p'])}).",
+            "",
+            f"{sentence(name)} predicts {_percent(best)} of the same tests: a difference of {more} percentage "
+            f"points (p {_p(best['p'])}; p {_p(adjusted)} after Bonferroni’s adjustment for "
+            f"{counted(len(rivals), 'alternative')}).",
         )
     ]
+
+
+LEVEL = 0.05
+"""A difference between programs is stated below this adjusted p value [-]."""
 
 
 def _p(value: float) -> str:
@@ -185,14 +203,16 @@ def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
     beta = estimate(row["beta_ratio"], row["beta_ratio_lower"], row["beta_ratio_upper"], 2)
     agrees = row["theta_ratio_lower"] <= 1 <= row["theta_ratio_upper"]
     headline = (
-        f"The simulated fragility in {name} is not told apart from the measured one"
+        f"The simulated fragility in {name} is not distinguishable from the measured one"
         if agrees
-        else f"The simulated median in {name} is off by {number(100 * abs(row['theta_ratio'] - 1), 0)} %"
+        else f"The simulated median {name} is {number(100 * abs(row['theta_ratio'] - 1), 0)} % "
+        f"{'above' if row['theta_ratio'] > 1 else 'below'} the measured one"
     )
     return [
         Finding(
             headline,
-            f"Median over measured median {theta}, dispersion over measured dispersion {beta}.",
+            "",
+            f"Simulated over measured median {theta}; simulated over measured dispersion {beta}.",
         )
     ]
 
@@ -212,35 +232,35 @@ def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         p_text=[probability(p) for p in agreement["p"]],
     )
     columns = (
-        Column("who", "Verdicts by"),
+        Column("who", "Predicted by"),
+        Column("tests", "Tests", 0),
         Column("right_text", "Right", numeric=True),
         Column("false_alarms", "False alarms", 1),
         Column("missed", "Missed", 1),
-        Column("better_text", "Simulation better by [points]", numeric=True),
+        Column("better_text", "Simulation better by [percentage points]", numeric=True),
         Column("p_text", "p", numeric=True),
         Column("judged", "Judged"),
     )
     best = max(agreement.to_dict("records"), key=lambda row: float(row["right"]))
     figure = FigureSpec(
         "agreement",
-        f"{_who(best['who']).capitalize()} is right most often, in {_percent(best)} of the tests.",
-        f"Share of right verdicts with {100 * study.confidence:g} % intervals over motions; full dots are "
-        "judged by motions that did not choose them, open ones as they were given.",
+        f"{sentence(_who(best['who']))} is right most often, in {_percent(best)} of the tests.",
+        f"Outcomes predicted right, with {100 * study.confidence:g} % intervals over motions. Filled dots are "
+        "judged on motions that were not used for fitting, open ones are as given.",
         lambda: agreement_figure(agreement.assign(who=shown["who"])),
     )
     return Section(
         "agreement",
-        "Who is right how often",
-        _findings(tables)[0].said,
+        "How often each prediction is right",
+        f"{_findings(tables)[0].headline}.",
         [
-            "What nobody measured is chosen by some motions and judged by the others; thresholds likewise. "
-            "Other programs stand as their authors tuned them, in sample.",
+            *opened(_findings(tables)[0]),
+            "Unmeasured properties, and thresholds, are fitted on some motions and judged on the others. Other "
+            "programs are as their authors tuned them, on these tests.",
         ],
         [
             figure,
-            table_html(
-                shown, columns, "Verdicts of all tests, and the difference on the same tests."
-            ),
+            table_html(shown, columns, "Outcomes predicted, and the difference on the same tests."),
             *_rocking(tables["rocking"]),
         ],
     )
@@ -281,7 +301,7 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         )
     columns = (
         Column("measure", "Measure"),
-        Column("who", "Verdicts"),
+        Column("who", "Outcomes"),
         Column("theta", "Median θ", numeric=True),
         Column("beta", "Dispersion β", numeric=True),
         Column("theta_ratio", "θ over measured", numeric=True),
@@ -294,8 +314,8 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     figure = FigureSpec(
         "fragility_beside",
         found[0].headline + "." if found else "No curve rises.",
-        f"Measured (dots, line) and simulated (squares, dashes) fragility in {name}; points are shares in bins of "
-        "equally many tests.",
+        f"Measured (dots, line) and simulated (squares, dashes) fragility in {name}; points are fractions in "
+        "bins of equally many tests.",
         lambda: beside_figure(
             tests, fragility[fragility["measure"] == measure], measure, f"{name} [{unit}]"
         ),
@@ -303,15 +323,16 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
     return Section(
         "fragility",
         "Fragility, measured and simulated",
-        found[0].said if found else "No curve rises.",
+        f"{found[0].headline}." if found else "No curve rises.",
         [
+            *(opened(found[0]) if found else []),
             f"Lognormal curves with {100 * study.confidence:g} % intervals from resampled motions; the ratio is "
-            "taken in each resample."
+            "taken in each resample.",
         ],
         [
             figure,
             table_html(
-                pd.DataFrame(rows), columns, "Curves of measured and of simulated verdicts."
+                pd.DataFrame(rows), columns, "Curves of measured and of simulated outcomes."
             ),
         ],
     )
@@ -353,20 +374,20 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         parts.append(
             FigureSpec(
                 "tests",
-                f"{int(tests['right'].sum())} of {len(tests)} tests are simulated as they happened.",
-                "Every test by the motion's intensity; crosses are wrong verdicts.",
+                f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened.",
+                "Every test by the intensity of its motion; crosses are wrong predictions.",
                 lambda: tests_figure(tests, *where, (labels[where[0]], labels[where[1]])),
             )
         )
     return Section(
         "tests",
-        "Where it is right, and where not",
-        f"{int(tests['right'].sum())} of {len(tests)} tests are simulated as they happened.",
-        ["Votes are the share of plausible ways to set up the object under which it overturns."],
+        "Where the simulation is right",
+        f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened.",
+        ["Votes are the fraction of plausible ways to set up the object under which it overturns."],
         [
             *parts,
             table_html(shown, columns, "Tests by thirds of two measures."),
-            table_html(wrong, wrong_columns, "Tests with a wrong verdict."),
+            table_html(wrong, wrong_columns, "Tests predicted wrong."),
         ],
     )
 
@@ -406,9 +427,9 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
         for name in unknown
     ]
     columns = (
-        Column("what", "What nobody measured, and what follows"),
-        Column("tried", "Tried", numeric=True),
-        Column("plausible", "Plausible", numeric=True),
+        Column("what", "Property"),
+        Column("tried", "Range tried", numeric=True),
+        Column("plausible", "Plausible range", numeric=True),
         Column("median", "Median of the plausible", numeric=True),
     )
     parts: list[object] = []
@@ -418,14 +439,16 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
             FigureSpec(
                 "footprint",
                 f"Plausible bases are {width.min():.1f} to {width.max():.1f} cm wide.",
-                "The object from above: outline, polygons that carry within plausible tolerances, centre of "
+                "The object from above: outline, contact polygons for plausible tolerances, centre of "
                 "gravity, and plausible directions of shaking.",
                 lambda: footprint_figure(footprint, trials),
             )
         )
     parts.append(
         table_html(
-            pd.DataFrame(rows), columns, "Ranges that were tried, and what agrees with the tests."
+            pd.DataFrame(rows),
+            columns,
+            "Unmeasured properties: ranges tried, and ranges that agree with the tests.",
         )
     )
     contact_columns = (
@@ -447,15 +470,17 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
                 right_percent=100 * contact["right"],
             ),
             contact_columns,
-            "The least critical angle by contact tolerance; below zero the object could not stand so.",
+            "Smallest critical angle by contact tolerance; the object cannot stand where it is negative.",
         )
     )
     return Section(
         "object",
         "How the object stood",
-        f"{len(likely)} of {len(trials)} trials are plausible by all tests: as right as the best within two "
-        "standard errors.",
-        ["This choice is in sample: it shows where they lie, and judges nothing."],
+        f"{len(likely)} of {len(trials)} trials are plausible.",
+        [
+            "A trial is plausible if its predictions are as right as the best within two standard errors. It "
+            "is chosen on all tests and therefore judges nothing."
+        ],
         parts,  # type: ignore[arg-type]
     )
 
@@ -473,8 +498,8 @@ def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Sect
     steps = listed([" ".join(str(value) for value in step.values()) for step in study.conditioning])
     return Section(
         "conditioning",
-        "What conditioning the motions does",
-        f"The motions went through: {steps or 'no step'}.",
-        ["Others were tried with a part of the trials."],
-        [table_html(shown, columns, "Share of right verdicts by conditioning.")],
+        "Effect of conditioning the motions",
+        f"Conditioning of the motions: {steps or 'none'}.",
+        ["Alternatives were tried with a part of the trials."],
+        [table_html(shown, columns, "Outcomes predicted right, by conditioning.")],
     )

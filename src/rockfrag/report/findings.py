@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.fragility.compared import Compared, compared_curves
 from rockfrag.report.part import Finding
 from rockfrag.report.wording import (
+    agree,
     counted,
     decimals_of,
     estimate,
@@ -33,64 +34,64 @@ _MOST_CONFIGURATIONS = 6
 
 
 def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
-    """Say at which peak half of the motions overturn each configuration; None without a curve.
+    """Say at which peak each configuration overturns with a probability of one half; None without a curve.
 
     Parameters
     ----------
     curves
-        Rows of :func:`rockfrag.fragility.fragility_table` with a median, of any measures and readings. Where the
-        lognormal curve is rejected the median of the curve without a form is told.
+        Rows of :func:`rockfrag.fragility.fragility_table`, of any measures and readings.
     level
         Level of the intervals in words, such as ``90 %``.
     """
     if curves.empty:
         return None
-    rows = curves[
-        (curves["im"] == curves["im"].iloc[0]) & (curves["estimator"] == "mean_probability")
-    ]
+    found = headline_curves(curves)
+    rows = found.rows[found.rows["theta"].notna()]
     if rows.empty:
         return None
     measure, unit = rows["im"].iloc[0], rows["unit"].iloc[0]
-    rejected = (rows["p_fit"] < REJECTED) & rows["theta_isotonic"].notna()
-    for name in ("theta", "theta_lower", "theta_upper"):
-        without_form = rows[name.replace("theta", "theta_isotonic")]
-        rows = rows.assign(**{name: rows[name].mask(rejected, without_form)})
     decimals = min(max(decimals_of(value, 2) for value in rows["theta"]), 3)
     texts = estimates(rows, ("theta", "theta_lower", "theta_upper"), decimals)
     named = [f"{name} {text}" for name, text in zip(rows["configuration"], texts, strict=True)]
-    low, high = (
-        rows.loc[rows["theta"].idxmin()].to_dict(),
-        rows.loc[rows["theta"].idxmax()].to_dict(),
-    )
-    one = len(rows) == 1 or number(low["theta"], decimals) == number(high["theta"], decimals)
-    span = (
-        f"{number(low['theta'], decimals)} {unit}"
-        if one
-        else f"{number(low['theta'], decimals)} ({low['configuration']}) to "
-        f"{number(high['theta'], decimals)} {unit} ({high['configuration']})"
+    by_median = sorted(rows.to_dict("records"), key=lambda row: float(row["theta"]))
+    low, high = by_median[0], by_median[-1]
+    least, most = (f"{number(row['theta'], decimals)} {unit}" for row in (low, high))
+    headline = (
+        f"A {measure} of {least} overturns {listed(rows['configuration'].tolist())} with 50 % probability"
+        if least == most
+        else f"{low['configuration']} is the most fragile: a {measure} of {least} overturns it with 50 % "
+        f"probability, while {high['configuration']} needs {most}"
     )
     shown = named[:_MOST_CONFIGURATIONS]
     rest = f" and {len(named) - len(shown)} more in the table" if len(shown) < len(named) else ""
-    sure = f", with {level} intervals" if any("[" in text for text in texts) else ""
-    return Finding(
-        f"It takes a {measure} of {span} to overturn in half of the cases",
-        f"Medians{sure}: {', '.join(shown)}{rest} {unit}.{_formless(rows, rejected)}",
+    sure = f" with {level} intervals" if any("[" in text for text in texts) else ""
+    estimator = (
+        f"All are medians of nonparametric (monotone) curves, because a lognormal curve is rejected for "
+        f"{listed(found.rejected)}."
+        if found.nonparametric
+        else "All are medians of lognormal curves."
     )
+    return Finding(headline, "", f"Medians{sure}, in {unit}: {', '.join(shown)}{rest}. {estimator}")
 
 
-def _formless(rows: pd.DataFrame, rejected: pd.Series) -> str:
-    """Whose median is that of a curve without a form, as the lognormal one does not describe the tests."""
-    if not rejected.any():
-        return ""
-    if rejected.all():
-        return (
-            " No lognormal curve describes the tests: these are medians of curves without a form."
-        )
-    names = listed(rows.loc[rejected, "configuration"].tolist())
-    return (
-        f" For {names} a lognormal curve does not describe the tests: the median is that of a curve without "
-        "a form."
-    )
+def headline_curves(curves: pd.DataFrame) -> Compared:
+    """Curves that the first page compares: of the first measure, all outcomes counted, by one estimator.
+
+    Parameters
+    ----------
+    curves
+        As of :func:`strength_found`.
+    """
+    first = curves["im"] == (curves["im"].iloc[0] if len(curves) else "")
+    known = curves[first & (curves["estimator"] == "mean_probability") & curves["theta"].notna()]
+    return compared_curves(known)
+
+
+ONE_MOTION = Finding(
+    "One motion: no fragility can be given",
+    "A fragility needs the motions of several earthquakes; one of them says nothing about how much they differ.",
+)
+"""Said in place of curves where a study has a single record."""
 
 
 def recorded_found(recorded: pd.DataFrame) -> Finding:
@@ -101,60 +102,76 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     recorded
         As :func:`rockfrag.stages.sweep.as_recorded` returns it, of every configuration.
     """
-    cases, fallen = len(recorded), int(recorded["overturned"].sum())
+    analyses, fallen = len(recorded), int(recorded["overturned"].sum())
     near = int(recorded["share_near"].between(0, 1, inclusive="neither").sum())
     by_name = recorded.groupby("configuration", sort=False)["overturned"].agg(["sum", "size"])
     motions = int(by_name["size"].max())
-    if fallen in (0, cases):
-        what = "overturns nothing" if fallen == 0 else "overturns everything"
-        headline = f"In a repeat {'the one motion' if motions == 1 else f'each of {motions} motions'} {what}"
-    elif len(by_name) <= _MOST_CONFIGURATIONS:
-        each = [f"{name} under {row['sum']}" for name, row in by_name.iterrows()]
-        fall = "falls" if fallen == 1 else "fall"
-        headline = f"In a repeat of {counted(motions, 'motion')} there {fall} {listed(each)}"
+    subject = "the only motion" if motions == 1 else f"all {motions} motions"
+    each = [f"{name} {row['sum']}" for name, row in by_name.iterrows()]
+    numbers = f"Motions that overturn, of {motions}: {', '.join(each)}." if motions > 1 else ""
+    if fallen in (0, analyses):
+        what = "nothing" if fallen == 0 else "everything"
+        verb = "overturns" if motions == 1 else "overturn"
+        who = subject if fallen else subject.replace("all ", "the ")
+        headline, numbers = f"At recorded strength {who} {verb} {what}", ""
+    elif len(by_name) == 1:
+        headline = f"At recorded strength {_overturn(fallen, motions)} {by_name.index[0]}"
+        numbers = ""
     else:
+        counts = {str(name): int(n) for name, n in by_name["sum"].items()}
+        low, high = min(counts, key=counts.__getitem__), max(counts, key=counts.__getitem__)
+        least, most = counts[low], counts[high]
         headline = (
-            f"In a repeat of the motions as recorded {of_all(fallen, cases, 'case')} overturn"
+            f"At recorded strength {_overturn(least, motions)} each object"
+            if least == most
+            else f"At recorded strength {least} ({low}) to {most} ({high}) of {motions} motions overturn the "
+            f"object"
+        )
+    if len(by_name) > _MOST_CONFIGURATIONS:
+        numbers = (
+            f"{sentence(of_all(fallen, analyses, 'analysis', 'analyses'))} end in overturning."
         )
     sure = (
-        "None of these verdicts is another if the shaking is a tenth weaker or stronger."
+        "No outcome changes if the motion is scaled by anything within ±10 %."
         if near == 0
-        else f"{sentence(of_all(near, cases, 'verdict'))} {'depends' if near == 1 else 'depend'} on the exact "
-        "strength: within a tenth of it there are amplitudes that overturn and others that are survived."
+        else f"{sentence(of_all(near, analyses, 'outcome'))} {agree(near, analyses, 'flips', 'flip')} if "
+        "the motion is scaled within ±10 %."
     )
-    return Finding(headline, sure)
+    return Finding(headline, sure, numbers)
+
+
+def _overturn(n: int, motions: int) -> str:
+    return f"{of_all(n, motions, 'motion')} {agree(n, motions, 'overturns', 'overturn')}"
 
 
 def amplitudes_found(tests: pd.DataFrame) -> Finding:
-    """Say how many tests have an amplitude, why the others have none, and what fell."""
+    """Say how many tests overturn, at which amplitudes, and what fell."""
     known = tests[tests["amplitude_g"].notna()]
     first = tests[tests["amplitude_g"].isna() & tests["upper_g"].notna()]
     never = tests[tests["amplitude_g"].isna() & tests["upper_g"].isna()]
+    fallen = len(known) + len(first)
+    headline = "No simulated test overturns"
+    if fallen:
+        verb = agree(fallen, len(tests), "overturns", "overturn")
+        headline = f"{sentence(of_all(fallen, len(tests), 'simulated test'))} {verb}"
+    words = []
     if len(known):
-        share = of_all(len(known), len(tests), "simulated test")
-        verb = "has" if len(known) == 1 else "have"
-        headline = f"{sentence(share)} {verb} an overturning amplitude"
         low, high = number(known["amplitude_g"].min(), 2), number(known["amplitude_g"].max(), 2)
-        span = f"is {low} g" if low == high else f"lies between {low} and {high} g"
-        words = [
-            "The amplitude, the peak of the motion in the last run survived before the first "
-            f"overturning, {span}."
-        ]
-    elif len(never) == len(tests):
-        headline = "Nothing overturned"
-        words = []
-    else:
-        headline = "No test has an overturning amplitude"
-        words = []
+        headline += f", at {low} g" if low == high else f", at {low} to {high} g"
+        words.append("The amplitude is the largest peak survived before the first overturning.")
+    elif fallen:
+        headline += ", at the first step"
     if len(never):
         highest = tests["lower_g"].max()
         words.append(
-            f"Not overturned, up to {number(highest, 2)} g at most: {listed(list(never['test']))}."
+            f"Not overturned by up to {number(highest, 2)} g: {listed(list(never['test']))}."
         )
     if len(first):
-        words.append(f"Overturned at the first step already: {listed(list(first['test']))}.")
+        words.append(
+            f"Overturned at the first step, so that only an upper bound is known: {listed(list(first['test']))}."
+        )
     words += _fallen(tests)
-    return Finding(headline, " ".join(words))
+    return Finding(headline, "", " ".join(words))
 
 
 def _fallen(tests: pd.DataFrame) -> list[str]:
@@ -164,9 +181,9 @@ def _fallen(tests: pd.DataFrame) -> list[str]:
         return []
     pedestals = int((on_pedestal["overturned_body"] == "pedestal").sum())
     if pedestals == 0:
-        return ["It was always the object that fell, never the pedestal."]
+        return ["The object always fell, never the pedestal."]
     falls = of_all(pedestals, len(on_pedestal), "test on a pedestal", "tests on a pedestal")
-    return [f"In {falls} that overturned it was the pedestal that fell."]
+    return [f"The pedestal itself fell in {falls} that overturned."]
 
 
 def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> list[Finding]:
@@ -193,13 +210,13 @@ def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> l
     headline = (
         "More slender objects overturn earlier"
         if all(falling)
-        else "Overturning does not simply follow slenderness"
+        else "The overturning amplitude does not simply follow slenderness"
     )
-    text = (
-        f"Geometric mean amplitude, in the order of slenderness, over "
-        f"{counted(most, 'motion')} that overturned all of them: {'; '.join(parts)}."
+    numbers = (
+        f"Geometric mean amplitudes over the {counted(most, 'motion')} that overturned all of them, by increasing "
+        f"slenderness: {'; '.join(parts)}."
     )
-    return [Finding(headline, text)]
+    return [Finding(headline, "", numbers)]
 
 
 def mean_sentence(means: pd.DataFrame) -> str:
@@ -207,13 +224,13 @@ def mean_sentence(means: pd.DataFrame) -> str:
     rows = means[means["by"] == "configuration"]
     most, of = int(rows["motions"].max()), int(rows["of"].max())
     if most == of:
-        every = "the one motion" if of == 1 else f"all {of} motions"
+        every = "the only motion" if of == 1 else f"all {of} motions"
         return f"Means are over {every}, each of which overturned everything compared."
     if most == 0:
         return (
             f"None of the {of} motions overturned everything compared, so no means are compared."
             if of > 1
-            else "The one motion did not overturn everything compared, so no means are compared."
+            else "The only motion did not overturn everything compared, so no means are compared."
         )
     return (
         f"Means are over the {counted(most, 'motion')} of {of} that overturned everything compared; "
@@ -226,33 +243,28 @@ def windows_found(windows: pd.DataFrame, tests: pd.DataFrame) -> Finding:
     fallen = windows[windows["first_upper"].notna()]
     with_windows = int((fallen["windows"] > 0).sum())
     if fallen.empty:
-        return Finding(
-            "No sweep overturns",
-            "So there is no amplitude above which survival could be asked for.",
-        )
-    share = of_all(with_windows, len(fallen), "overturning sweep")
-    verb = "has" if with_windows == 1 or len(fallen) == 1 else "have"
-    headline = f"{sentence(share)} {verb} survival windows"
+        return Finding("Nothing overturns, so no stronger motion can be survived")
     if with_windows == 0:
-        return Finding(
-            "No sweep has survival windows",
-            "Above the first overturning amplitude everything overturned.",
-        )
-    text = (
-        "There are amplitudes that are survived above one that overturns, so the amplitude found "
-        "depends on how it is raised."
+        return Finding("Every motion stronger than the first that overturned also overturns")
+    share = of_all(with_windows, len(fallen), "analysis", "analyses")
+    headline = (
+        f"Non-monotone response: in {share} the object survives a stronger motion than one that "
+        "overturned it"
     )
+    text = "The overturning amplitude therefore depends on how the motion is raised."
     wide = tests.pivot_table(index="test", columns="reading", values="amplitude_g")
-    if {"first_overturning", "always_overturning"} <= set(wide.columns):
-        both = wide[["first_overturning", "always_overturning"]].dropna()
-        if len(both):
-            factor = float(np.exp(np.log(both.iloc[:, 1] / both.iloc[:, 0]).mean()))
-            text += (
-                " The amplitude above which every run overturns is in the geometric mean "
-                f"{factor:.2f} times that of the first overturning "
-                f"({of_all(len(both), len(fallen), 'sweep')} in which both are known)."
-            )
-    return Finding(headline, text)
+    if not {"first_overturning", "always_overturning"} <= set(wide.columns):
+        return Finding(headline, text)
+    both = wide[["first_overturning", "always_overturning"]].dropna()
+    if both.empty:
+        return Finding(headline, text)
+    factor = float(np.exp(np.log(both.iloc[:, 1] / both.iloc[:, 0]).mean()))
+    numbers = (
+        f"The amplitude above which every run overturns is on average {factor:.2f} times that of the first "
+        f"overturning (geometric mean of {of_all(len(both), len(fallen), 'analysis', 'analyses')} in which both "
+        "are known)."
+    )
+    return Finding(headline, text, numbers)
 
 
 def ratio_text(row: Mapping[Any, Any]) -> str:
@@ -261,7 +273,7 @@ def ratio_text(row: Mapping[Any, Any]) -> str:
 
 
 def ratio_of(effects: pd.DataFrame) -> Callable[[str, str], str]:
-    """Return a function of scope and level that words the ratio P/NP there."""
+    """Return a function of scope and level that words the ratio with over without pedestal there."""
     rows = effects[effects["reading"] == READING] if len(effects) else effects
 
     def text(scope: str, level: str) -> str:
@@ -269,7 +281,7 @@ def ratio_of(effects: pd.DataFrame) -> Callable[[str, str], str]:
         if found.empty:
             return "no pair with both amplitudes known"
         row = found.to_dict("records")[0]
-        return f"P/NP {estimate(row['ratio'], row['lower'], row['upper'], 2)}"
+        return f"with/without pedestal {estimate(row['ratio'], row['lower'], row['upper'], 2)}"
 
     return text
 
@@ -286,8 +298,7 @@ def pedestal_effect(effects: pd.DataFrame) -> list[Finding]:
             )
         ]
     row = here.to_dict("records")[0]
-    words = (_ratio_sentence(row), _meaning(row), _steps(row))
-    found = [Finding(_headline(row), " ".join(word for word in words if word))]
+    numbers = [_ratio_sentence(row), _steps(row)]
     others = whole[whole["reading"] != READING].to_dict("records")
     if others:
         listing = "; ".join(
@@ -295,11 +306,10 @@ def pedestal_effect(effects: pd.DataFrame) -> list[Finding]:
             f"({counted(int(one['pairs']), 'pair')})"
             for one in others
         )
-        found[0] = Finding(
-            found[0].headline, f"{found[0].text} Other readings of the same sweeps: {listing}."
-        )
+        numbers.append(f"Other ways to read the amplitude: {listing}.")
     floors = effects[(effects["scope"] == "floor") & (effects["reading"] == READING)]
-    return [*found, *_by_floor(floors)]
+    found = Finding(_headline(row), _meaning(row), " ".join(word for word in numbers if word))
+    return [found, *_by_floor(floors)]
 
 
 def _headline(row: Mapping[Any, Any]) -> str:
@@ -307,32 +317,29 @@ def _headline(row: Mapping[Any, Any]) -> str:
     size = number(100 * abs(row["ratio"] - 1), 1)
     if not has_interval(row["lower"], row["upper"], _RATIO_DECIMALS):
         if size == "0.0":
-            return "With and without pedestal the amplitudes are the same"
-        return f"In {counted(int(row['pairs']), 'pair')} the pedestal {change} the amplitude by {size} %"
+            return "The amplitudes with and without pedestal are the same"
+        return f"The pedestal {change} the amplitude by {size} % in {counted(int(row['pairs']), 'pair')}"
     if row["lower"] <= 1 <= row["upper"]:
         if row["equivalent"]:
             return "The pedestal changes the overturning amplitude by less than 10 %"
-        return "The pedestal's mean effect cannot be told from none"
+        return "The pedestal's mean effect is not distinguishable from zero"
     return f"The pedestal {change} the overturning amplitude by {size} %"
 
 
 def _ratio_sentence(row: Mapping[Any, Any]) -> str:
-    pairs, units = int(row["pairs"]), counted(int(row["units"]), str(row["unit"]))
+    pairs, units = int(row["pairs"]), counted(int(row["units"]), UNIT[str(row["unit"])])
     bounds = int(row["at_bound"])
     text = (
-        "Amplitude with over amplitude without pedestal"
-        + (f", geometric mean of {pairs} pairs" if pairs > 1 else ", of the one pair")
-        + (f", {bounds} of which with one test that gives a bound only" if bounds else "")
+        "Amplitude with pedestal divided by that without"
+        + (f", geometric mean of {pairs} pairs" if pairs > 1 else ", of the only pair")
+        + (f", {bounds} of which have one test that gives a bound only" if bounds else "")
         + f": {ratio_text(row)}"
     )
     if has_interval(row["lower"], row["upper"], _RATIO_DECIMALS):
         return f"{text} (95 % interval over {units})."
     if int(row["units"]) < 2:
         return f"{text}; from {units} there is no interval."
-    return (
-        f"{text}, the same over {units}: the steps of the amplitudes show no scatter, "
-        "so there is no interval."
-    )
+    return f"{text}, the same for {units}: the steps of the amplitudes show no scatter, so there is no interval."
 
 
 def _steps(row: Mapping[Any, Any]) -> str:
@@ -341,8 +348,8 @@ def _steps(row: Mapping[Any, Any]) -> str:
     if tied == 0 or not row["resolution_ratio"] > 1:
         return ""
     return (
-        f"{sentence(of_all(tied, pairs, 'pair'))} overturned in the same step; effects below "
-        f"{100 * (row['resolution_ratio'] - 1):.1f} % are hidden by the steps."
+        f"{sentence(of_all(tied, pairs, 'pair'))} overturned in the same step; the steps hide "
+        f"effects below {100 * (row['resolution_ratio'] - 1):.1f} %."
     )
 
 
@@ -350,12 +357,12 @@ def _meaning(row: Mapping[Any, Any]) -> str:
     if not has_interval(row["lower"], row["upper"], _RATIO_DECIMALS):
         return ""
     if row["equivalent"]:
-        return "A change of more than 10 % either way is excluded at the 5 % level."
+        return "A change of 10 % or more is excluded (5 % level)."
     detectable = row["detectable_ratio"]
     if row["lower"] <= 1 <= row["upper"] and math.isfinite(detectable) and detectable > 1.0005:
         return (
-            f"With this scatter, only changes of {100 * (detectable - 1):.0f} % or more would be "
-            "found with 80 % power."
+            f"With this scatter only changes of {100 * (detectable - 1):.0f} % or more can be detected "
+            "(80 % power)."
         )
     return ""
 
@@ -364,7 +371,7 @@ def _by_floor(rows: pd.DataFrame) -> list[Finding]:
     if len(rows) < 2:
         return []
     parts = [f"{row['level']} {ratio_text(row)}" for row in rows.to_dict("records")]
-    text = f"Amplitude with over without pedestal: {'; '.join(parts)}."
+    numbers = f"Amplitude with pedestal divided by that without: {'; '.join(parts)}."
     known = np.array(
         [
             has_interval(low, high, _RATIO_DECIMALS)
@@ -373,48 +380,87 @@ def _by_floor(rows: pd.DataFrame) -> list[Finding]:
     )
     clear = rows[known & ((rows["lower"] > 1) | (rows["upper"] < 1))]
     if not known.any():
-        return [Finding("By floor there are ratios without intervals", text)]
+        return [Finding("The ratios by floor have no intervals", "", numbers)]
     headline = (
-        "On no floor is the pedestal's effect distinguishable from none"
+        "The pedestal's effect is not distinguishable from zero on any floor"
         if clear.empty
-        else f"The pedestal's effect shows on {of_all(len(clear), len(rows), 'floor')}"
+        else f"The pedestal has an effect on {of_all(len(clear), len(rows), 'floor')}"
     )
-    return [Finding(headline, text)]
+    return [Finding(headline, "", numbers)]
 
 
 def model_allowed(validity: pd.DataFrame) -> list[Finding]:
-    """Say how much friction rocking without sliding needs, and whether a block would have jumped."""
+    """Say how much friction rocking without sliding needs, and whether a block would have jumped.
+
+    Parameters
+    ----------
+    validity
+        A row per test: ``pedestal`` (``P`` or ``NP``), ``friction_demand``, ``least_normal_force_n``.
+    """
     if validity.empty:
         return []
-    demand = validity["friction_demand"].to_numpy(dtype=float)
-    lifted = int((validity["least_normal_force_n"] <= 0).sum())
     tests = len(validity)
-    enough = int((demand <= FRICTION).sum())
-    known = demand[np.isfinite(demand)]
-    headline = (
-        f"With a coefficient of friction of {FRICTION:g}, {of_all(enough, tests, 'test')} would "
-        "rock without sliding"
-    )
-    words = []
-    if known.size > 1:
-        words.append(
-            f"The coefficient needed lies between {known.min():.2f} and {known.max():.2f}, "
-            f"with a median of {np.median(known):.2f}."
-        )
-    elif known.size == 1:
-        words.append(f"The coefficient needed is {known[0]:.2f}.")
-    if known.size < tests:
-        words.append(f"In {of_all(tests - known.size, tests, 'test')} no friction would be enough.")
+    lifted = int((validity["least_normal_force_n"] <= 0).sum())
+    beyond = int((~np.isfinite(validity["friction_demand"].astype(float))).sum())
+    words = [f"Friction coefficient needed: {'; '.join(_demands(validity))}."]
+    if beyond:
+        words.append(f"No friction would be enough in {of_all(beyond, tests, 'test')}.")
     words.append(
         "No block would have lifted off its support."
         if lifted == 0
-        else f"In {of_all(lifted, tests, 'test')} a block would have lifted off."
+        else f"A block would have lifted off in {of_all(lifted, tests, 'test')}."
     )
-    return [Finding(headline, " ".join(words))]
+    return [Finding(friction_sentence(validity), "", " ".join(words))]
+
+
+_WHERE = {"P": "with the pedestal", "NP": "without"}
+
+
+def _sides(validity: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """Tests by side, where both sides were tested."""
+    sides = {side: validity[validity["pedestal"] == side] for side in _WHERE}
+    return {} if any(part.empty for part in sides.values()) else sides
+
+
+def friction_sentence(validity: pd.DataFrame) -> str:
+    """Say how many tests need more friction than dry stone has, with and without a pedestal; no full stop."""
+
+    def beyond(part: pd.DataFrame) -> int:
+        return int((~(part["friction_demand"].astype(float) <= FRICTION)).sum())
+
+    sides = _sides(validity)
+    needs = f"a friction coefficient above {FRICTION:g}"
+    if not sides:
+        n = beyond(validity)
+        verb = agree(n, len(validity), "requires", "require")
+        return f"{sentence(of_all(n, len(validity), 'test'))} {verb} {needs}"
+    each = [
+        f"{of_all(beyond(part), len(part), 'test')} {_WHERE[side]}" for side, part in sides.items()
+    ]
+    verb = agree(beyond(sides["P"]), len(sides["P"]), "requires", "require")
+    return f"{sentence(each[0])} {verb} {needs}, and {each[1]}"
+
+
+def _demands(validity: pd.DataFrame) -> list[str]:
+    """Range and median of the friction needed, with and without a pedestal where both were tested."""
+    parts = {_WHERE[side]: part for side, part in _sides(validity).items()} or {"": validity}
+    words = []
+    for where, part in parts.items():
+        demand = part["friction_demand"].to_numpy(dtype=float)
+        known = demand[np.isfinite(demand)]
+        if known.size == 0:
+            continue
+        span = f"{known.min():.2f} to {known.max():.2f} (median {np.median(known):.2f})"
+        words.append(f"{where} {span if known.size > 1 else f'{known[0]:.2f}'}".strip())
+    return words or ["none known"]
+
+
+UNIT = {"event": "earthquake", "motion": "motion", "floor": "floor"}
+"""Words for what an interval is taken over."""
 
 
 def sliding_found(sliding: pd.DataFrame) -> Finding:
-    """Say in how many cases bodies slid and flew, how far, and how many verdicts that changed.
+    """Say in how many analyses bodies slid and flew, how far, and how many outcomes that changed.
 
     Parameters
     ----------
@@ -427,19 +473,23 @@ def sliding_found(sliding: pd.DataFrame) -> Finding:
     if slid == flew == 0:
         return Finding(
             "Nothing slides or flies",
-            f"In none of {counted(cases, 'case')} friction is asked for more than there is, so everything rocks "
-            "as on surfaces that hold.",
+            f"The friction needed never exceeds the friction available in "
+            f"{counted(cases, 'analysis', 'analyses')}.",
         )
     where = max(sliding.to_dict("records"), key=lambda one: float(one["largest_slip_m"]))
     words = [
         f"The largest slip is {number(100 * where['largest_slip_m'], 1)} cm ({where['configuration']}); "
-        + ("nothing flies." if flew == 0 else f"bodies fly in {of_all(flew, cases, 'case')}.")
+        + ("nothing flies." if flew == 0 else f"bodies fly in {_analyses(flew, cases)}.")
     ]
     if saved == felled == 0:
-        words.append("No verdict is another than that of surfaces that hold.")
+        text = "Sliding changes no outcome."
     else:
-        words.append(
-            "Sliding and flight save what would overturn on surfaces that hold in "
-            f"{of_all(saved, cases, 'case')}, and overturn what would stand in {of_all(felled, cases, 'case')}."
+        text = (
+            f"Sliding and flight prevent overturning in {_analyses(saved, cases)} and cause it in "
+            f"{_analyses(felled, cases)}."
         )
-    return Finding(f"Bodies slide in {of_all(slid, cases, 'case')}", " ".join(words))
+    return Finding(f"Bodies slide in {_analyses(slid, cases)}", text, " ".join(words))
+
+
+def _analyses(n: int, total: int) -> str:
+    return of_all(n, total, "analysis", "analyses")

@@ -24,10 +24,10 @@ TABLES = ("tests", "fragility", "recommendation", "bins", "goodness")
 """Result tables of a measured table, each as CSV and Parquet."""
 
 _CAPTIONS = {
-    "measures": "Probability of overturning over each measure: verdicts in bins with binomial limits, "
-    "a local average (dashed), and the lognormal curve with its band.",
+    "measures": "Probability of overturning over each measure: tests in bins with binomial limits, a local "
+    "average (dashed), and the lognormal curve with its band.",
     "surface": "Tests in the first two measures, with lines of equal fitted probability.",
-    "calibration": "Observed against fitted shares of overturned tests; the diagonal is perfect.",
+    "calibration": "Observed against fitted fractions of overturned tests; the diagonal is a perfect fit.",
 }
 
 
@@ -65,7 +65,9 @@ def figure_specs(study: MeasuredTable, found: UserFragility) -> dict[str, Figure
         drawings["surface"] = lambda: surface_figure(surface, found.tests)
     if found.goodness:
         drawings["calibration"] = lambda: calibration_figure(found.goodness)
-    nothing = partial(note_figure, "No curve: these tests do not rise with a measure.")
+    nothing = partial(
+        note_figure, "No curve: overturning does not become more frequent with a measure."
+    )
     wanted = [name for name in _CAPTIONS if name != "surface" or len(study.measures) > 1]
     return {
         name: FigureSpec(
@@ -97,7 +99,9 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
     motions, fell = tests["motion"].nunique(), int(tests["overturned"].sum())
     answer = _answer(study, found, specs)
     sections = [
-        _choice(tables["recommendation"], specs, found.choice.words),
+        _choice(
+            tables["recommendation"], specs, f"{answer.sentences[0].headline}.", found.choice.words
+        ),
         _curves(study, tables, specs),
     ]
     write_captions(answer, sections, folder / FIGURES)
@@ -124,7 +128,7 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
     """What stands first: which measure, how strong it must be, and whether the curve fits."""
     name = found.choice.name
     headline = f"{name} predicts overturning best" if name else "No measure has a rising curve"
-    sentences = [Finding(headline, found.choice.words)]
+    sentences = [Finding(headline, "", found.choice.words)]
     best = found.table[found.table["theta"].notna()]
     best = best[best["im"] == name] if name in set(best["im"]) else best
     if len(best):
@@ -134,8 +138,9 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
         unit = f" {row['unit']}" if row["unit"] else ""
         sentences.append(
             Finding(
-                f"Half of the tests overturn at {row['im']} of {theta}{unit}",
-                f"Dispersion β {beta}; intervals of {100 * study.confidence:g} % from resampled motions.",
+                f"The probability of overturning reaches 50 % at a {row['im']} of {theta}{unit}",
+                "",
+                f"Dispersion β {beta}; {100 * study.confidence:g} % intervals from resampled motions.",
             )
         )
     doubtful = [
@@ -144,25 +149,28 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
     if found.goodness:
         sentences.append(
             Finding(
-                f"The curves in {listed(doubtful)} do not describe the tests"
+                f"The lognormal curve is rejected for {listed(doubtful)}"
                 if doubtful
-                else "The lognormal curves describe the tests",
-                f"Tested with {counted(len(found.goodness), 'measure')}; the deviances stand with the curves.",
+                else "The lognormal curves are not rejected",
+                "",
+                f"Tested for {counted(len(found.goodness), 'measure')}; the deviances are with the curves.",
             )
         )
     motions = found.tests["motion"].nunique()
     return Answer(
-        asked="How strong must the motion be that the tested object overturns, and which measure tells best?",
+        asked="How strong must shaking be to overturn the tested object, and which measure predicts it best?",
         sentences=sentences,
         figure=specs["measures"],
         rests_on=[
             f"{counted(len(found.tests), 'measured test')} under {counted(motions, 'motion')}."
         ],
-        could_overturn=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
+        could_change=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
     )
 
 
-def _choice(choice: pd.DataFrame, figures: Mapping[str, FigureSpec], message: str) -> Section:
+def _choice(
+    choice: pd.DataFrame, figures: Mapping[str, FigureSpec], best: str, message: str
+) -> Section:
     columns = [
         Column("im", "Measure"),
         Column("unit", "Unit"),
@@ -170,7 +178,7 @@ def _choice(choice: pd.DataFrame, figures: Mapping[str, FigureSpec], message: st
         Column("beta", "β", 3),
         Column("aic", "AIC", 1),
         Column("auc", "AUC", 3),
-        Column("chosen_share", "Best in share of bootstrap samples", 2),
+        Column("chosen_share", "Fraction of bootstrap samples in which it is best", 2),
     ]
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
     columns += [Column(name, f"p, {name.removeprefix('p_')}", numeric=True) for name in given]
@@ -178,10 +186,11 @@ def _choice(choice: pd.DataFrame, figures: Mapping[str, FigureSpec], message: st
     return Section(
         "measure",
         "Choice of the intensity measure",
-        message,
+        best,
         [
-            "AIC decides; β is the efficiency, AUC the probability that an overturned test had the "
-            "larger measure. A small p says that the measure leaves something for that column to tell."
+            message,
+            "β is the efficiency, AUC the probability that an overturned test had the larger measure. A small "
+            "p says that the residuals depend on that column.",
         ],
         [
             table_html(choice, columns, "Measures compared on the same tests, best first."),
@@ -218,8 +227,12 @@ def _curves(
     return Section(
         "fragility",
         "Fragility curves",
-        " ".join(goodness["finding"]) or "No measure has a rising curve.",
-        [f"Lognormal curves with intervals of {level}, from resampled motions.", *warnings],
+        "Lognormal curves of the tests." if len(goodness) else "No measure has a rising curve.",
+        [
+            f"The {level} intervals resample motions.",
+            *goodness["finding"],
+            *warnings,
+        ],
         [
             table_html(fitted, curves, f"Medians and dispersions, {level} intervals."),
             table_html(goodness, fits, "Goodness of fit."),

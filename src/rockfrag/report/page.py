@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED
 from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report.glossary import terms_used
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.report.wording import number
 
@@ -218,6 +219,18 @@ def _chapter(
     )
 
 
+def _texts(answer: Answer, sections: Sequence[Section]) -> str:
+    """All that a page says in words, its tables included."""
+    words = [one.said for one in answer.sentences]
+    words += [*answer.advice, *answer.rests_on, *answer.could_change]
+    for section in sections:
+        words += [section.title, section.message, *section.paragraphs]
+        words += [
+            one.caption if isinstance(one, FigureSpec) else one.striptags() for one in section.parts
+        ]
+    return " ".join(words)
+
+
 def render(
     *,
     title: str,
@@ -262,6 +275,7 @@ def render(
         answer=answer,
         answer_picture=answer.figure and pictures[answer.figure.name],
         chapters=[_chapter(section, pictures, answer.figure) for section in sections],
+        glossary=terms_used(_texts(answer, sections)),
         provenance=provenance,
         basis=basis,
         live=live,

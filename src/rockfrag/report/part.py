@@ -50,15 +50,36 @@ class FigureSpec:
 
 @dataclass(frozen=True)
 class Finding:
-    """One finding: a headline without a full stop, and the sentences that carry it."""
+    """One finding.
+
+    Attributes
+    ----------
+    headline
+        What was found, a sentence without its full stop.
+    text
+        What it means, in sentences that stand open beside it.
+    numbers
+        The numbers behind it, in sentences that a click opens.
+    """
 
     headline: str
-    text: str
+    text: str = ""
+    numbers: str = ""
+
+    @property
+    def shown(self) -> str:
+        """What stands open on the page."""
+        return f"{self.headline}. {self.text}".strip()
 
     @property
     def said(self) -> str:
         """All of it in a row."""
-        return f"{self.headline}. {self.text}".strip()
+        return f"{self.shown} {self.numbers}".strip()
+
+
+def opened(finding: Finding) -> list[str]:
+    """What a chapter says of its finding once it is open: the sentences behind the headline."""
+    return [words for words in (finding.text, finding.numbers) if words]
 
 
 @dataclass(frozen=True)
@@ -70,11 +91,13 @@ class Answer:
     asked
         The question, in a sentence.
     sentences
-        What was found, with numbers and how sure they are, most important first; three at most.
+        What was found, most important first; three at most.
     figure
         The one figure that shows it.
-    rests_on, could_overturn
-        What it rests on, and what would make it wrong, each in a sentence or two.
+    advice
+        What to do, each in a sentence.
+    rests_on, could_change
+        What the result rests on, and what could change it, each in a sentence or two.
     questions
         What a keeper of the objects would ask, each with the anchor of the chapter that answers it.
     """
@@ -82,8 +105,9 @@ class Answer:
     asked: str
     sentences: Sequence[Finding]
     figure: FigureSpec | None = None
+    advice: Sequence[str] = ()
     rests_on: Sequence[str] = ()
-    could_overturn: Sequence[str] = ()
+    could_change: Sequence[str] = ()
     questions: Sequence[tuple[str, str]] = ()
 
 
@@ -96,7 +120,7 @@ class Section:
     anchor, title
         Its place and its heading.
     message
-        What it found, in a sentence or two that stand on the page before it is opened.
+        What it found, in one short sentence that stands on the page before it is opened.
     paragraphs
         How to read it.
     parts
@@ -178,7 +202,12 @@ class Results:
     def lightest(self) -> NDArray[np.float64]:
         """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
         paths = [self.folder / path for path in self.study.sweep_files]
-        parts = [pq.read_table(path, columns=["lightest"])["lightest"].to_numpy() for path in paths]
+        parts = [
+            pq.read_table(path, columns=["minimum_gravity_ratio"])[
+                "minimum_gravity_ratio"
+            ].to_numpy()
+            for path in paths
+        ]
         return np.concatenate(parts)
 
     @property

@@ -10,7 +10,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.report.live import AMPLITUDES_G, live_kernel, swept
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding
-from rockfrag.report.wording import counted, number
+from rockfrag.report.wording import counted, number, sentence
 from rockfrag.rocking import simulate
 from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
@@ -53,7 +53,7 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
         lead=f"{counted(samples, 'sample')} of {motion.dt:.4g} s, as recorded with a peak of "
         f"{number(motion.pga / GRAVITY, 3)} g.",
         answer=Answer(
-            asked="At what strength of this motion does it overturn?",
+            asked="How strong must this motion be to overturn it?",
             sentences=[_strength(verdicts["overturned"].tolist()), _recorded(body, motion)],
         ),
         sections=[],
@@ -87,14 +87,13 @@ def _strength(fell: Sequence[bool]) -> Finding:
     first = verdicts.index(True)
     later = len(verdicts) - first - sum(verdicts[first:])
     windows = (
-        f" Of those above it {later} {'is' if later == 1 else 'are'} survived again: how strong the motion is, "
-        "is not all that counts."
+        f" {later} stronger {'one is' if later == 1 else 'ones are'} survived again: the response is not monotone."
         if later
-        else " All that are stronger overturn it too."
+        else " All stronger ones overturn it too."
     )
     return Finding(
-        f"It overturns first at a peak of {number(AMPLITUDES_G[first], 3)} g",
-        f"Tried were {tried}.{windows}",
+        f"It first overturns at a peak of {number(AMPLITUDES_G[first], 3)} g",
+        f"{sentence(tried)} were tried.{windows}",
     )
 
 
@@ -103,8 +102,8 @@ def _recorded(body: Body, motion: Motion) -> Finding:
     response = simulate(body, motion)
     words = "overturns it" if response.overturned else "does not overturn it"
     return Finding(
-        f"As strong as recorded the motion {words}",
-        f"It strikes {counted(response.impacts, 'time')} before."
+        f"The motion as recorded {words}",
+        f"It has {counted(response.impacts, 'impact')} before."
         if response.overturned
         else f"It rocks with {counted(response.impacts, 'impact')}.",
     )

@@ -120,7 +120,7 @@ def study_page(
 
 
 def _live(results: Results) -> Markup:
-    """Return the simulation in the page; nothing where it could not give the verdicts of the study."""
+    """Return the simulation in the page; nothing where it could not give the outcomes of the study."""
     study = results.study
     if not study.simulated_in_page:
         return Markup()
@@ -135,5 +135,5 @@ def _lead(results: Results) -> str:
         f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
         f"{counted(motions, 'record')} of {counted(events, 'earthquake')}"
         + (", on the floors of a building" if study.building else "")
-        + ", simulated event by event."
+        + "."
     )

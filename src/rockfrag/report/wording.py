@@ -34,7 +34,9 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     """An estimate with its limits, ``1.01 [0.98, 1.04]``; without them where they say nothing.
 
     Limits say nothing where there are none, or where they are the same to the decimals shown: a
-    ladder of steps cannot show that something is exactly so.
+    set of steps cannot show that something is exactly so. An estimate that is its own upper limit, with none
+    below,
+    is a bound: ``≤ 0.04``.
     """
     if not math.isfinite(value):
         return "–"
@@ -43,6 +45,9 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
         number(limit, decimals) if value / _FAR < limit < value * _FAR else "open"
         for limit in (lower, upper)
     )
+    if lower <= 0 and upper <= value:
+        # such as the dispersion of tests that a single threshold separates: only a bound is known
+        return f"≤ {middle}"
     if low == high or not has_interval(lower, upper, decimals):
         return middle
     return f"{middle} [{low}, {high}]"
@@ -85,13 +90,18 @@ def counted(n: int, one: str, many: str | None = None) -> str:
 
 
 def of_all(n: int, total: int, one: str, many: str | None = None) -> str:
-    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the one test``."""
+    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``."""
     noun = one if total == 1 else many or one + "s"
     if n == 0:
-        return f"none of {total} {noun}" if total > 1 else f"not the one {noun}"
+        return f"none of {total} {noun}" if total > 1 else f"no {noun}"
     if n == total:
-        return f"all {total} {noun}" if total > 1 else f"the one {noun}"
+        return f"all {total} {noun}" if total > 1 else f"the only {noun}"
     return f"{n} of {total} {noun}"
+
+
+def agree(n: int, total: int, one: str, many: str) -> str:
+    """The verb that goes with :func:`of_all`: ``needs`` of one, of none and of the only one, else ``need``."""
+    return one if n in (0, 1) or total == 1 else many
 
 
 def listed(names: Sequence[str]) -> str:
@@ -101,6 +111,14 @@ def listed(names: Sequence[str]) -> str:
     if len(names) < 2:
         return "".join(names)
     return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+LONGEST_LABEL = 40
+
+
+def label(name: str) -> str:
+    """A name that a reader looks up elsewhere, whole wherever a figure has room for it."""
+    return shortened(name, LONGEST_LABEL)
 
 
 def shortened(name: str, longest: int = LONGEST_NAME) -> str:
@@ -118,6 +136,11 @@ def amplitude(test: Mapping[Any, Any], decimals: int = 3) -> str:
     if math.isfinite(test["upper_g"]):
         return f"< {number(test['upper_g'], decimals)}"
     return f"> {number(test['lower_g'], decimals)}" if test["lower_g"] > 0 else "–"
+
+
+def spelled(words: str) -> str:
+    """The words with P/NP and NP/P, the names of ratios in tables, written out for a reader."""
+    return words.replace("NP/P", "without/with pedestal").replace("P/NP", "with/without pedestal")
 
 
 def sentence(words: str) -> str:

@@ -6,10 +6,14 @@ from typing import Any
 import lazy_loader
 
 _find, _, _own = lazy_loader.attach_stub(__name__, __file__)
-_SYSTEM = ("Block", "Body", "Column", "Shape", "Stack", "read_shape")
-"""What is shaken, which those who shake it need too."""
+_OTHERS = {
+    **dict.fromkeys(("Block", "Body", "Column", "Shape", "Stack", "read_shape"), "system"),
+    "Outcomes": "outcomes",
+    "Response": "engines.response",
+}
+"""What is shaken and what comes out, which those who shake it need too, and their homes."""
 
-__all__ = [*_own, *_SYSTEM]
+__all__ = [*_own, *_OTHERS]
 
 
 def __dir__() -> list[str]:
@@ -19,4 +23,6 @@ def __dir__() -> list[str]:
 
 def __getattr__(name: str) -> Any:
     """Load a public name when it is first used."""
-    return getattr(import_module("rockfrag.system"), name) if name in _SYSTEM else _find(name)
+    if name in _OTHERS:
+        return getattr(import_module(f"rockfrag.{_OTHERS[name]}"), name)
+    return _find(name)

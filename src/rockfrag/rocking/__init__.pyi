@@ -1,9 +1,10 @@
+import rockfrag.engines.response as _response
+import rockfrag.outcomes.outcomes as _outcomes
 import rockfrag.system.blocks as _blocks
 import rockfrag.system.mesh as _mesh
 
 from . import closed_forms as closed_forms, rules_of_thumb as rules_of_thumb
 from .ensemble import (
-    EnsembleResult as EnsembleResult,
     LightBodies as LightBodies,
     overturns as overturns,
 )
@@ -12,7 +13,6 @@ from .parquet import (
     stream_histories as stream_histories,
     stream_overturns as stream_overturns,
 )
-from .response import Response as Response
 from .restitution import (
     RestitutionFit as RestitutionFit,
     restitution_from_history as restitution_from_history,
@@ -45,3 +45,5 @@ Column = _blocks.Column
 Stack = _blocks.Stack
 Shape = _mesh.Shape
 read_shape = _mesh.read_shape
+Outcomes = _outcomes.Outcomes
+Response = _response.Response

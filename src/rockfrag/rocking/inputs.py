@@ -5,29 +5,26 @@ import numbers
 import os
 import warnings
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.contract import Cases
+from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_array, shown, whole_number
-from rockfrag.plausibility import peak_warning
+from rockfrag.plausibility import (
+    LARGEST_IN_G,
+    LONGEST_STEP,
+    gravity_warning,
+    interval_warning,
+    peak_warning,
+)
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.system.blocks import Block, Body, Stack
-
-STEP = 0.1
-"""Largest p h of a step: frequency parameter of the faster block times step."""
-
-STACK_STEP = 0.35
-"""Share of that step that stacks of an ensemble take while both blocks rotate: they are chaotic, and keep the
-memory of smaller errors."""
-
-FREE_TIME = 60.0
-"""Free rocking after the motion is followed for at most this long, in units of 1/p."""
-
-MOST_SAMPLES = 20_000_000
-"""Samples of a history, the motion and the free rocking after it, that are admitted."""
+from rockfrag.system.blocks import Block, Column, Stack, as_system
+from rockfrag.system.system import System, contact_ends, standing_centres
 
 MOST_CASES = 50_000_000
 """Cases of an ensemble whose results are held in memory."""
@@ -35,8 +32,13 @@ MOST_CASES = 50_000_000
 STRONGEST = 1e4
 """Peak acceleration [m/s²] beyond any earthquake."""
 
-MotionLike = Motion | ArrayLike
-"""A motion, or its accelerations [m/s²], shape (n,)."""
+MotionLike = Motion | GroundMotion | ArrayLike
+"""A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
+
+Standing = Block | Stack | Column | System
+"""What stands, as it may be written."""
+
+WRITTEN = (Block, Stack, Column, System)
 
 
 def checked_motion(
@@ -108,7 +110,7 @@ def checked_vertical(
     return values
 
 
-def checked_start(body: Body, value: object, name: str) -> tuple[float, ...]:
+def checked_start(body: Standing, value: object, name: str) -> tuple[float, ...]:
     """Return rotations or angular velocities at the start, one for each block; zeros for None.
 
     Raises
@@ -116,7 +118,7 @@ def checked_start(body: Body, value: object, name: str) -> tuple[float, ...]:
     InputError
         If there is not one finite number for each block, or a block lies on its side already.
     """
-    blocks = 1 if isinstance(body, Block) else 2
+    blocks = as_system(body).count
     if value is None:
         return (0.0,) * blocks
     values = np.atleast_1d(real_array(name, value))
@@ -127,41 +129,41 @@ def checked_start(body: Body, value: object, name: str) -> tuple[float, ...]:
     return tuple(values.tolist())
 
 
-def listed_bodies(bodies: object) -> list[Body]:
+def listed_bodies(bodies: object) -> list[Standing]:
     """Return the bodies as a list.
 
     Raises
     ------
     InputError
-        If there is none, or one is neither a Block nor a Stack.
+        If there is none, or one is no Block, Stack, Column or System.
     """
-    if isinstance(bodies, (Block, Stack)):
+    if isinstance(bodies, WRITTEN):
         return [bodies]
     if not isinstance(bodies, (Sequence, np.ndarray)) or isinstance(bodies, (str, bytes)):
         raise InputError(
-            f"bodies: expected a Block, a Stack or a list of them, got {shown(bodies)}."
+            f"bodies: expected a Block, a Stack, a Column, a System or a list of them, got {shown(bodies)}."
         )
     for i, body in enumerate(bodies):
-        if not isinstance(body, (Block, Stack)):
-            raise InputError(f"bodies[{i}]: expected a Block or a Stack, got {shown(body)}.")
+        if not isinstance(body, WRITTEN):
+            raise InputError(
+                f"bodies[{i}]: expected a Block, a Stack, a Column or a System, got {shown(body)}."
+            )
     return list(bodies)
 
 
-def listed(
-    bodies: Body | Sequence[Body],
+def listed_motions(
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
-    restitution: Sequence[Restitution] | None,
-) -> tuple[list[Body], list[NDArray[np.float64]], NDArray[np.float64]]:
-    """Return bodies, checked accelerations [m/s²] and the sampling interval of each motion [s].
+    vertical: MotionLike | Sequence[MotionLike] | None = None,
+) -> list[GroundMotion]:
+    """Return checked motions.
 
     Raises
     ------
     InputError
-        If a body is none, a motion cannot be used, or the lengths of the lists do not fit together.
+        If a motion cannot be used, or the lengths of the lists do not fit together.
     """
-    body_list = listed_bodies(bodies)
-    each = listed_motions(motions)
+    each = _listed_motions(motions)
     intervals: list[float | None]
     if dt is None or isinstance(dt, (numbers.Real, str, complex)):
         intervals = [dt] * len(each)  # type: ignore[list-item]
@@ -169,12 +171,49 @@ def listed(
         intervals = list(real_array("dt", dt, "s").ravel().tolist())
         if len(intervals) != len(each):
             raise InputError(f"dt: expected one number or {len(each)}, got {len(intervals)}.")
-    check_one_per_body("restitution", restitution, len(body_list))
-    checked = [
-        checked_motion(motion, interval, f"motions[{i}]")
-        for i, (motion, interval) in enumerate(zip(each, intervals, strict=True))
+    ups: list[MotionLike | None] = [None] * len(each)
+    if vertical is not None:
+        ups = list(_listed_motions(vertical, "vertical"))
+        if len(ups) != len(each):
+            raise InputError(
+                f"vertical: expected {len(each)} entries, one per motion, got {len(ups)}."
+            )
+    return [
+        ground_motion(motion, interval, up, f"motions[{i}]", f"vertical[{i}]")
+        for i, (motion, interval, up) in enumerate(zip(each, intervals, ups, strict=True))
     ]
-    return body_list, [values for values, _ in checked], np.array([h for _, h in checked])
+
+
+def ground_motion(
+    motion: MotionLike,
+    dt: float | None,
+    vertical: MotionLike | None = None,
+    name: str = "motion",
+    vertical_name: str = "vertical",
+) -> GroundMotion:
+    """Return the checked ground motion of a horizontal and perhaps a vertical component.
+
+    Raises
+    ------
+    InputError
+        If a component cannot be used, or the two are not sampled at the same times.
+    """
+    if isinstance(motion, GroundMotion):
+        if vertical is not None or dt is not None:
+            raise InputError(
+                f"{name}: a GroundMotion has its own vertical component and sampling interval; leave vertical "
+                "and dt out."
+            )
+        for component in (motion.x, motion.y, motion.z):
+            if component is not None:
+                checked_motion(component, None, name)
+        return motion
+    values, interval = checked_motion(motion, dt, name)
+    up = checked_vertical(vertical, values, interval, vertical_name)
+    return GroundMotion(
+        motion if isinstance(motion, Motion) else Motion(values, interval),
+        z=Motion(up, interval) if vertical is not None else None,
+    )
 
 
 def _refuse_file_name(name: str, motion: object) -> None:
@@ -185,18 +224,9 @@ def _refuse_file_name(name: str, motion: object) -> None:
         )
 
 
-def listed_motions(
-    motions: MotionLike | Sequence[MotionLike], name: str = "motions"
-) -> list[MotionLike]:
-    """Return motions as a list of them.
-
-    Raises
-    ------
-    InputError
-        If there are none.
-    """
+def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
     _refuse_file_name(name, motions)
-    if isinstance(motions, Motion):
+    if isinstance(motions, (Motion, GroundMotion)):
         return [motions]
     if isinstance(motions, np.ndarray) and motions.ndim == 1 and motions.dtype != object:
         return [motions]
@@ -204,36 +234,16 @@ def listed_motions(
         raise InputError(
             f"{name}: expected a Motion, accelerations or a list of them, got {shown(motions)}."
         )
+    if isinstance(motions, np.ndarray) and motions.ndim == 2 and 2 <= motions.shape[1] <= 3:
+        raise InputError(
+            f"{name}: an array of shape {motions.shape} looks like {motions.shape[1]} components in columns, not "
+            f"like {motions.shape[0]} motions; give each motion as an array of shape (n,), or a GroundMotion."
+        )
     each = list(motions)
     if each and all(isinstance(value, numbers.Real) for value in each):
         # one motion given as a list of numbers
         return [motions]  # type: ignore[list-item]
     return each
-
-
-def listed_vertical(
-    vertical: MotionLike | Sequence[MotionLike] | None,
-    horizontal: Sequence[NDArray[np.float64]],
-    intervals: NDArray[np.float64],
-) -> list[NDArray[np.float64]]:
-    """Return the vertical accelerations of each motion [m/s²]; of None none.
-
-    Raises
-    ------
-    InputError
-        If there is not one for each motion, or one cannot be used.
-    """
-    if vertical is None:
-        return []
-    each = listed_motions(vertical, "vertical")
-    if len(each) != len(horizontal):
-        raise InputError(
-            f"vertical: expected {len(horizontal)} entries, one per motion, got {len(each)}."
-        )
-    return [
-        checked_vertical(up, values, float(interval), f"vertical[{i}]")
-        for i, (up, values, interval) in enumerate(zip(each, horizontal, intervals, strict=True))
-    ]
 
 
 def check_one_per_body(name: str, given: object, count: int) -> None:
@@ -252,9 +262,7 @@ def check_one_per_body(name: str, given: object, count: int) -> None:
         raise InputError(f"{name}: expected {count} entries, one per body, got {len(given)}.")
 
 
-def checked_scales(
-    scales: ArrayLike, motions: Sequence[NDArray[np.float64]]
-) -> NDArray[np.float64]:
+def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArray[np.float64]:
     """Return factors on the accelerations as an array of shape (motions, scales).
 
     Raises
@@ -277,8 +285,10 @@ def checked_scales(
             f"got {shown(scales)}."
         )
     check_case_count(factors.size)
-    for i, values in enumerate(motions):
-        strongest = float(np.abs(factors[i]).max(initial=0.0)) * float(np.abs(values).max())
+    for i, motion in enumerate(motions):
+        parts = (motion.x, motion.y, motion.z)
+        peak = max(part.pga for part in parts if part is not None)
+        strongest = float(np.abs(factors[i]).max(initial=0.0)) * peak
         if strongest > STRONGEST:
             raise InputError(
                 f"scales: motions[{i}] is scaled to {strongest:.3g} m/s², which is beyond any earthquake."
@@ -332,95 +342,55 @@ def check_case_count(count: int) -> None:
 
 
 class UnitDoubt(UserWarning):
-    """A motion looks as if it were given in another unit than m/s²."""
+    """A number looks as if it were given in another unit."""
 
 
-def warn_of_unit(
-    bodies: Sequence[Body],
-    given: Sequence[MotionLike],
-    peaks: NDArray[np.float64],
-    g: float,
-    stacklevel: int = 4,
-) -> None:
-    """Warn if the strongest motion looks as if it were given in another unit than m/s².
+def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
+    """Warn of what looks like a mistake of unit: of accelerations, of times, of gravity.
 
     Parameters
     ----------
-    bodies
-        What is shaken.
+    cases
+        Systems, motions and scales.
     given
         Motions as the user gave them. Only of an array, which has no unit of its own, is it a reason for doubt
         that it lifts nothing and would lift something if it were in g.
-    peaks
-        Peak acceleration of each motion at its largest scale [m/s²], shape (motions,).
-    g
-        Acceleration of gravity [m/s²].
     stacklevel
-        Callers between this function and the user's line.
+        Callers between the warning and the user's line.
     """
-    plain = any(not isinstance(motion, Motion) for motion in given)
-    gravity = positive_number("g", g, "m/s²")
-    least = min((least_uplift(body, gravity) for body in bodies), default=None) if plain else None
-    if doubt := peak_warning(float(peaks.max(initial=0.0)), least):
-        warnings.warn(doubt, UnitDoubt, stacklevel=stacklevel)
+    if not cases.systems or not cases.motions:
+        return
+    g = cases.request.g
+    largest = np.abs(cases.scales).max(axis=1, initial=0.0)
+    peaks = [one.x.pga * float(scale) for one, scale in zip(cases.motions, largest, strict=True)]
+    peak = max(peaks)
+    own = (Motion, GroundMotion)
+    plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
+    # a stronger motion is hardly one in g, and needs no look at the bodies
+    doubtful = plain and 0 < peak <= LARGEST_IN_G
+    least = min(least_uplift(system, g) for system in cases.systems) if doubtful else None
+    longest = max(motion.dt for motion in cases.motions)
+    if longest > LONGEST_STEP:
+        # what is far too long is refused before it is doubted
+        for system in cases.systems:
+            step_count(system, longest, g, STEP)
+    for doubt in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
+        if doubt:
+            warnings.warn(doubt, UnitDoubt, stacklevel=stacklevel)
 
 
-def least_uplift(body: Body, g: float) -> float:
-    """Return the least horizontal acceleration that opens a contact of a body at rest, g b/h [m/s²]."""
-    arms = (body.arm,) if isinstance(body, Block) else (body.common_arm, body.statue_arm)
-    each = [arm(pole) for arm in arms for pole in (+1, -1)]
-    return min(abs(arm.x) / arm.y for arm in each) * g
-
-
-def fastest_frequency(body: Body, g: float) -> float:
-    """Largest frequency parameter p of the body's blocks [1/s]."""
-    blocks = (body,) if isinstance(body, Block) else (body.pedestal, body.contact_statue)
-    return max(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
-
-
-def slowest_frequency(body: Body, g: float) -> float:
-    """Smallest frequency parameter p of the ways in which the body rocks [1/s].
-
-    Raises
-    ------
-    InputError
-        If it is too small for a number.
-    """
-    blocks = (body,) if isinstance(body, Block) else (body.contact_statue, body.rigidly_joined())
-    slowest = min(block.frequency(pole, g) for block in blocks for pole in (+1, -1))
-    if not slowest > 0:
-        raise InputError("body: its frequency parameter p is 0; check lengths, mass and inertia.")
-    return slowest
-
-
-def free_samples(body: Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
-    """Return the most samples of free rocking that are followed after a motion, for every interval.
-
-    Raises
-    ------
-    InputError
-        If they would not fit into memory.
-    """
-    samples = np.ceil(FREE_TIME / slowest_frequency(body, g) / np.asarray(dt))
-    if samples.max(initial=0) > MOST_SAMPLES:
-        raise InputError(
-            f"dt: free rocking sampled every {np.min(dt):.3g} s would take {samples.max():.3g} samples, "
-            f"more than the {MOST_SAMPLES} allowed; give a longer interval."
+def least_uplift(system: System, g: float) -> float:
+    """Least horizontal acceleration that opens a contact at rest [m/s²]; eq. 2.1, 2.21 to 2.25."""
+    found = math.inf
+    centres, mass = standing_centres(system), 0.0
+    x = y = 0.0
+    for k in reversed(range(system.count)):
+        own = system.bodies[k].mass
+        x, y = (
+            (x * mass + own * centres[k][0]) / (mass + own),
+            (y * mass + own * centres[k][1]) / (mass + own),
         )
-    return np.asarray(samples).astype(np.int64)
-
-
-def step_count(body: Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.int64]:
-    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval.
-
-    Raises
-    ------
-    InputError
-        If ``step`` is not positive, or an interval is far too long for the body.
-    """
-    positive_number("step", step)
-    frequency = fastest_frequency(body, g)
-    steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
-    if steps.max(initial=0) > 10_000:
-        raise InputError(f"dt: {np.max(dt)} s is too long for a block of p = {frequency:.3g} 1/s.")
-    return np.maximum(1, steps).astype(np.int64)
+        mass += own
+        for end in contact_ends(system, k):
+            found = min(found, abs(x - end[0]) / (y - end[1]) * g if y > end[1] else math.inf)
+    return found

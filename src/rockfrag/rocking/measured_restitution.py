@@ -2,15 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, shown
 from rockfrag.system import geometry
-from rockfrag.system.blocks import Block, Body
-from rockfrag.system.geometry import COUPLE, RATIO
+from rockfrag.system.blocks import Block
+from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
+from rockfrag.system.system import System, each_contact
 
 Law = Literal["position", "couple", "ratio"]
 """How the restitution of a lone block is carried over to a stack."""
@@ -41,7 +42,7 @@ class MeasuredRestitution:
         and before have the measured ratio.
     """
 
-    value: float | Sequence[Measured]
+    value: float | Sequence[Measured] | dict[str, Any]
     law: Law = "position"
 
     def __post_init__(self) -> None:
@@ -58,13 +59,8 @@ class MeasuredRestitution:
             )
 
 
-Restitution = float | Sequence[Measured] | MeasuredRestitution | None
+Restitution = float | Sequence[Measured] | dict[str, Any] | MeasuredRestitution | None
 """A measured restitution; numbers alone follow the law ``"position"``, and None conserves momentum."""
-
-After = tuple[int, float]
-"""Law and number of the impacts that end on one corner, as the kernels have them (``kernels.equations.AFTER``)."""
-
-BY_MOMENTUM: After = (0, 1.0)
 
 
 def largest_restitution(block: Block, pole: int | None = None) -> float:
@@ -101,71 +97,69 @@ def impulse_position(block: Block, restitution: float, pole: int) -> float:
     return geometry.impulse_position(block.shape, restitution, pole)
 
 
-def lone_restitution(block: Block, restitution: Restitution) -> tuple[float, float] | None:
-    """Return the checked restitution of a lone block, of impacts that end on its right and on its left corner.
+def impact_laws(
+    system: System, restitution: Restitution, name: str = "restitution"
+) -> tuple[ImpactLaw, ...]:
+    """Return the law of the impacts of each contact of a system.
 
-    None if momentum is conserved.
+    Parameters
+    ----------
+    system
+        What stands.
+    restitution
+        As :data:`Restitution`; or a mapping ``{"ground": …, "interface": …}``.
+    name
+        What messages call it.
 
     Raises
     ------
     InputError
-        If it does not fit the block or would add energy.
+        If the restitution does not fit the system or would add energy.
     """
+    law, given = "position", restitution
     if isinstance(restitution, MeasuredRestitution):
-        restitution = restitution.value
-    return _checked("restitution of the block", restitution, block)
-
-
-def stack_restitution(body: Body, restitution: Restitution) -> tuple[After, After, After, After]:
-    """Return how ground and interface come off impacts that end on their right and left corners.
-
-    Of a lone block, which the interface stands for, all laws are the same.
-
-    Raises
-    ------
-    InputError
-        If the restitution does not fit the body or would add energy.
-    """
-    if isinstance(body, Block):
-        both = lone_restitution(body, restitution)
-        if both is None:
-            return (BY_MOMENTUM,) * 4
-        return BY_MOMENTUM, BY_MOMENTUM, (RATIO, both[0]), (RATIO, both[1])
-    law = restitution.law if isinstance(restitution, MeasuredRestitution) else "position"
-    given = restitution.value if isinstance(restitution, MeasuredRestitution) else restitution
+        law, given = restitution.law, restitution.value
     if given is None:
-        return (BY_MOMENTUM,) * 4
-    if not (isinstance(given, (tuple, list, np.ndarray)) and len(given) == 2):
-        raise InputError(
-            "restitution: a stack takes a pair (ground, interface), each of which may be None, "
-            f"got {shown(given)}."
+        return (BY_MOMENTUM,) * system.count
+    if isinstance(given, dict) or system.count == 1:
+        each = each_contact(name, given, system.count)
+    elif isinstance(given, (tuple, list, np.ndarray)) and len(given) == system.count:
+        each = tuple(given)
+    else:
+        wanted = (
+            "a pair (ground, interface)"
+            if system.count == 2
+            else f"{system.count} entries from below"
         )
-    blocks = body.pedestal, body.contact_statue
-    names = "restitution of the ground", "restitution of the interface"
-    afters = []
-    for name, value, block in zip(names, given, blocks, strict=True):
-        both = _checked(name, value, block)
-        for at, pole in enumerate((+1, -1)):
-            afters.append(BY_MOMENTUM if both is None else _after(name, block, both[at], pole, law))
-    return afters[0], afters[1], afters[2], afters[3]
-
-
-def _after(name: str, block: Block, value: float, pole: int, law: Law) -> After:
-    """Law and number of the impacts of an interface that end on a corner of the block above it."""
-    by_momentum = block.momentum_restitution(-pole)
-    if law == "ratio":
-        return RATIO, value
-    if by_momentum <= 0 and not (law == "position" and value >= by_momentum):
         raise InputError(
-            f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "
-            "multiply; choose the law position or ratio."
+            f"{name}: a stack takes {wanted}, each of which may be None, got {shown(given)}."
         )
-    if law == "position":
-        return geometry.by_position(block.shape, value, pole)
-    return COUPLE, value / by_momentum
+    places = ("block",) if system.count == 1 else ("ground", "interface")
+    return tuple(
+        _law_of(f"{name} of the {places[min(k, 1)]}", law if places[1:] else "ratio", value, shape)
+        for k, (value, shape) in enumerate(zip(each, system.carried, strict=True))
+    )
 
 
-def _checked(name: str, measured: object, block: Block) -> tuple[float, float] | None:
+def _law_of(name: str, law: str, value: object, shape: geometry.Shape) -> ImpactLaw:
+    both = _checked(name, value, shape)
+    if both is None:
+        return BY_MOMENTUM
+    for pivot, measured in zip((+1, -1), both, strict=True):
+        by_momentum = geometry.momentum_restitution(shape, pivot)
+        if (
+            by_momentum <= 0
+            and law != "ratio"
+            and not (law == "position" and measured >= by_momentum)
+        ):
+            raise InputError(
+                f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "
+                "multiply; choose the law position or ratio."
+            )
+    return ImpactLaw(law, *both)
+
+
+def _checked(name: str, measured: object, shape: geometry.Shape) -> tuple[float, float] | None:
     """Return the ratios of impacts that end on the right and on the left corner."""
     if measured is None:
         return None
@@ -176,10 +170,10 @@ def _checked(name: str, measured: object, block: Block) -> tuple[float, float] |
                 f"corner, got {shown(measured)}."
             )
         right, left = (real_number(name, value) for value in measured)
-        bounds = largest_restitution(block, +1), largest_restitution(block, -1)
+        bounds = tuple(geometry.largest_restitution(shape, pivot) for pivot in (+1, -1))
     else:
         right = left = real_number(name, measured)
-        bounds = (largest_restitution(block),) * 2
+        bounds = (min(geometry.largest_restitution(shape, pivot) for pivot in (+1, -1)),) * 2
     for value, largest in zip((right, left), bounds, strict=True):
         if not 0.0 <= value <= largest:
             raise InputError(

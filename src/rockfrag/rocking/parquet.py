@@ -5,79 +5,71 @@ from __future__ import annotations
 import itertools
 import math
 import os
-import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from typing import Literal
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from rockfrag.engines.kernels.record import EVENT, SAMPLE
+from rockfrag.engines.contract import Case, engine_for
+from rockfrag.engines.single import ENGINE as SINGLE
+from rockfrag.engines.single import samples_of
+from rockfrag.engines.steps import STEP, step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.body_record import body_record
-from rockfrag.rocking.ensemble import EnsembleResult, overturns
-from rockfrag.rocking.inputs import (
-    STEP,
-    MotionLike,
-    UnitDoubt,
-    checked_scales,
-    checked_threads,
-    listed,
-    listed_motions,
-    step_count,
-    warn_of_unit,
-)
+from rockfrag.outcomes.columns import Table
+from rockfrag.outcomes.outcomes import columns as columns_of
+from rockfrag.rocking.ensemble import Options, prepared, richest, shaken
+from rockfrag.rocking.inputs import MotionLike, Standing
 from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.simulation import initial_state, run_march, shaking_of
-from rockfrag.system.blocks import Body
+from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.units import GRAVITY
-
-Array = NDArray[np.float64]
 
 ROWS = 262_144
 """Most cases that are in memory at a time, and most rows of a row group."""
 
-CASE = {"body": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
-VERDICT = {"overturned": pa.bool_(), "overturned_body": pa.int8()}
-PEAKS = {
-    "overturning_time_s": pa.float64(),
-    "peak_rotation": pa.float64(),
-    "peak_rotation_pedestal": pa.float64(),
-    "peak_velocity_rad_s": pa.float64(),
-    "impacts": pa.int64(),
-    "given_way": pa.int64(),
-    "closest_approach": pa.float64(),
+PLACE = {"system": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
+WITHIN: dict[Table, dict[str, pa.DataType]] = {
+    "cases": {},
+    "bodies": {"body": pa.int32(), "name": pa.string()},
+    "contacts": {"contact": pa.int32(), "name": pa.string()},
 }
+USUAL = ("overturned", "overturned_body")
 
 
 @named_keywords
 def stream_overturns(
-    bodies: Body | Sequence[Body],
+    bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
     path: str | os.PathLike[str],
     *,
-    columns: Literal["verdict", "peaks"] = "verdict",
+    table: Table = "cases",
+    columns: Sequence[str] | None = None,
     restitution: Sequence[Restitution] | None = None,
+    friction: FrictionInput | None = None,
+    vertical: MotionLike | Sequence[MotionLike] | None = None,
+    theta0: Sequence[StartInput] | None = None,
+    omega0: Sequence[StartInput] | None = None,
+    linear: bool = False,
+    forces: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> int:
-    """Write the verdict of every body × motion × scale to a Parquet file, in memory that stays flat.
+    """Write the outcome of every body × motion × scale to a Parquet file, in memory that stays flat.
 
-    One row per case, the scale running fastest: ``body``, ``motion`` (positions in the lists given),
-    ``scale``, ``overturned``, ``overturned_body`` and, with ``columns="peaks"``, the peak responses of
-    :class:`EnsembleResult`.  The file appears whole or not at all, and its bytes do not depend on the
-    number of threads.
+    The file is one of the three tables of :class:`rockfrag.outcomes.Outcomes`, as its ``table`` gives it, the
+    scale running fastest, then bodies or contacts from below.  It appears whole or not at all, and its bytes do
+    not depend on the number of threads.
 
     Parameters
     ----------
@@ -85,9 +77,12 @@ def stream_overturns(
         As in :func:`overturns`.
     path
         The file to write.
+    table
+        "cases", "bodies" or "contacts".
     columns
-        "verdict" or "peaks".
-    restitution, g, step, threads
+        Columns beside those that say which case it is, named as the attributes of the outcomes; None takes
+        ``overturned`` and ``overturned_body`` of cases, and all of bodies and contacts.
+    restitution, friction, vertical, theta0, omega0, linear, forces, g, step, threads
         As in :func:`overturns`.
     progress
         Called with the number of cases done and of all cases after every row group.
@@ -101,31 +96,39 @@ def stream_overturns(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    if columns not in ("verdict", "peaks"):
-        raise InputError(f'columns: expected "verdict" or "peaks", got {columns!r}.')
-    body_list, values, dts = listed(bodies, motions, dt, restitution)
-    factors = checked_scales(scales, values)
-    peaks = np.array([np.abs(one).max() for one in values]) * np.abs(factors).max(axis=1, initial=0)
-    warn_of_unit(body_list, listed_motions(motions), peaks, g)
-    total = len(body_list) * factors.size
-    schema = pa.schema(CASE | VERDICT | (PEAKS if columns == "peaks" else {}))
-    done = 0
-    with new_table(path, schema) as writer, warnings.catch_warnings():
-        # the strongest case has been looked at; a group may hold weak ones alone
-        warnings.simplefilter("ignore", UnitDoubt)
-        for some, rows, cols in _groups(len(body_list), *factors.shape):
-            result = overturns(
-                body_list[some],
-                values[rows],
-                dts[rows].tolist(),
-                factors[rows, cols],
-                restitution=None if restitution is None else restitution[some],
-                g=g,
-                step=step,
-                threads=threads,
+    known = {one.name: one for one in columns_of(table) if table in WITHIN}
+    if columns is None:
+        columns = USUAL if table == "cases" else tuple(known)
+    for name in columns:
+        if name not in known:
+            raise InputError(
+                f"columns: {name!r} is no column of {table!r}; choose among {', '.join(known)}."
             )
-            writer.write_table(_table(result, some, rows, factors[rows, cols], schema))
-            done += result.overturned.size
+    options = Options(
+        restitution, friction, vertical, theta0, omega0, linear, forces, g, step, threads
+    )
+    cases = prepared(bodies, motions, dt, scales, options)
+    chosen = [known[name] for name in known if name in columns]
+    schema = pa.schema(
+        PLACE | WITHIN[table] | {one.title: pa.from_numpy_dtype(one.dtype) for one in chosen}
+    )
+    total = len(cases.systems) * cases.scales.size
+    done = 0
+    with new_table(path, schema) as writer:
+        parts = 1 if table == "cases" else max(system.count for system in cases.systems)
+        for some, rows, cols in _groups(max(1, ROWS // parts), cases.shape):
+            part = replace(
+                cases,
+                systems=cases.systems[some],
+                motions=cases.motions[rows],
+                scales=np.ascontiguousarray(cases.scales[rows, cols]),
+            )
+            found = shaken(part).table(table, columns)
+            found["system"] += some.start
+            found["motion"] += rows.start
+            arrays = [pa.array(found[one.name], type=one.type) for one in schema]
+            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
+            done += math.prod(part.shape)
             if progress is not None:
                 progress(done, total)
     return total
@@ -138,85 +141,53 @@ def new_table(path: str | os.PathLike[str], schema: pa.Schema) -> Iterator[pq.Pa
         yield writer
 
 
-def _groups(n_bodies: int, n_motions: int, n_scales: int) -> Iterator[tuple[slice, slice, slice]]:
-    """Cut bodies × motions × scales, in this order, into boxes of at most ROWS cases."""
+def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, slice, slice]]:
+    """Cut systems × motions × scales, in this order, into boxes of at most so many cases."""
+    n_systems, n_motions, n_scales = shape
     if n_motions * n_scales == 0:
         return
-    scales = min(n_scales, ROWS)
-    motions = min(n_motions, max(1, ROWS // n_scales))
-    bodies = max(1, ROWS // (n_motions * n_scales))
-    for i in range(0, n_bodies, bodies):
+    scales = min(n_scales, most)
+    motions = min(n_motions, max(1, most // n_scales))
+    systems = max(1, most // (n_motions * n_scales))
+    for i in range(0, n_systems, systems):
         for j in range(0, n_motions, motions):
             for k in range(0, n_scales, scales):
                 yield (
-                    slice(i, min(i + bodies, n_bodies)),
+                    slice(i, min(i + systems, n_systems)),
                     slice(j, min(j + motions, n_motions)),
                     slice(k, min(k + scales, n_scales)),
                 )
 
 
-def _table(
-    result: EnsembleResult, bodies: slice, motions: slice, scales: Array, schema: pa.Schema
-) -> pa.Table:
-    shape = result.overturned.shape
-    body = np.arange(bodies.start, bodies.stop, dtype=np.int32)[:, np.newaxis, np.newaxis]
-    motion = np.arange(motions.start, motions.stop, dtype=np.int32)[:, np.newaxis]
-    values = {
-        "body": body,
-        "motion": motion,
-        "scale": scales,
-        "overturned": result.overturned,
-        "overturned_body": result.overturned_body,
-        "overturning_time_s": result.overturning_time,
-        "peak_rotation": result.peak_rotation,
-        "peak_rotation_pedestal": result.peak_rotation_pedestal,
-        "peak_velocity_rad_s": result.peak_velocity,
-        "impacts": result.impacts,
-        "given_way": result.given_way,
-        "closest_approach": result.closest_approach,
-    }
-    arrays = [
-        pa.array(np.broadcast_to(values[name], shape).ravel(), type=schema.field(name).type)
-        for name in schema.names
-    ]
-    assert math.prod(shape) == len(arrays[0])
-    return pa.Table.from_arrays(arrays, schema=schema)
-
-
 # --------------------------------------------------------------------------- histories
 
-Case = tuple[int, int, int]
-"""Positions of body, motion and scale."""
+Place = tuple[int, int, int]
+"""Positions of system, motion and scale."""
 
 AHEAD = 2
-"""Histories that are marched or wait to be written at a time, for each thread."""
-
-COLUMNS = {
-    "theta_pedestal_rad": "theta1",
-    "omega_pedestal_rad_s": "omega1",
-    "theta_statue_rad": "theta2",
-    "omega_statue_rad_s": "omega2",
-    "state_pedestal": "c1",
-    "state_statue": "c2",
-}
-"""Columns of the file, and what the march calls them in its history."""
+"""Histories that are computed or wait to be written at a time, for each thread."""
 
 SCHEMA = pa.schema(
-    CASE
-    | {"time_s": pa.float64()}
-    | {name: pa.int8() if name.startswith("state") else pa.float64() for name in COLUMNS}
+    PLACE
+    | {"time_s": pa.float64(), "body": pa.int32()}
+    | {"theta_rad": pa.float64(), "omega_rad_s": pa.float64(), "state": pa.int8()}
 )
 
 
 @named_keywords
 def stream_histories(
-    bodies: Body | Sequence[Body],
+    bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
     path: str | os.PathLike[str],
     *,
     restitution: Sequence[Restitution] | None = None,
+    friction: FrictionInput | None = None,
+    vertical: MotionLike | Sequence[MotionLike] | None = None,
+    theta0: Sequence[StartInput] | None = None,
+    omega0: Sequence[StartInput] | None = None,
+    linear: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -224,13 +195,11 @@ def stream_histories(
 ) -> int:
     """Write the history of every body × motion × scale to a Parquet file, in memory that stays flat.
 
-    One row per case and sample, the samples running fastest, then the scale: ``body``, ``motion``
-    (positions in the lists given), ``scale``, ``time_s``, rotation and angular velocity
-    ``theta_pedestal_rad``, ``omega_pedestal_rad_s``, ``theta_statue_rad``, ``omega_statue_rad_s`` and contact
-    ``state_pedestal``, ``state_statue``, as in :class:`Response`.  A lone block counts as a statue on a
-    pedestal that stays at 0.  At the default step the numbers are, bit for bit, those that
-    :func:`simulate` gives for the scaled motion.  The file appears whole or not at all, and its bytes do not
-    depend on the number of threads.
+    One row per case, sample and body, the bodies running fastest (from below, from 1), then the samples, then the
+    scale: ``system``, ``motion`` (positions in the lists given), ``scale``, ``time_s``, ``body``, rotation
+    ``theta_rad``, angular velocity ``omega_rad_s`` and contact ``state`` as in :class:`Response`.  At the default
+    step the numbers are, bit for bit, those that :func:`simulate` gives for the scaled motion.  The file appears
+    whole or not at all, and its bytes do not depend on the number of threads.
 
     Parameters
     ----------
@@ -238,7 +207,7 @@ def stream_histories(
         As in :func:`overturns`.
     path
         The file to write.
-    restitution, g, step, threads
+    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
         As in :func:`overturns`.
     progress
         Called with the number of cases done and of all cases after every row group.
@@ -252,31 +221,29 @@ def stream_histories(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    body_list, values, dts = listed(bodies, motions, dt, restitution)
-    factors = checked_scales(scales, values)
-    per_body = restitution if restitution is not None else [None] * len(body_list)
-    records = [body_record(b, e, g=g) for b, e in zip(body_list, per_body, strict=True)]
-    for body in body_list:
-        # refused here and not in the middle of the file: the longest interval needs most steps
-        step_count(body, dts, g, step)
-    total = len(body_list) * factors.size
+    options = Options(
+        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
+    )
+    cases = prepared(bodies, motions, dt, scales, options)
+    request = replace(cases.request, history=True)
+    if cases.motions:
+        for system in cases.systems:
+            # refused here and not in the middle of the file: the longest interval needs most steps
+            engine_for(system, richest(cases.motions), request)
+            step_count(system, [motion.dt for motion in cases.motions], g, step)
+    total = len(cases.systems) * cases.scales.size
 
-    def history(case: Case) -> pa.Table:
-        b, m, s = case
-        interval, scale = float(dts[m]), float(factors[m, s])
-        shaking = shaking_of(body_list[b], (values[m], np.zeros(0)), interval, scale, g, step)
-        rows = np.empty(values[m].size + shaking.free_samples, SAMPLE)
-        # the march of simulate() without its tables of events and energy, which take most of its time
-        start = initial_state(body_list[b])
-        done, _ = run_march(records[b], shaking, start, rows, np.empty(0, EVENT))
-        return _history_table(case, scale, interval, rows[:done])
+    def history(place: Place) -> pa.Table:
+        b, m, s = place
+        case = Case(cases.systems[b], cases.motions[m], float(cases.scales[m, s]), request)
+        return _history_table(place, case)
 
-    n_motions, n_scales = factors.shape
-    cases = itertools.product(range(len(body_list)), range(n_motions), range(n_scales))
-    workers = checked_threads(threads)
+    systems, records, scales_each = cases.shape
+    places = itertools.product(range(systems), range(records), range(scales_each))
+    workers = cases.threads
     with new_table(path, SCHEMA) as writer, ThreadPoolExecutor(workers) as pool:
         written = 0
-        for group in _row_groups(_in_order(pool, history, cases, AHEAD * workers)):
+        for group in _row_groups(_in_order(pool, history, places, AHEAD * workers)):
             writer.write_table(pa.concat_tables(group), row_group_size=ROWS)
             written += len(group)
             if progress is not None:
@@ -286,16 +253,16 @@ def stream_histories(
 
 def _in_order(
     pool: ThreadPoolExecutor,
-    work: Callable[[Case], pa.Table],
-    cases: Iterable[Case],
+    work: Callable[[Place], pa.Table],
+    places: Iterable[Place],
     most: int,
 ) -> Iterator[pa.Table]:
-    """Yield ``work(case)`` in the order of the cases, ``most`` of them at a time under work or done."""
+    """Yield ``work(place)`` in the order of the places, ``most`` of them at a time under work or done."""
     waiting: deque[Future[pa.Table]] = deque()
-    for case in cases:
+    for place in places:
         if len(waiting) == most:
             yield waiting.popleft().result()
-        waiting.append(pool.submit(work, case))
+        waiting.append(pool.submit(work, place))
     while waiting:
         yield waiting.popleft().result()
 
@@ -314,13 +281,25 @@ def _row_groups(tables: Iterable[pa.Table]) -> Iterator[list[pa.Table]]:
         yield group
 
 
-def _history_table(case: Case, scale: float, dt: float, rows: NDArray[np.void]) -> pa.Table:
-    body, motion, _ = case
+def _history_table(place: Place, case: Case) -> pa.Table:
+    """Make the rows of one history."""
+    engine = engine_for(case.system, case.motion, case.request)
+    if engine is SINGLE:
+        # without its tables of events and energy, which take most of its time
+        time, theta, omega, state = samples_of(case)
+    else:
+        response = engine.history(case)
+        time, theta, omega, state = response.time, response.theta, response.omega, response.state
+    samples, bodies = theta.shape
     values = {
-        "body": np.full(len(rows), body),
-        "motion": np.full(len(rows), motion),
-        "scale": np.full(len(rows), scale),
-        "time_s": np.arange(len(rows)) * dt,
-    } | {name: rows[field] for name, field in COLUMNS.items()}
+        "system": np.full(theta.size, place[0]),
+        "motion": np.full(theta.size, place[1]),
+        "scale": np.full(theta.size, case.scale),
+        "time_s": np.repeat(time, bodies),
+        "body": np.tile(np.arange(1, bodies + 1), samples),
+        "theta_rad": theta.ravel(),
+        "omega_rad_s": omega.ravel(),
+        "state": state.ravel(),
+    }
     arrays = [pa.array(values[field.name].astype(field.type.to_pandas_dtype())) for field in SCHEMA]
     return pa.Table.from_arrays(arrays, schema=SCHEMA)

@@ -14,14 +14,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.elementary import sin_cos
+from rockfrag.engines.steps import fastest_frequency
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_array
 from rockfrag.keywords import named_keywords
 from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import fastest_frequency
+from rockfrag.rocking.inputs import MotionLike
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.rocking.options import FrictionInput
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
@@ -99,6 +101,8 @@ def rocking_spectrum(
     alpha: ArrayLike | Sequence[float],
     *,
     restitution: Restitution = None,
+    friction: FrictionInput | None = None,
+    vertical: MotionLike | None = None,
     g: float = GRAVITY,
     threads: int | None = None,
 ) -> RockingSpectrum:
@@ -114,6 +118,10 @@ def rocking_spectrum(
         Critical angles [rad], one or several, shape (j,).
     restitution
         The same measured restitution for all; None conserves momentum (thesis eq. 2.14).
+    friction
+        The same friction for all, as in :func:`rockfrag.rocking.simulate`; None: nothing slides.
+    vertical
+        Vertical acceleration, upwards [m/s²], sampled as the motion.
     g
         Acceleration of gravity [m/s²].
     threads
@@ -148,13 +156,17 @@ def rocking_spectrum(
         blocks,
         motion,
         restitution=[restitution] * len(blocks),
+        friction=None if friction is None else [friction] * len(blocks),
+        vertical=vertical,
         g=g,
         threads=threads,
     )
     shape = (angle.size, period.size)
-    rotation = found.peak_rotation.reshape(shape)
+    rotation = found.of_top("peak_rotation").reshape(shape)
     p = np.array([fastest_frequency(block, g) for block in blocks]).reshape(shape)
-    velocity = np.where(np.isinf(rotation), np.inf, found.peak_velocity.reshape(shape) / p)
+    velocity = np.where(
+        np.isinf(rotation), np.inf, found.of_top("peak_velocity").reshape(shape) / p
+    )
     return RockingSpectrum(period, angle, rotation, velocity)
 
 

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.input_checks import whole_number
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import Motion
+from rockfrag.rocking.case_list import overturned_cases
+from rockfrag.rocking.ensemble import Options, prepared
+from rockfrag.rocking.inputs import MotionLike, Standing
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.short_repr import short_repr
-from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 
@@ -47,7 +51,7 @@ class FragileVerdicts:
 
 @named_keywords
 def fragile_verdicts(
-    bodies: Body | Sequence[Body],
+    bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
@@ -55,6 +59,11 @@ def fragile_verdicts(
     sample: int = 1000,
     seed: int = 0,
     restitution: Sequence[Restitution] | None = None,
+    friction: FrictionInput | None = None,
+    vertical: MotionLike | Sequence[MotionLike] | None = None,
+    theta0: Sequence[StartInput] | None = None,
+    omega0: Sequence[StartInput] | None = None,
+    linear: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -71,8 +80,8 @@ def fragile_verdicts(
         Number of cases, drawn without repetition; all of them if there are fewer.
     seed
         Seed of the draw.
-    restitution, g, step, threads
-        As in :func:`overturns`.
+    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
+        As in :func:`rockfrag.rocking.overturns`.
 
     Returns
     -------
@@ -93,9 +102,11 @@ def fragile_verdicts(
     >>> found.sampled, found.changed
     (55, 0)
     """
-    body_list, values, dts = listed(bodies, motions, dt, restitution)
-    factors = checked_scales(scales, values)
-    shape = (len(body_list), *factors.shape)
+    options = Options(
+        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
+    )
+    grid = prepared(bodies, motions, dt, scales, options)
+    factors, shape = grid.scales, grid.shape
     total = int(np.prod(shape))
     if whole_number("sample", sample) < 1 or total < 1:
         raise InputError(f"sample: expected at least one of {total} cases, got {sample}.")
@@ -103,20 +114,26 @@ def fragile_verdicts(
     cases = np.stack(np.unravel_index(np.sort(chosen), shape), axis=1).astype(np.int64)
     body, motion, column = cases.T
     drawn = (body, motion, factors[motion, column])
-    given = overturns_of_cases(
-        body_list, values, dts, *drawn, restitution=restitution, g=g, step=step, threads=threads
-    )
+    given = overturned_cases(grid, *drawn)
     # twice the samples on the same straight lines and half the bound on p h: exactly half of each step
-    halved = overturns_of_cases(
-        body_list, [_doubled(one) for one in values], dts / 2, *drawn,
-        restitution=restitution, g=g, step=step / 2, threads=threads,
-    )  # fmt: skip
+    finer = replace(
+        grid,
+        motions=tuple(map(_doubled, grid.motions)),
+        request=replace(grid.request, step=step / 2),
+    )
+    halved = overturned_cases(finer, *drawn)
     changed = cases[given != halved]
     return FragileVerdicts(sampled=len(cases), changed=len(changed), cases=changed)
 
 
-def _doubled(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Sample a motion, which is zero one sample after its last, twice as densely."""
-    closed = np.append(values, 0.0)
+def _doubled(motion: GroundMotion) -> GroundMotion:
+    """Sample a ground motion, which is zero one sample after its last, twice as densely."""
+    y, z = (None if one is None else _dense(one) for one in (motion.y, motion.z))
+    return GroundMotion(_dense(motion.x), y, z)
+
+
+def _dense(motion: Motion) -> Motion:
+    closed = np.append(motion.acceleration, 0.0)
     at = np.arange(2 * closed.size - 1) / 2
-    return np.asarray(np.interp(at, np.arange(closed.size), closed))
+    values = np.interp(at, np.arange(closed.size), closed)
+    return replace(motion, acceleration=values, dt=motion.dt / 2)

@@ -12,13 +12,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, whole_number
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP, MotionLike, checked_scales, listed
+from rockfrag.rocking.ensemble import Options, prepared, shaken
+from rockfrag.rocking.inputs import MotionLike, Standing, listed_bodies
 from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.rocking.options import FrictionInput, StartInput, systems_of
+from rockfrag.system.perturbation import perturbed
 from rockfrag.units import GRAVITY
 
 LARGEST_PERTURBATION = 0.1
@@ -27,7 +29,7 @@ LARGEST_PERTURBATION = 0.1
 
 @named_keywords
 def verdict_sureness(
-    bodies: Body | Sequence[Body],
+    bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
@@ -36,7 +38,11 @@ def verdict_sureness(
     copies: int = 16,
     seed: int = 0,
     restitution: Sequence[Restitution] | None = None,
+    friction: FrictionInput | None = None,
     vertical: MotionLike | Sequence[MotionLike] | None = None,
+    theta0: Sequence[StartInput] | None = None,
+    omega0: Sequence[StartInput] | None = None,
+    linear: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -56,8 +62,8 @@ def verdict_sureness(
         Number of copies.
     seed
         Seed of the draws.
-    restitution, vertical, g, step, threads
-        As in :func:`rockfrag.rocking.overturns`; a measured restitution stays as it is.
+    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
+        As in :func:`rockfrag.rocking.overturns`; measured restitution, friction and start stay as they are.
 
     Returns
     -------
@@ -84,33 +90,20 @@ def verdict_sureness(
         )
     if whole_number("copies", copies) < 1:
         raise InputError(f"copies: expected at least one, got {copies}.")
-    body_list, values, dts = listed(bodies, motions, dt, restitution)
-    factors = checked_scales(scales, values)
+    options = Options(
+        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
+    )
+    cases = prepared(bodies, motions, dt, scales, options)
     rng = np.random.default_rng(seed)
+    written = listed_bodies(bodies)
 
-    def verdicts(of: Sequence[Body], scale: float) -> NDArray[np.bool_]:
-        return overturns(
-            of, values, dts.tolist(), scale * factors,
-            restitution=restitution, vertical=vertical, g=g, step=step, threads=threads,
-        ).overturned  # fmt: skip
+    def outcomes(of: Sequence[Standing], scale: float) -> NDArray[np.bool_]:
+        own = systems_of(of, friction, restitution, theta0, omega0)
+        return shaken(replace(cases, systems=own, scales=scale * cases.scales)).overturned
 
-    given = verdicts(body_list, 1.0)
+    given = outcomes(written, 1.0)
     same = np.zeros(given.shape)
     for _ in range(copies):
-        near = [perturbed(body, size, rng) for body in body_list]
-        same += verdicts(near, 1.0 + size * float(rng.uniform(-1, 1))) == given
+        near = [perturbed(body, size, rng) for body in written]
+        same += outcomes(near, 1.0 + size * float(rng.uniform(-1, 1))) == given
     return same / copies
-
-
-def perturbed(body: Body, size: float, rng: np.random.Generator) -> Body:
-    """Return a body whose widths and heights differ by at most ``size``, relative, drawn evenly."""
-    if isinstance(body, Stack):
-        pedestal, statue = (_perturbed(block, size, rng) for block in (body.pedestal, body.statue))
-        return replace(body, pedestal=pedestal, statue=statue)
-    return _perturbed(body, size, rng)
-
-
-def _perturbed(block: Block, size: float, rng: np.random.Generator) -> Block:
-    across, up = (1 + size * rng.uniform(-1, 1, 2)).tolist()
-    height = None if block.cg_height is None else block.cg_height * up
-    return replace(block, width=block.width * across, height=block.height * up, cg_height=height)

@@ -9,21 +9,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.engines.steps import STEP
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
-from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.inputs import STEP, MotionLike, listed
+from rockfrag.rocking.case_list import overturned_cases
+from rockfrag.rocking.ensemble import Options, prepared, shaken
+from rockfrag.rocking.inputs import MotionLike, Standing
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.short_repr import short_repr
-from rockfrag.system.blocks import Body
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -64,7 +65,7 @@ class Thresholds:
 
 @named_keywords
 def find_thresholds(
-    bodies: Body | Sequence[Body],
+    bodies: Standing | Sequence[Standing],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     highest: float,
@@ -72,6 +73,11 @@ def find_thresholds(
     tolerance: float,
     smallest_window: float,
     restitution: Sequence[Restitution] | None = None,
+    friction: FrictionInput | None = None,
+    vertical: MotionLike | Sequence[MotionLike] | None = None,
+    theta0: Sequence[StartInput] | None = None,
+    omega0: Sequence[StartInput] | None = None,
+    linear: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -89,8 +95,8 @@ def find_thresholds(
     smallest_window
         Width of the narrowest window that must not be missed, in scale: the spacing of the grid that is
         looked at first.
-    restitution, g, step, threads
-        As in :func:`overturns`.
+    restitution, friction, vertical, theta0, omega0, linear, g, step, threads
+        As in :func:`rockfrag.rocking.overturns`.
 
     Returns
     -------
@@ -121,32 +127,32 @@ def find_thresholds(
         raise InputError(
             f"smallest_window: {smallest_window} is more than the highest scale, {highest}."
         )
-    body_list, values, dts = listed(bodies, motions, dt, restitution)
+    options = Options(
+        restitution, friction, vertical, theta0, omega0, linear, False, g, step, threads
+    )
     intervals = math.ceil(highest / smallest_window - 1e-9)
-    if len(body_list) * len(values) * intervals > MOST_GRID_CASES:
+    cases = prepared(bodies, motions, dt, (highest,), options)
+    if len(cases.systems) * len(cases.motions) * intervals > MOST_GRID_CASES:
         raise InputError(
             f"smallest_window: {smallest_window} needs a grid of more than {MOST_GRID_CASES} cases; "
             "give a wider one, a lower highest scale, or fewer bodies at a time."
         )
     grid = np.linspace(0.0, highest, intervals + 1)
-    settings = {"restitution": restitution, "g": g, "step": step, "threads": threads}
-    fallen = overturns(body_list, values, dts.tolist(), grid, **settings).overturned  # type: ignore[arg-type]
+    factors = np.array(np.broadcast_to(grid, (len(cases.motions), grid.size)))
+    fallen = shaken(replace(cases, scales=factors)).overturned
     body, motion, left = np.nonzero(fallen[..., 1:] != fallen[..., :-1])
     low, high = grid[left], grid[left + 1]
     falls = fallen[body, motion, left + 1]
     for _ in range(max(0, math.ceil(math.log2(highest / intervals / tolerance) - 1e-9))):
         middle = 0.5 * (low + high)
-        above = (
-            overturns_of_cases(body_list, values, dts, body, motion, middle, **settings)  # type: ignore[arg-type]
-            == falls
-        )
+        above = overturned_cases(cases, body, motion, middle) == falls
         low, high = np.where(above, low, middle), np.where(above, middle, high)
     table, windows = [], []
-    for i in range(len(body_list)):
-        for j, acceleration in enumerate(values):
+    for i in range(len(cases.systems)):
+        for j, shaking in enumerate(cases.motions):
             mine = (body == i) & (motion == j)
             row, survived = _read(low[mine], high[mine], falls[mine], highest)
-            peak = float(np.abs(acceleration).max()) / g
+            peak = shaking.x.pga / g
             table.append((i, j, *row, *(peak * scale for scale in row), len(survived)))
             windows += [(i, j, lower, upper) for lower, upper in survived]
     return Thresholds(

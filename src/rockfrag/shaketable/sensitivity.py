@@ -19,10 +19,11 @@ from rockfrag.errors import InputError
 from rockfrag.motions.scaling import factors_to_pga, scale
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.contact.friction import FrictionInput
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.rocking.options import FrictionInput
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
+from rockfrag.shaketable.swept import FALLEN
 from rockfrag.system.blocks import Body
 
 Floats = NDArray[np.float64]
@@ -198,7 +199,6 @@ class _Ground:
             friction=_frictions(self.specimens),
             threads=self.threads,
         )
-        bodies = np.array(["", "pedestal", "statue"])
         return pd.concat(
             [
                 pd.DataFrame(
@@ -211,13 +211,20 @@ class _Ground:
                         "floor": motion.metadata["floor"],
                         "amplitude_g": self.amplitudes_g,
                         "overturned": result.overturned[i, 0],
-                        "overturned_body": bodies[result.overturned_body[i, 0]],
+                        "overturned_body": fallen_names(specimen.body)[
+                            result.overturned_body[i, 0]
+                        ],
                     }
                 )
                 for i, specimen in enumerate(self.specimens)
             ],
             ignore_index=True,
         )
+
+
+def fallen_names(body: Body) -> NDArray[np.object_]:
+    """What tables call the body that fell, by its number in outcomes."""
+    return np.array(["", *FALLEN[-len(body.blocks) :]], dtype=object)
 
 
 def _frictions(specimens: Sequence[Specimen]) -> list[FrictionInput] | None:

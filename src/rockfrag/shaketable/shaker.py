@@ -212,7 +212,9 @@ def produced_motion(
     motion
         Wanted motion.
     amplitude_g
-        Peak of the wanted motion [g]; that of the produced one is a little different.
+        Peak of the wanted motion [g]. That of the produced one is another, as the filter takes out what the
+        stroke cannot hold: a fifth less for a long pulse, a tenth more where the filter takes what was
+        opposed to the peak. The provenance has both.
     payload
         Mass on the table [kg].
 

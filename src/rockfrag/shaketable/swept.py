@@ -22,8 +22,8 @@ FALLEN = ("", "pedestal", "statue")
 ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
 """Columns that are the same for all amplitudes of a motion."""
 
-SLIPS = ("peak_slip_ground_m", "peak_slip_interface_m")
-"""Columns of a sweep with friction: largest slips at the two interfaces [m]."""
+SLIP = "peak_slip_m"
+"""Column of a sweep with friction: largest slip of any contact [m]."""
 
 SLIDES = 0.001
 """Slip above which a body counts as having slid [m]: a displacement that one sees."""
@@ -52,14 +52,14 @@ class Swept:
 
 
 def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:
-    """Whether each run slid by more than `SLIDES` at either interface, or overturned, shape (n,).
+    """Whether each run slid by more than `SLIDES` of any contact, or overturned, shape (n,).
 
     Parameters
     ----------
     sweep
-        With ``overturned`` and the columns `SLIPS`.
+        With ``overturned`` and the column `SLIP`.
     """
-    slip = sweep[list(SLIPS)].to_numpy(dtype=float).max(axis=1)
+    slip = sweep[SLIP].to_numpy(dtype=float)
     return np.asarray((slip > SLIDES) | sweep["overturned"].to_numpy(dtype=bool))
 
 
@@ -79,7 +79,7 @@ def read_swept(paths: Iterable[Path], *, slid: bool = False) -> Iterator[Swept]:
     InputError
         If a part does not hold whole motions that rose through the same amplitudes.
     """
-    slips = list(SLIPS) if slid else []
+    slips = [SLIP] if slid else []
     columns = [*ABOUT, "amplitude_g", "overturned", "overturned_body", *slips]
     texts = [*ABOUT, "overturned_body"]
     for path in paths:
@@ -104,8 +104,8 @@ def _swept(part: pa.Table, path: Path) -> Swept:
     body = part["overturned_body"].combine_chunks()
     number = np.array([FALLEN.index(name) for name in body.dictionary.to_pylist()], dtype=np.uint8)
     fallen = number[body.indices.to_numpy()].reshape(-1, each)
-    if set(SLIPS) <= set(part.column_names):
-        verdicts = displaced(part.select(["overturned", *SLIPS]).to_pandas())
+    if SLIP in part.column_names:
+        verdicts = displaced(part.select(["overturned", SLIP]).to_pandas())
     else:
         verdicts = part["overturned"].to_numpy()
     return Swept(about, grid[0].copy(), verdicts.reshape(-1, each), fallen)

@@ -60,7 +60,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     groups = pd.factorize(tests["group"])[0]
     validated = _validated(study, verdicts, measured, groups)
     job.log.info(
-        "%d tests under %d motions: %.1f %% of the verdicts right",
+        "%d tests under %d motions: %.1f %% of the outcomes right",
         len(tests), groups.max() + 1, 100 * (validated.verdicts == measured).mean(),
     )  # fmt: skip
     yield "tests", judged_tests(tests, validated, measured)
@@ -181,9 +181,18 @@ def _agreement(
     rows = [agreement_row(OURS, validated.verdicts, measured, groups, level)]
     if (majority := majority_of_repeats(tests["motion"].to_numpy(), measured)) is not None:
         rivals[REPEATS] = majority
+    ours = np.atleast_2d(validated.verdicts)
     for name, verdicts in {**rivals, **codes}.items():
-        row = agreement_row(name, verdicts, measured, groups, level)
-        row.update(paired_row(validated.verdicts, verdicts, measured, groups, level, study.seed))
+        # other programs may have done a part of the tests only: all are compared on that part
+        given = ~np.isnan(np.atleast_2d(verdicts).astype(float)).any(axis=0)
+        theirs = np.atleast_2d(verdicts)[:, given].astype(bool)
+        own_groups = pd.factorize(groups[given])[0]
+        if own_groups.max(initial=0) < 1:
+            raise InputError(
+                f"{name}: its tests are of a single input motion; give those of two or more."
+            )
+        row = agreement_row(name, theirs, measured[given], own_groups, level)
+        row |= paired_row(ours[:, given], theirs, measured[given], own_groups, level, study.seed)
         rows.append(row)
     table = pd.DataFrame(rows)
     judged = dict.fromkeys(codes, "as given") | {REPEATS: "by repeats of the same test"}

@@ -1,4 +1,4 @@
-"""Fragility: curves of every configuration, the measure that foretells overturning best, exports."""
+"""Fragility: curves of every configuration, the measure that predicts overturning best, exports."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import pandas as pd
 
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
 from rockfrag.stages.job import Job, Results
-from rockfrag.stages.measure_choice import CANDIDATES, measure_choice
+from rockfrag.stages.measure_choice import CANDIDATES, best_of, measure_choice
 from rockfrag.stages.read_sweeps import rows_of, sweeps_of
 from rockfrag.study.study import Study
 
@@ -58,8 +58,12 @@ def run(job: Job[Study]) -> Results:
     job.log.info(
         "exported %s", ", ".join(export_curves(by_floor, exports, floor_shares)) or "no curve"
     )
-    best = ", ".join(dict.fromkeys(choice.loc[choice["recommended"], "im"]))
-    job.log.info("curves: %d; best measures: %s", len(found.curves), best or "none stands out")
+    best = ", ".join(best_of(choice, columns))
+    job.log.info(
+        "curves: %d; best of the measures asked for: %s",
+        len(found.curves),
+        best or "none stands out",
+    )
 
 
 def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:

@@ -1,6 +1,6 @@
-"""Which intensity measure foretells the overturning of each configuration."""
+"""Which intensity measure predicts the overturning of each configuration."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import pandas as pd
@@ -17,6 +17,20 @@ CANDIDATES = (
 
 GIVEN = ("mean_period_s", "d5_95_s")
 """Properties of which a sufficient measure leaves nothing to tell."""
+
+
+def best_of(choice: pd.DataFrame, asked: Sequence[str]) -> list[str]:
+    """Names of the best measures of all configurations among those that a study asks for.
+
+    Parameters
+    ----------
+    choice
+        As :func:`measure_choice` returns it.
+    asked
+        Columns of the measures in which the study wants its curves.
+    """
+    known = choice[choice["measure"].isin(list(asked)) & choice["score"].notna()]
+    return list(dict.fromkeys(known.drop_duplicates("configuration")["im"]))
 
 
 def measure_choice(

@@ -4,7 +4,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,22 +13,17 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
+from rockfrag.outcomes.columns import SUFFIXES
+from rockfrag.outcomes.outcomes import Outcomes, columns
 from rockfrag.records.motion import Motion
-from rockfrag.shaketable.swept import FALLEN
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
 from rockfrag.units import GRAVITY
 
-if TYPE_CHECKING:
-    from rockfrag.rocking import EnsembleResult
-
 NEAR = 1 + 0.01 * np.arange(-10, 11)
 """Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""
-
-SLIPS = ("slip_ground", "slip_interface", "peak_slip_ground", "peak_slip_interface")
-"""What an ensemble says of sliding [m]."""
 
 ROWS_AT_ONCE = 131_072
 """Histories in memory at a time, and of a row group of a file."""
@@ -86,7 +81,9 @@ def _say_how_light(job: Job[Study], configuration: Configuration, number: int) -
     from rockfrag.rocking.ensemble import LIGHT
 
     path = job.folder / job.study.sweep_file(configuration, number)
-    lightest = pq.read_table(path, columns=["lightest"])["lightest"].to_numpy()
+    lightest = pq.read_table(path, columns=["minimum_gravity_ratio"])[
+        "minimum_gravity_ratio"
+    ].to_numpy()
     job.log.info(
         "%s: the ground takes more than half of all weight in %d of %d histories",
         configuration.name,
@@ -146,11 +143,12 @@ def sweep_table(
     -------
     One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
     ``motion``, ``event``, ``floor``, ``amplitude_g``, ``overturned``, ``overturned_body``,
-    ``overturning_time_s``, ``peak_rotation_statue``, ``peak_rotation_pedestal`` (|θ| over the
-    critical angle), ``impacts``, ``closest_approach`` (small where the verdict nearly flipped); with vertical
-    motion and without friction also ``lightest``, the least weight over that on a ground at rest; with friction
-    also ``slip_ground_m``, ``slip_interface_m`` (at the end), ``peak_slip_ground_m``, ``peak_slip_interface_m``,
-    ``flights`` and ``overturned_without_sliding``, the verdict if nothing could slide or fly.
+    ``overturning_time_s`` and ``certain_time_s`` (instant of the fall, and from which it was certain),
+    ``impacts``, ``unstable_distance`` (small where the outcome nearly flipped), ``peak_rotation_body_1`` and on
+    (|θ| of each body from below over its critical angle); with vertical motion and without friction also
+    ``minimum_gravity_ratio``; with friction also ``peak_slip_m`` (of any contact), ``slip_contact_1_m`` and on (at
+    the end), ``peak_slip_contact_1_m`` and on, ``flights`` and ``overturned_without_sliding``, the outcome if
+    nothing could slide or fly.
     """
     from rockfrag.motions.scaling import factors_to_pga
 
@@ -165,7 +163,7 @@ def sweep_table(
     def of_motions(texts: Sequence[str]) -> pa.DictionaryArray:
         return _texts(texts, np.repeat(np.arange(len(motions), dtype=np.int32), each))
 
-    columns = {
+    made = {
         "configuration": of_all(configuration.name),
         "object": of_all(configuration.object),
         "pedestal": of_all(configuration.label),
@@ -174,21 +172,38 @@ def sweep_table(
         "floor": of_motions([motion.metadata["floor"] for motion in motions]),
         "amplitude_g": np.tile(values, len(motions)),
         "overturned": result.overturned[0].ravel(),
-        "overturned_body": _texts(FALLEN, result.overturned_body[0].ravel().astype(np.int32)),
-        "overturning_time_s": result.overturning_time[0].ravel(),
-        "peak_rotation_statue": result.peak_rotation[0].ravel(),
-        "peak_rotation_pedestal": result.peak_rotation_pedestal[0].ravel(),
-        "impacts": result.impacts[0].ravel(),
-        "closest_approach": result.closest_approach[0].ravel(),
+        "overturned_body": _texts(
+            configuration.fallen_names, result.overturned_body[0].ravel().astype(np.int32)
+        ),
+        **_of_case(result, "overturning_time", "certain_time", "impacts", "unstable_distance"),
+        **_of_parts(result, "peak_rotation"),
     }
     if configuration.friction is None and vertical is not None:
-        columns["lightest"] = result.lightest[0].ravel()
+        made |= _of_case(result, "minimum_gravity_ratio")
     if configuration.friction is not None:
         rough = _shaken(replace(configuration, friction=None), motions, scales, threads, vertical)
-        columns |= {f"{name}_m": getattr(result, name)[0].ravel() for name in SLIPS}
-        columns["flights"] = result.flights[0].ravel()
-        columns["overturned_without_sliding"] = rough.overturned[0].ravel()
-    return pa.table(columns)
+        made["peak_slip_m"] = result.peak_slip[0].max(axis=-1).ravel()
+        made |= _of_parts(result, "slip", "peak_slip") | _of_case(result, "flights")
+        made["overturned_without_sliding"] = rough.overturned[0].ravel()
+    return pa.table(made)
+
+
+def _of_case(result: Outcomes, *names: str) -> dict[str, NDArray[Any]]:
+    """Columns of the outcomes of one configuration."""
+    titles = {one.name: one.title for one in columns("cases")}
+    return {titles[name]: getattr(result, name)[0].ravel() for name in names}
+
+
+def _of_parts(result: Outcomes, *names: str) -> dict[str, NDArray[Any]]:
+    """Columns of each body or contact of one configuration, from below, numbered."""
+    parts = {one.name: one for one in columns() if one.table != "cases"}
+    found = {}
+    for name in names:
+        one = parts[name]
+        for k in range(result.counts[0]):
+            place = f"{'body' if one.table == 'bodies' else 'contact'}_{k + 1}"
+            found[f"{name}_{place}{SUFFIXES[one.unit]}"] = getattr(result, name)[0, ..., k].ravel()
+    return found
 
 
 def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray:
@@ -204,12 +219,12 @@ def _shaken(
     scales: NDArray[np.float64],
     threads: int,
     vertical: Sequence[Motion] | None,
-) -> "EnsembleResult":
+) -> Outcomes:
     """Outcomes of one configuration under every motion at every scale."""
     from rockfrag.rocking.ensemble import LightBodies, overturns
 
     with warnings.catch_warnings():
-        # told of in the column lightest and in the report
+        # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)
         return overturns(
             [configuration.body],
@@ -262,12 +277,13 @@ def as_recorded(
             "floor": [motion.metadata["floor"] for motion in motions],
             "pga_g": [motion.pga / GRAVITY for motion in motions],
             "overturned": result.overturned[0, :, itself],
-            "overturned_body": np.take(FALLEN, result.overturned_body[0, :, itself]),
-            "peak_rotation": result.peak_rotation[0, :, itself],
+            "overturned_body": np.take(
+                configuration.fallen_names, result.overturned_body[0, :, itself]
+            ),
+            "peak_rotation": result.peak_rotation[0, :, itself, -1],
             "share_near": result.overturned[0].mean(axis=1),
         }
     )
     if configuration.friction is None:
         return table
-    peaks = np.maximum(result.peak_slip_ground, result.peak_slip_interface)
-    return table.assign(peak_slip_m=peaks[0, :, itself])
+    return table.assign(peak_slip_m=result.peak_slip[0, :, itself].max(axis=-1))

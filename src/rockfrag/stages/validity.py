@@ -41,12 +41,12 @@ def validity_table(
     One row per test with an amplitude, ``MOST_TESTED`` of a configuration at most: ``test``, ``object``,
     ``pedestal``, ``event``, ``floor``, ``motion``, ``amplitude_g``, ``friction_demand`` (largest |T|/N at any
     interface [-]), ``least_normal_force_n`` (least N at any interface [N]; ≤ 0 where a block would have jumped)
-    and ``closest_approach`` (how near the response came to an unstable equilibrium).  With friction also
+    and ``unstable_distance`` (how near the response came to an unstable equilibrium).  With friction also
     ``peak_slip_m``, the largest displacement along any interface, and ``flights``.
     """
     known = tests[tests["amplitude_g"].notna()]
     known = known[_looked_at(known["configuration"])].reset_index(drop=True)
-    columns = ["friction_demand", "least_normal_force_n", "closest_approach"]
+    columns = ["friction_demand", "least_normal_force_n", "unstable_distance"]
     if any(one.friction is not None for one in configurations):
         columns += ["peak_slip_m", "flights"]
     parts = [pd.DataFrame(columns=columns)]
@@ -97,7 +97,7 @@ def _forces(
     """Forces of a configuration under motions as they are, a row each."""
     if one.friction is not None:
         return _forces_with_friction(one, motions, vertical)
-    from rockfrag.rocking import Block, overturns
+    from rockfrag.rocking import overturns
 
     found = overturns(
         [one.body],
@@ -107,12 +107,11 @@ def _forces(
         forces=True,
         threads=threads,
     )
-    interfaces = 1 if isinstance(one.body, Block) else 2
     return pd.DataFrame(
         {
-            "friction_demand": found.friction_demand[0, :, 0, :interfaces].max(axis=1),
-            "least_normal_force_n": found.least_normal_force[0, :, 0, :interfaces].min(axis=1),
-            "closest_approach": found.closest_approach[0, :, 0],
+            "friction_demand": found.friction_demand[0, :, 0].max(axis=1),
+            "least_normal_force_n": found.least_normal_force[0, :, 0].min(axis=1),
+            "unstable_distance": found.unstable_distance[0, :, 0],
         }
     )
 
@@ -135,7 +134,7 @@ def _forces_with_friction(
             {
                 "friction_demand": float(np.max(response.friction_demand)),
                 "least_normal_force_n": float(np.min(response.least_normal_force)),
-                "closest_approach": response.closest_approach,
+                "unstable_distance": response.unstable_distance,
                 "peak_slip_m": float(np.abs(response.slip).max()),
                 "flights": int((response.events["kind"] == "flight").sum()),
             }
@@ -166,15 +165,14 @@ _SLIDING = (
     "configuration",
     "overturned",
     "overturned_without_sliding",
-    "peak_slip_ground_m",
-    "peak_slip_interface_m",
+    "peak_slip_m",
     "flights",
 )
 
 
 def _sliding(sweeps: pd.DataFrame) -> pd.DataFrame:
     fell, fell_rough = sweeps["overturned"], sweeps["overturned_without_sliding"]
-    peak = sweeps[["peak_slip_ground_m", "peak_slip_interface_m"]].max(axis=1)
+    peak = sweeps["peak_slip_m"]
     each = pd.DataFrame(
         {
             "configuration": sweeps["configuration"],

@@ -8,15 +8,15 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name
 from rockfrag.plausibility import check_density
-from rockfrag.rocking.contact.friction import FrictionInput, interface_frictions
 from rockfrag.rocking.measured_restitution import (
     Law,
     Measured,
     MeasuredRestitution,
     Restitution,
-    stack_restitution,
 )
+from rockfrag.rocking.options import FrictionInput, system_of
 from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
 
 
@@ -53,7 +53,17 @@ class Configuration:
     @property
     def statue(self) -> Block:
         """The object's block."""
-        return self.body.statue if isinstance(self.body, Stack) else self.body
+        return self.body.blocks[-1]
+
+    @property
+    def system(self) -> System:
+        """What is shaken: the body with its contacts."""
+        return system_of(self.body, self.friction, self.restitution)
+
+    @property
+    def fallen_names(self) -> tuple[str, ...]:
+        """What tables call the body that fell, by its number in outcomes."""
+        return ("", "pedestal", "statue") if self.pedestal else ("", "statue")
 
     @property
     def slug(self) -> str:
@@ -79,12 +89,13 @@ def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
     needed = ("width_m", "height_m", "mass_kg")
     rows = read_rows(path, ["name", *needed], shape, quantities=(*needed, *shape))
     blocks: dict[str, Block] = {}
+    checked: dict[str, str] = {}
     for row in rows:
         name = row.text("name")
         if name in blocks:
             raise row.error("name", f"{name} is given twice")
         try:
-            distinct_file_names([*blocks, name])
+            distinct_file_names([name], checked)
         except InputError as error:
             raise row.error("name", str(error)) from None
         blocks[name] = _block(row)
@@ -124,6 +135,7 @@ def read_configurations(
         the object does not fit on the pedestal.
     """
     found: dict[str, Configuration] = {}
+    checked: dict[str, str] = {}
     for row in read_rows(path, ["name", "object"], ["pedestal"]):
         name, object_name = row.text("name"), row.text("object")
         pedestal = row.cells.get("pedestal", "")
@@ -136,7 +148,7 @@ def read_configurations(
         try:
             statue = blocks[object_name]
             body = Stack(blocks[pedestal], statue) if pedestal else statue
-            distinct_file_names([*found, name])
+            distinct_file_names([name], checked)
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
         found[name] = Configuration(name, object_name, pedestal, body)
@@ -172,7 +184,7 @@ def with_restitution(
         return configuration
     value = (of_pedestal, of_object) if configuration.pedestal else of_object
     restitution = MeasuredRestitution(value, law)  # type: ignore[arg-type]
-    stack_restitution(configuration.body, restitution)
+    system_of(configuration.body, restitution=restitution)
     return replace(configuration, restitution=restitution)
 
 
@@ -198,6 +210,8 @@ def with_friction(
     ground, interface = (
         (one["static"], one["kinetic"]) if isinstance(one, Mapping) else one for one in each
     )
-    friction = (ground, interface) if configuration.pedestal else ground
-    interface_frictions(configuration.body, friction)
+    friction: dict[str, Any] = {"ground": ground}
+    if configuration.pedestal:
+        friction["interface"] = interface
+    system_of(configuration.body, friction)
     return replace(configuration, friction=friction)

@@ -15,7 +15,6 @@ from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.records.catalogue import read_catalogue
-from rockfrag.rocking.contact.friction import check_impacts_follow
 from rockfrag.rocking.measured_restitution import LAWS
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
@@ -215,8 +214,6 @@ def _on_surfaces(
     if content is None:
         return configurations
     try:
-        for one in configurations:
-            check_impacts_follow(one.restitution, linear=False)
         return tuple(with_friction(one, content) for one in configurations)
     except InputError as error:
         raise InputError(f"{source}: key friction: {error}") from error

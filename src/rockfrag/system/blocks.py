@@ -9,7 +9,8 @@ R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwi
 import math
 import os
 import warnings
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -229,14 +230,20 @@ class Block:
         """The block as a body of a system."""
         centre = (self.cg_offset, 0.0, self.h)
         if self.round:
-            return cylinder(self.width, self.height, self.mass, self.inertia, centre)
+            return cylinder(self.width, self.height, self.mass, self.inertia, centre, "block")
         if self.depth is not None:
-            return box(self.width, self.depth, self.height, self.mass, self.inertia, centre)
+            return box(
+                self.width, self.depth, self.height, self.mass, self.inertia, centre, "block"
+            )
         ends = Interval(-self.width / 2, self.width / 2)
-        return RigidBody(self.mass, self.shape.inertia, centre, ends, self.height, ends)
+        return RigidBody(self.mass, self.shape.inertia, centre, ends, self.height, ends, "block")
 
     def system(self) -> System:
         """Return the block as a system: it rocks, never slides, and conserves momentum in impacts."""
+        return self._system
+
+    @cached_property
+    def _system(self) -> System:
         return System((self.body,), (Contact(tilt=self.lean),))
 
     @cached_property
@@ -388,7 +395,11 @@ class Stack:
 
     def system(self) -> System:
         """Return the stack as a system: it rocks, never slides, and conserves momentum in impacts."""
-        return Column(self.blocks, (self.offset,)).system()
+        return self._system
+
+    @cached_property
+    def _system(self) -> System:
+        return piled(self.blocks, (0.0, self.offset), ("lower body", "upper body"))
 
     @cached_property
     def pile(self) -> geometry.Pile:
@@ -462,6 +473,7 @@ class Stack:
         )
 
 
+@named_fields
 @dataclass(frozen=True)
 class Column:
     """Any number of blocks on top of each other, all free to rock.
@@ -513,15 +525,21 @@ class Column:
 
     def system(self) -> System:
         """Return the column as a system: it rocks, never slides, and conserves momentum in impacts."""
-        contacts = (
-            Contact(tilt=block.lean, offset=(offset, 0.0))
-            for block, offset in zip(self.blocks, (0.0, *(self.offsets or ())), strict=True)
-        )
-        bodies = [block.body for block in self.blocks]
-        # one body that is known in a plane leaves all of them known there only
-        if any(body.planar for body in bodies):
-            bodies = [body.seen_along() for body in bodies]
-        return System(tuple(bodies), tuple(contacts))
+        names = [f"body {k + 1}" for k in range(len(self.blocks))]
+        return piled(self.blocks, (0.0, *(self.offsets or ())), names)
+
+
+def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str]) -> System:
+    """Return the system of blocks on each other, from below, each with its offset [m] and name."""
+    contacts = (
+        Contact(tilt=block.lean, offset=(offset, 0.0))
+        for block, offset in zip(blocks, offsets, strict=True)
+    )
+    bodies = [replace(block.body, name=name) for block, name in zip(blocks, names, strict=True)]
+    # one body that is known in a plane leaves all of them known there only
+    if any(body.planar for body in bodies):
+        bodies = [body.seen_along() for body in bodies]
+    return System(tuple(bodies), tuple(contacts))
 
 
 def as_system(thing: "System | Body | Column") -> System:

@@ -212,7 +212,13 @@ def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
 
 
 def box(
-    width: float, depth: float, height: float, mass: float, inertia: Any, centre: Sequence[float]
+    width: float,
+    depth: float,
+    height: float,
+    mass: float,
+    inertia: Any,
+    centre: Sequence[float],
+    name: str = "",
 ) -> RigidBody:
     """Return a body in space with a rectangular base and face [m], of uniform mass where inertia is None."""
     x, y = width / 2, depth / 2
@@ -224,11 +230,16 @@ def box(
             mass * (width * width + depth * depth) / 12,
         )
     place = (float(centre[0]), float(centre[1]), float(centre[2]))
-    return RigidBody(mass, inertia, place, outline, height, outline)
+    return RigidBody(mass, inertia, place, outline, height, outline, name)
 
 
 def cylinder(
-    diameter: float, height: float, mass: float, inertia: Any, centre: Sequence[float]
+    diameter: float,
+    height: float,
+    mass: float,
+    inertia: Any,
+    centre: Sequence[float],
+    name: str = "",
 ) -> RigidBody:
     """Return a body in space with a round base and face [m], of uniform mass where inertia is None."""
     outline = Circle(diameter / 2)
@@ -236,7 +247,7 @@ def cylinder(
         across = round_inertia(diameter, height, mass)
         inertia = diagonal(across, across, mass * diameter * diameter / 8)
     place = (float(centre[0]), float(centre[1]), float(centre[2]))
-    return RigidBody(mass, inertia, place, outline, height, outline)
+    return RigidBody(mass, inertia, place, outline, height, outline, name)
 
 
 def round_inertia(diameter: float, height: float, mass: float) -> float:
@@ -254,9 +265,9 @@ def diagonal(*moments: float) -> Any:
 
 def stands(system: System) -> bool:
     """Whether the bodies above each contact of a planar system have their common centre between its ends."""
-    positions = _standing(system)
+    positions = standing_centres(system)
     for k in range(system.count):
-        low, high = _ends(system, k)
+        (low, _), (high, _) = contact_ends(system, k)
         mass = sum(body.mass for body in system.bodies[k:])
         x = (
             sum(
@@ -269,7 +280,7 @@ def stands(system: System) -> bool:
     return True
 
 
-def _standing(system: System) -> list[tuple[float, float]]:
+def standing_centres(system: System) -> list[tuple[float, float]]:
     """Centres of gravity of planar bodies as they stand on each other [m]."""
     found = []
     for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
@@ -297,8 +308,8 @@ def _bases(system: System) -> list[tuple[float, tuple[float, float], RigidBody]]
     return found
 
 
-def _ends(system: System, k: int) -> tuple[float, float]:
-    """Horizontal positions of the two ends of a contact as all stand [m]."""
+def contact_ends(system: System, k: int) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Left and right end of contact k as all stand (x, z) [m]."""
     bases = _bases(system)
     angle, origin, body = bases[k]
     assert isinstance(body.base, Interval)
@@ -308,5 +319,6 @@ def _ends(system: System, k: int) -> tuple[float, float]:
         assert isinstance(face, Interval)
         offset = system.contacts[k].offset[0]
         low, high = max(low, face.left - offset), min(high, face.right - offset)
-    left, right = (origin[0] + geometry.turned(end, 0.0, angle)[0] for end in (low, high))
+    turns = [geometry.turned(end, 0.0, angle) for end in (low, high)]
+    left, right = ((origin[0] + dx, origin[1] + dy) for dx, dy in turns)
     return left, right

@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.report.wording import number
+from rockfrag.report.wording import probability, spelled
 
 _STATEMENT = Markup(
     '<div class="statement {finding}"><p><strong>C{number}</strong> {statement} '
@@ -29,10 +29,11 @@ def ledger_html(claims: pd.DataFrame) -> Markup:
         _STATEMENT.format(
             **{
                 key: row[key]
-                for key in ("number", "statement", "source", "verdict", "kind", "basis", "figure")
+                for key in ("number", "statement", "source", "verdict", "kind", "basis")
             },
+            figure=spelled(row["figure"]),
             finding=row["finding"].replace(" ", "-"),
-            rule=". ".join(_rule(row)) + ".",
+            rule=spelled(". ".join(_rule(row)) + "."),
         )
         for row in claims.to_dict("records")
     ]
@@ -43,20 +44,21 @@ def _rule(row: Mapping[Any, Any]) -> list[str]:
     """How a row was tested, how often that errs, and what else there is to say."""
     parts = [f"Evidence: {row['evidence']}", f"Rule: {row['rule']}", f"Error: {row['error_rate']}"]
     if pd.notna(row["p"]):
-        held = f"p = {number(row['p'], 3)}, {number(row['p_holm'], 3)} with all statements counted"
-        parts.append(held)
+        p, adjusted = probability(row["p"]), probability(row["p_holm"])
+        what = f" of “{row['p_of']}”" if row["p_of"] else ""
+        parts.append(f"p value{what}: {p}; adjusted for all statements (Holm): {adjusted}")
     if row["remark"]:
         parts.append(f"Remark: {row['remark']}")
     return parts
 
 
 def verdicts_by_kind(claims: pd.DataFrame) -> pd.DataFrame:
-    """How many statements of each kind have each verdict.
+    """How many statements of each kind have each outcome.
 
     Returns
     -------
     pandas.DataFrame
-        kind, statements, verdicts (in words, such as "3 reproduced, 2 open").
+        kind, statements, verdicts (in words, such as "3 reproduced, 2 undecided").
     """
     rows = []
     for kind, part in claims.groupby("kind", sort=False):

@@ -36,8 +36,3 @@ def departures_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
         beyond_chance=(lower[GROUND] > 1) & (upper[_UPPER] < 1).all(axis=1),
     )
     return departures(effects).merge(found.reset_index(), on=keys, how="left")
-
-
-def expected_by_chance(number: int) -> float:
-    """How many of so many departures without any effect would have the signs of the thesis [-]."""
-    return float(number / 2 ** len(FLOORS))

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.case_list import overturns_of_cases
-from rockfrag.rocking.sureness import perturbed
+from rockfrag.rocking.case_list import overturned_cases
+from rockfrag.rocking.ensemble import Options, prepared
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import always_overturning, first_overturning, step_protocol
 from rockfrag.study.configurations import Configuration
 from rockfrag.system.blocks import Body
+from rockfrag.system.perturbation import Written, perturbed
 
 SIZES = (1e-9, 1e-6, 1e-4)
 """Relative differences of the motion and of every width and height, at most."""
@@ -26,7 +27,7 @@ COPIES = 4
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Bounds = tuple[float, float]
-Copy = tuple[Body, float]
+Copy = tuple[Written, float]
 """A perturbed body and the factor on its motion."""
 
 CLIMBING = ("step_protocol", "first_overturning")
@@ -156,16 +157,15 @@ def _verdicts(
     copy, motion, amplitude = np.nonzero(wanted)
     factors = np.array([factor for _, factor in copies])
     ends = np.zeros(wanted.shape, dtype=bool)
-    ends[wanted] = overturns_of_cases(
+    restitution = [configuration.restitution] * len(copies)
+    cases = prepared(
         [body for body, _ in copies],
-        [one.acceleration for one in motions],
-        np.array([one.dt for one in motions]),
-        copy,
-        motion,
-        scales[motion, amplitude] * factors[copy],
-        restitution=[configuration.restitution] * len(copies),
-        threads=threads,
+        motions,
+        None,
+        (1.0,),
+        Options(restitution=restitution, threads=threads),
     )
+    ends[wanted] = overturned_cases(cases, copy, motion, scales[motion, amplitude] * factors[copy])
     return ends
 
 

@@ -8,9 +8,10 @@ import pytest
 from rockfrag.engines.kernels.equations import STATE, equations
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import entry_kernel
+from rockfrag.engines.records import body_record
 from rockfrag.rocking import Block, MeasuredRestitution, Stack
-from rockfrag.rocking.body_record import body_record
 from rockfrag.rocking.measured_restitution import LAWS, Law
+from rockfrag.rocking.options import system_of
 from rockfrag.rocking.reference.model import LinearModel, Model
 
 from .motion import lagrange_by_newton
@@ -78,7 +79,7 @@ def test_equations_of_motion(poles: tuple[int, int]) -> None:
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     def kernel(k: int) -> tuple[float, float]:
-        p = body_record(STACKS[k], g=S.g[k])
+        p = body_record(STACKS[k].system(), g=S.g[k])
         terms = kernel_equations(p, *poles, record(poles, *state(S, k), pull(k)))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
@@ -96,7 +97,7 @@ def test_linearised_equations_of_motion(poles: tuple[int, int]) -> None:
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
     def kernel(k: int) -> tuple[float, float]:
-        p = body_record(STACKS[k], linear=True, g=S.g[k])
+        p = body_record(STACKS[k].system(), linear=True, g=S.g[k])
         terms = kernel_equations(p, *poles, record(poles, *state(S, k), pull(k)))
         return moments_of(terms, (S.q1[k], S.q2[k]))
 
@@ -231,7 +232,7 @@ def test_the_fast_kernel_finds_the_same_outcome(
     for k in range(N):
         theta, omega = state(s, k)
         new, after, _ = Model(STACKS[k], S.g[k]).impact(old, closing, theta, omega)
-        p = body_record(STACKS[k], g=S.g[k])
+        p = body_record(STACKS[k].system(), g=S.g[k])
         n1, n2, w1, w2, gave_way = kernel_impact(
             p, record(old, theta, omega, (0.0, S.g[k])), closing[0] != 0, closing[1] != 0
         )
@@ -266,7 +267,7 @@ def test_energy_never_grows_whatever_restitution_is_asked_for(
         new, after, _ = model.impact(old, closing, theta, omega)
         assert model.kinetic_energy(new, theta, after) <= before * (1 + 1e-8)
         n1, n2, w1, w2, _ = kernel_impact(
-            body_record(STACKS[k], restitution, g=S.g[k]),
+            body_record(system_of(STACKS[k], restitution=restitution), g=S.g[k]),
             record(old, theta, omega, (0.0, S.g[k])),
             closing[0] != 0,
             closing[1] != 0,

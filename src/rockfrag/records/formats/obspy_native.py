@@ -41,6 +41,12 @@ _SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})
 
 _SAC_QUANTITIES = {6: "displacement", 7: "velocity"}
 _WATER_LEVEL = 60.0
+
+MOST_SAMPLES = 20_000_000
+"""Samples of a file, all channels together: a day at 200 Hz has 17 million."""
+
+_SMALL = 2**20
+"""Bytes of a file that cannot have so many."""
 _SHOWN = 60
 
 
@@ -132,6 +138,7 @@ def _refuse_unknown(path: Path) -> None:
 
 
 def _stream(plain: Path, name: str, path: Path) -> Stream:
+    _check_size(plain, name, path)
     try:
         # ObsPy takes a name for a pattern; ours are names
         stream = obspy.read(glob.escape(str(plain)), format=name)
@@ -143,6 +150,21 @@ def _stream(plain: Path, name: str, path: Path) -> Stream:
     if not stream or any(trace.stats.npts == 0 for trace in stream):
         raise InputError(f"{path}: the file has no samples; it is cut short.")
     return stream
+
+
+def _check_size(plain: Path, name: str, path: Path) -> None:
+    """Refuse more samples than memory should hold: packed, a few megabytes may be hundreds of millions."""
+    if os.path.getsize(plain) < _SMALL:
+        return
+    try:
+        heads = obspy.read(glob.escape(str(plain)), format=name, headonly=True)
+    except Exception:  # what is wrong is told where the samples are read
+        return
+    count = sum(int(trace.stats.npts) for trace in heads)
+    if count > MOST_SAMPLES:
+        raise InputError(
+            f"{path}: {count:,} samples are more than the {MOST_SAMPLES:,} of a record; cut it to the earthquake."
+        )
 
 
 def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:

@@ -131,6 +131,8 @@ def _splits(words: str, separators: list[str], width: int) -> Iterator[list[str]
         patterns.append(",")
     for pattern in patterns:
         cells = [cell.strip(" \t\"'") for cell in re.split(pattern, words.rstrip(" \t,;"))]
+        # tables that programs write number their rows in a column without a title
+        cells[0] = cells[0] or "#"
         if len(cells) == width and all(cells):
             yield cells
 

@@ -13,7 +13,7 @@ _IS = r"[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?[\s\"',]*(?P<sign>
 _STEP = re.compile(
     r"(?:\b(?:dt|d\.t\.|delta[\s_-]*t|time[\s_-]*(?:step|increment|interval|spacing)|timestep"
     r"|sampl\w*[\s_-]*(?:step|increment|interval|period|spacing|time)|spaced\s+at|intervals?\s+of)"
-    r"|(?<![\w.])Δt|\b(?P<unsure>delta|interval|step))"
+    r"|(?<![\w.])Δt|\b(?P<unsure>delta|interval))"
     rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?",
     re.IGNORECASE,
 )
@@ -25,7 +25,7 @@ _RATE = re.compile(
 )
 _COUNT = re.compile(
     r"(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
-    r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?))|(?P<unsure>\bsamples|\bpoints|\blength|\bn))"
+    r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?))|(?P<unsure>\bsamples|\bpoints))"
     rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))",
     re.IGNORECASE,
 )
@@ -43,6 +43,7 @@ _QUANTITY_IN = re.compile(
 _NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.IGNORECASE)
 _IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.IGNORECASE)
 _ONE_VALUE = re.compile(r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter)\b", re.I)
+_VALUE_OF = re.compile(r"[=:]\s*[-+]?\.?\d")
 _UNIT_TOKEN = re.compile(
     r"[\s\"'=:(\[{]*(?P<unit>(?:[a-z%°µ]+[\w%°^*²-]*(?:\.[a-z-]+\d?)?(?:\s*/\s*\(?\s*[a-z\d]+\)?(?:\^|\*\*)?[\d²]*)*))",
     re.IGNORECASE,
@@ -171,7 +172,7 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
         held = next(iter(map(quantity_of, _units_in(explicit["rest"])[:1])), "") if explicit else ""
         if held:
             return held, ""
-        if _ONE_VALUE.search(line):
+        if _ONE_VALUE.search(line) or _is_value(line):
             continue
         match = _QUANTITY_IN.search(line) or _IN_UNIT.search(line)
         first = next(iter(_units_in(match["rest"])), "") if match else _sure_unit(line)
@@ -180,13 +181,18 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
             return "acceleration", first
         if named and quantity_of(first):
             return quantity_of(first), ""
-    last = [m["quantity"].lower() for line in lines[-1:] for m in _NAMED_QUANTITY.finditer(line)]
+    last = [m["quantity"].lower() for line in lines[-1:] if (m := _NAMED_QUANTITY.match(line))]
     everywhere = any(
         m["quantity"].lower() == "acc" for x in lines for m in _NAMED_QUANTITY.finditer(x)
     )
     if last and not everywhere:
         return {"vel": "velocity", "dis": "displacement"}[last[0]], ""
     return "", ""
+
+
+def _is_value(line: str) -> bool:
+    """Tell whether a line states one value, as of a velocity of waves, and not what the samples are."""
+    return bool(_VALUE_OF.search(line)) and not _STEP.search(line) and not _COUNT.search(line)
 
 
 def _sure_unit(line: str) -> str:

@@ -21,6 +21,12 @@ HEAD_BYTES = 16_384
 MAX_BYTES = 256 * 2**20
 """No record is larger: three components of a day at 200 Hz are a third of it."""
 
+MAX_TEXT = 96 * 2**20
+"""Bytes of a text file: three components of a day at 200 Hz have as many."""
+
+MOST_NUMBERS = 20_000_000
+"""Numbers of a table: more than memory should hold beside the text."""
+
 MAX_LINE = 8_192
 """No line of a known format is longer, comments and citations included."""
 
@@ -28,6 +34,7 @@ MAX_LINES = 6_000_000
 """No record has more: eight hours of samples at 200 Hz, one a line."""
 
 _BLOCK = 2**20
+_PIECE = 4 * _BLOCK
 _MOST_ZEROS = 4 * _BLOCK
 """Bytes after which a file that has only zeros is given up."""
 
@@ -280,17 +287,34 @@ class TextFile:
         if not body:
             self.fail("no data below the header; the file is cut short", start)
         separator = b";" if b";" in body or decimal_comma else b","
-        body = body.replace(separator, b" ").replace(b",", b".").replace(b"\t", b" ")
-        if _TOUCHING.search(body):
-            body = _TOUCHING.sub(rb" \1", body)
-        widths = _tokens_by_line(body)
-        try:
-            return parse_separated(body), widths
-        except NumberError as error:
-            wrong = np.flatnonzero(widths != columns) if columns else widths[:0]
-            if not wrong.size or error.line <= int(wrong[0]):
-                self.fail(str(error), start + error.line)
-        return np.empty(0), widths
+        values: list[NDArray[np.float64]] = []
+        widths: list[NDArray[np.int64]] = []
+        begin = line = count = 0
+        # in pieces, of which each is held several times over
+        while begin < len(body):
+            end = body.find(b"\n", begin + _PIECE) + 1 or len(body)
+            piece = _with_blanks(body[begin:end], separator)
+            widths.append(_tokens_by_line(piece))
+            try:
+                values.append(parse_separated(piece))
+            except NumberError as error:
+                wrong = np.flatnonzero(widths[-1] != columns) if columns else widths[-1][:0]
+                if not wrong.size or error.line <= int(wrong[0]):
+                    self.fail(str(error), start + line + error.line)
+                return np.empty(0), np.concatenate(widths)
+            count += values[-1].size
+            if count > MOST_NUMBERS:
+                self.fail(
+                    f"more than {MOST_NUMBERS:,} numbers are no record; cut it to the earthquake"
+                )
+            begin, line = end, line + widths[-1].size
+        return np.concatenate(values), np.concatenate(widths)
+
+
+def _with_blanks(body: bytes, separator: bytes) -> bytes:
+    """Return rows of numbers that blanks alone separate, with decimal points."""
+    body = body.replace(separator, b" ").replace(b",", b".").replace(b"\t", b" ")
+    return _TOUCHING.sub(rb" \1", body) if _TOUCHING.search(body) else body
 
 
 def last_row(text: TextFile, start: int) -> int:
@@ -315,8 +339,9 @@ def _tokens_by_line(body: bytes) -> NDArray[np.int64]:
     filled = characters > ord(" ")
     starts = filled.copy()
     starts[1:] &= ~filled[:-1]
-    ends = np.append(np.flatnonzero(characters == ord("\n")), characters.size - 1)
-    widths: NDArray[np.int64] = np.diff(np.cumsum(starts)[ends], prepend=0)
+    begins = np.append(0, np.flatnonzero(characters == ord("\n")) + 1)
+    begins = begins[begins < characters.size]
+    widths: NDArray[np.int64] = np.add.reduceat(starts.view(np.uint8), begins, dtype=np.int64)
     return widths
 
 
@@ -425,8 +450,10 @@ def _read_blocks(file: Any, name: str) -> bytes:
         if not isinstance(block, bytes):
             raise InputError(f"{name}: open the file in binary mode.")
         total += len(block)
-        if total > MAX_BYTES:
-            raise InputError(f"{name}: more than {MAX_BYTES // 2**20} MiB are no record.")
+        if total > MAX_TEXT:
+            raise InputError(
+                f"{name}: more than {MAX_TEXT // 2**20} MiB of text are no record; cut it to the earthquake."
+            )
         zeros = zeros and not block.translate(None, b"0 .,;\t\r\n+-\x00")
         if zeros and total >= _MOST_ZEROS:
             raise InputError(f"{name}: nothing but zeros.")

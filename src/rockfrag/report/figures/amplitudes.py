@@ -24,6 +24,7 @@ from rockfrag.figure_style import (
     ORANGE,
     PAGE_WIDTH,
     figure_style,
+    letter_panels,
     new_figure,
 )
 from rockfrag.report.wording import shortened
@@ -37,6 +38,8 @@ SIDE_NAME = {"NP": "without pedestal", "P": "with pedestal"}
 SIDE_SHIFT = {"NP": -0.13, "P": 0.13}
 MARKERS = ("o", "s", "^", "D", "v", "P")
 AMPLITUDE = "Overturning amplitude [g]"
+MOST_MARKS = 150
+"""Of more tests than this a figure shows the distribution, not every one."""
 
 _ARROW = np.array([(0, 0), (0, 1.6), (-0.4, 1.0), (0, 1.6), (0.4, 1.0)])
 _STROKES = [Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO]
@@ -211,8 +214,8 @@ def pedestal_scatter(tests: pd.DataFrame, title: str) -> Figure:
         _scatter_panel(axes, pairs, objects, upper)
         # above the panel, where it hides no test
         axes.set_title(title, loc="left", pad=4)
-        axes.set_xlabel("Amplitude without pedestal, NP [g]")
-        axes.set_ylabel("Amplitude with pedestal, P [g]")
+        axes.set_xlabel("Overturning amplitude without pedestal [g]")
+        axes.set_ylabel("Overturning amplitude with pedestal [g]")
         if 1 < len(objects) <= len(MARKERS):
             handles = [
                 Line2D([], [], ls="", marker=m, mfc="none", mec=c, label=shortened(name))
@@ -261,23 +264,50 @@ def slenderness_figure(
     rows = rows.assign(x=rows["object"].map(slenderness))
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
     events = list(dict.fromkeys(tests["event"]))
+    crowded = len(tests) > MOST_MARKS
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 3.0)
         grid = figure.subplots(1, 2, sharex=True, sharey=True)
         for axes, side in zip(grid, SIDES, strict=True):
-            _against_slenderness(axes, rows[rows["pedestal"] == side], events)
+            part = rows[rows["pedestal"] == side]
+            if crowded:
+                _boxes(axes, part)
+            else:
+                _against_slenderness(axes, part, events)
             own = known[known["pedestal"] == side]
             x = own["object"].map(slenderness).to_numpy(dtype=float)
             axes.plot(x, own["mean_g"], color=BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
             axes.set_title(SIDE_NAME[side], loc="left")
             axes.set_ylim(0, top(rows))
             axes.set_xticks(sorted(rows["x"].unique()))
-        figure.supxlabel("Slenderness H/B [-]", fontsize=8)
+        figure.supxlabel("Slenderness H/B", fontsize=8)
+        letter_panels(grid)
         figure.supylabel(AMPLITUDE, fontsize=8)
-        handles = _event_handles(events) + bound_handle(tests)
+        handles = _box_handles() if crowded else _event_handles(events) + bound_handle(tests)
         handles.append(Line2D([], [], color=BLACK, marker="_", ms=10, label="geometric mean"))
         figure.legend(handles=handles, loc="outside upper center", ncols=3, handletextpad=0.3)
     return figure
+
+
+def _boxes(axes: Axes, part: pd.DataFrame) -> None:
+    """Distribution of many tests at each slenderness: median, quartiles, 5 to 95 %."""
+    levels = sorted(part["x"].unique())
+    axes.boxplot(
+        [part.loc[part["x"] == level, "a"].to_numpy(dtype=float) for level in levels],
+        positions=levels,
+        widths=0.3,
+        whis=(5, 95),
+        showfliers=False,
+        manage_ticks=False,
+        boxprops={"color": BLUE},
+        whiskerprops={"color": BLUE},
+        capprops={"color": BLUE},
+        medianprops={"color": BLUE, "linewidth": 1.6},
+    )
+
+
+def _box_handles() -> list[Line2D]:
+    return [Line2D([], [], color=BLUE, label="median, 25–75 %, 5–95 %")]
 
 
 def _event_handles(events: Sequence[str]) -> list[Line2D]:

@@ -68,7 +68,7 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
         low, high = axes.get_xlim()
         axes.set_xlim(min(low, 0.8 * high), high)
         plain_log(axes, "x")
-        axes.set_xlabel("Peak acceleration that overturns [g]")
+        axes.set_xlabel("Overturning amplitude [g]")
         sides = list(dict.fromkeys(tests["pedestal"]))
         handles = [
             Line2D(
@@ -85,9 +85,7 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
         ]
         if len(curves):
             handles.append(
-                Line2D(
-                    [], [], color=BLACK, marker="D", mfc="white", ms=4, label="median and interval"
-                )
+                Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label="median, interval")
             )
         if tests["amplitude_g"].isna().any():
             handles.append(Line2D([], [], ls="", marker=5, color=GREY, label="bound only"))

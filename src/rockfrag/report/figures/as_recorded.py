@@ -1,20 +1,24 @@
-"""What the motions as recorded do to each configuration: overturned, or how far it rocked."""
+"""What the motions as recorded do to each configuration: how far it rocked, up to overturning."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
-from rockfrag.report.figures.amplitudes import GREY
-from rockfrag.report.wording import shortened
+from rockfrag.figure_style import BLACK, WIDEST, figure_style, new_figure
+from rockfrag.report.wording import label, shortened
 
 MOST_ROWS = 30
 """More motions than this are not legible; the strongest are drawn."""
 
+_SHADES = ListedColormap(["#ffffff", "#d6e6f2", "#a9cbe3", "#74abd2", "#3d86bb"])
+"""Rotation from none to the critical angle; darker is nearer to overturning."""
+
+_OVERTURNED = "#8c2d04"
+
 
 def recorded_map(recorded: pd.DataFrame) -> Figure:
-    """Draw a row for each motion and a column for each configuration.
+    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation.
 
     Parameters
     ----------
@@ -25,46 +29,47 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
     motions = recorded.drop_duplicates("motion")
     if len(motions) > MOST_ROWS:
         motions = motions.nlargest(MOST_ROWS, "pga_g")
-    titles = [shortened(name, 16) for name in names]
-    upright = max(map(len, titles)) * len(titles) <= 28
-    lines = {name: number for number, name in enumerate(motions["motion"])}
+    rows = list(motions["motion"])
+    shown = recorded[recorded["motion"].isin(rows)]
+    rotation = np.where(shown["overturned"], np.inf, shown["peak_rotation"].clip(0.0, 0.999))
+    table = shown.assign(rotation=rotation).pivot_table(
+        index="motion", columns="configuration", values="rotation", aggfunc="first"
+    )
+    table = table.reindex(index=rows, columns=names)
+    sensitive = shown[shown["share_near"].between(0, 1, inclusive="neither")]
     with figure_style():
-        figure = new_figure(COLUMN_WIDTH, (0.9 if upright else 1.8) + 0.21 * len(motions))
+        figure = new_figure(WIDEST, 1.35 + 0.185 * len(rows))
         axes = figure.subplots()
-        for row in recorded[recorded["motion"].isin(motions["motion"])].to_dict("records"):
-            x, y = names.index(row["configuration"]), lines[row["motion"]]
-            rocked = 1.0 if row["overturned"] else min(float(row["peak_rotation"]), 1.0)
-            colour = RED if row["overturned"] else BLUE
-            axes.add_patch(
-                Rectangle((x - 0.4, y + 0.36 - 0.72 * rocked), 0.8, 0.72 * rocked, fc=colour, lw=0)
-            )
-            if 0 < row["share_near"] < 1:
-                axes.plot(x, y, "o", mfc="none", mec="black", ms=6, mew=0.9)
-        axes.set_xlim(-0.6, len(names) - 0.4)
-        axes.set_ylim(len(motions) - 0.4, -0.6)
-        axes.hlines(np.arange(len(motions)) + 0.36, -0.4, len(names) - 0.6, color="#cccccc", lw=0.6)
-        axes.set_yticks(
-            range(len(motions)),
-            [
-                f"{shortened(motion, 20)}, {peak:.2f} g"
-                for motion, peak in motions[["motion", "pga_g"]].itertuples(index=False)
-            ],
+        colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
+        mesh = axes.pcolormesh(
+            np.arange(len(names) + 1) - 0.5,
+            np.arange(len(rows) + 1) - 0.5,
+            np.where(np.isinf(table.to_numpy(dtype=float)), 2.0, table.to_numpy(dtype=float)),
+            cmap=colours,
+            vmin=0.0,
+            vmax=1.0,
+            edgecolors="#cccccc",
+            linewidth=0.4,
         )
-        axes.set_xticks(range(len(names)), titles, rotation=0 if upright else 60)
-        axes.tick_params(length=0)
+        axes.plot(
+            [names.index(name) for name in sensitive["configuration"]],
+            [rows.index(motion) for motion in sensitive["motion"]],
+            ls="",
+            marker="o",
+            ms=3.4,
+            mfc="white",
+            mec=BLACK,
+            mew=0.7,
+        )
+        axes.set_ylim(len(rows) - 0.5, -0.5)
+        peaks = dict(zip(motions["motion"], motions["pga_g"], strict=True))
+        axes.set_yticks(range(len(rows)), [f"{label(one)}, {peaks[one]:.2f} g" for one in rows])
+        axes.set_xticks(range(len(names)), [shortened(one, 16) for one in names], rotation=90)
+        axes.tick_params(length=0, labelsize=7)
         axes.xaxis.tick_top()
-        for side in axes.spines.values():
-            side.set_visible(False)
-        handles = [
-            Rectangle((0, 0), 1, 1, fc=RED, label="overturns"),
-            Rectangle((0, 0), 1, 1, fc=BLUE, label="rocks"),
-            *axes.plot([], [], "o", mfc="none", mec=GREY, label="within a tenth of the other"),
-        ]
-        figure.legend(
-            handles=handles,
-            loc="outside lower center",
-            ncols=3,
-            handlelength=1.0,
-            columnspacing=1.0,
+        axes.spines[:].set_visible(False)
+        bar = figure.colorbar(
+            mesh, ax=axes, location="bottom", extend="max", extendfrac=0.12, aspect=28, pad=0.02
         )
+        bar.set_label("Rotation / critical angle (brown: overturned)")
         return figure

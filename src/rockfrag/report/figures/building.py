@@ -9,9 +9,9 @@ from rockfrag.report.wording import shortened
 
 AXIS_NAMES = {
     "first_period_s": "First period of the elastic building [s]",
-    "damping_ratio": "Damping, fraction of critical",
-    "base_shear": "Shear strength of the masonry over the weight",
-    "ground_scale": "Factor on the records that the masonry building feels",
+    "damping_ratio": "Damping ratio",
+    "base_shear": "Shear strength of the masonry / weight",
+    "ground_scale": "Scale factor on the records of the masonry building",
     "floors": "Levels of the floors",
 }
 """The building's assumptions that a study may vary, for a reader."""

@@ -16,14 +16,14 @@ from rockfrag.figure_style import (
     new_figure,
     plain_log,
 )
-from rockfrag.report.wording import shortened
+from rockfrag.report.wording import label
 
 _GREY = "#999999"
 _BINS = 8
 
 
 def agreement_figure(agreement: pd.DataFrame) -> Figure:
-    """Draw the share of right verdicts of the simulation and of its rivals, with intervals."""
+    """Draw the fraction of outcomes that the simulation and others predict right, with intervals."""
     rows = agreement.iloc[::-1].reset_index(drop=True)
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.7 + 0.24 * len(rows))
@@ -37,8 +37,8 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
             axes.plot(
                 100 * row["right"], place, "o", color=colour, mfc=colour if filled else "white"
             )
-        axes.set_yticks(range(len(rows)), [shortened(name, 34) for name in rows["who"]])
-        axes.set_xlabel("Verdicts right [%]")
+        axes.set_yticks(range(len(rows)), [label(name) for name in rows["who"]])
+        axes.set_xlabel("Outcomes predicted right [%]")
         axes.grid(axis="x")
         return figure
 
@@ -77,13 +77,13 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
         axes.set_xscale("log")
         plain_log(axes, "x")
         axes.set_xlabel(label)
-        axes.set_ylabel("Share of tests overturned")
+        axes.set_ylabel("Fraction of tests overturned")
         axes.legend(loc="upper left")
         return figure
 
 
 def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -> Figure:
-    """Draw every test in two measures: what happened by colour, wrong verdicts as crosses."""
+    """Draw every test in two measures: what happened by colour, wrong predictions as crosses."""
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 2.8)
         axes = figure.subplots()
@@ -92,8 +92,8 @@ def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -
             axes.plot(rows[x], rows[y], ls="", marker="o", ms=2.6, color=colour, label=word)
         wrong = tests[~tests["right"]]
         for fell, colour, word in (
-            (True, RED, "overturned, simulated standing"),
-            (False, BLACK, "survived, simulated fallen"),
+            (True, RED, "overturned only in the laboratory"),
+            (False, BLACK, "overturned only in the simulation"),
         ):
             rows = wrong[wrong["overturned"] == fell]
             axes.plot(rows[x], rows[y], ls="", marker="x", ms=4.5, color=colour, label=word)
@@ -124,7 +124,7 @@ def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
                 continue
             closed = np.vstack([corners[["x_m", "y_m"]], corners[["x_m", "y_m"]].iloc[:1]])
             tolerance = corners["contact_tolerance_mm"].iloc[0]
-            label = word if not np.isfinite(tolerance) else f"carries within {tolerance:.1f} mm"
+            label = word if not np.isfinite(tolerance) else f"contact within {tolerance:.1f} mm"
             axes.plot(closed[:, 0], closed[:, 1], ls=line, color=colour, label=label)
         axes.plot(0, 0, "+", color=BLACK, ms=9, label="centre of gravity")
         reach = float(footprint[["x_m", "y_m"]].abs().to_numpy().max())

@@ -18,10 +18,12 @@ NONE = (1 / 1.1, 1.1)
 
 _TICKS = (0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.5, 2, 3, 5, 10)
 _MOST_TICKS = 7
+_LEAST_APART = 0.11
+"""Ticks nearer than this part of the axis would print over each other."""
 
 
 def forest_figure(effects: pd.DataFrame) -> Figure:
-    """Ratio P/NP of every scope with its 95 % interval, and the ±10 % that counts as none.
+    """Ratio with over without pedestal of every scope with its 95 % interval, and the ±10 % that counts as none.
 
     Parameters
     ----------
@@ -50,7 +52,7 @@ def forest_figure(effects: pd.DataFrame) -> Figure:
         ratio_axis(axes, figures[:, :3].ravel())
         handles = [
             Line2D([], [], color=BLUE, marker="o", mfc=BLUE, label="differs from 1 (Holm, 5 %)"),
-            Line2D([], [], color=BLUE, marker="o", mfc="white", label="may be 1"),
+            Line2D([], [], color=BLUE, marker="o", mfc="white", label="does not"),
             Line2D([], [], color=BAND, lw=6, label="±10 %"),
         ]
         figure.legend(handles=handles, loc="outside upper center", ncols=3, handlelength=1.4)
@@ -59,7 +61,12 @@ def forest_figure(effects: pd.DataFrame) -> Figure:
 
 def _label(level: str, units: int, unit: str) -> str:
     name = "all pairs" if level == "all" else shortened(level.replace("/", ", "), 30)
-    return f"{name} ({counted(int(units), unit)})"
+    return f"{name} ({counted(int(units), 'earthquake' if unit == 'event' else unit)})"
+
+
+def _too_near(ticks: Sequence[float], low: float, high: float) -> bool:
+    places = np.log(ticks) / np.log(high / low)
+    return bool(len(ticks) > 1 and np.diff(places).min() < _LEAST_APART)
 
 
 def ratio_axis(axes: Axes, values: NDArray[np.float64] | Sequence[float]) -> None:
@@ -72,8 +79,9 @@ def ratio_axis(axes: Axes, values: NDArray[np.float64] | Sequence[float]) -> Non
     axes.set_xscale("log")
     axes.set_xlim(low, high)
     ticks = [tick for tick in _TICKS if low <= tick <= high]
-    if len(ticks) > _MOST_TICKS:
-        ticks = [tick for tick in ticks if tick not in (0.7, 0.8, 0.9, 1.1, 1.2)]
+    for crowded in ((0.9, 1.1), (0.7, 1.2), (0.8,), (0.3, 3)):
+        if len(ticks) > _MOST_TICKS or _too_near(ticks, low, high):
+            ticks = [tick for tick in ticks if tick not in crowded]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
-    axes.set_xlabel("Ratio of overturning amplitudes P/NP [-]")
+    axes.set_xlabel("Amplitude with / without pedestal")

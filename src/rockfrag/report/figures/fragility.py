@@ -1,4 +1,4 @@
-"""Fragility curves with their limits, the verdicts behind them, and what no curve can show."""
+"""Fragility curves with their limits, the outcomes behind them, and what no curve can show."""
 
 from collections.abc import Hashable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
 from rockfrag.errors import InputError
@@ -21,10 +22,11 @@ from rockfrag.figure_style import (
     SKY,
     WIDEST,
     figure_style,
+    letter_panels,
     new_figure,
     plain_log,
 )
-from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.fragility.compared import compared_curves
 from rockfrag.fragility.empirical import local_share, share_in_bins
 from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit
 from rockfrag.report.wording import shortened
@@ -38,8 +40,13 @@ if TYPE_CHECKING:
 GREY = "#777777"
 
 
-def fragility_figure(curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFrame) -> Figure:
-    """Draw fragility curves of one measure with their bands, and the verdicts behind them.
+def fragility_figure(
+    curves: pd.DataFrame,
+    bands: pd.DataFrame,
+    bins: pd.DataFrame,
+    nonparametric: bool | None = None,
+) -> Figure:
+    """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
 
     Parameters
     ----------
@@ -47,52 +54,69 @@ def fragility_figure(curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFra
         Rows of :func:`rockfrag.fragility.fragility_table`, a row per curve: ``configuration``,
         ``im``, ``unit``, ``theta``, ``beta``; theta is missing where there is no curve.
     bands, bins
-        Their points and verdicts, see :mod:`rockfrag.fragility.drawn_curves`. The local share
-        (dashed) may fall where the curve cannot. Where the lognormal curve is rejected it is dotted, and the
-        curve without a form stands in its place.
+        Their points and outcomes, see :mod:`rockfrag.fragility.drawn_curves`.
+    nonparametric
+        Whether all have the nonparametric curve, with the lognormal one dotted. By default where the lognormal
+        curve of one of them is rejected; figures that are compared with each other need the same.
     """
+    compared = compared_curves(curves, nonparametric)
     first = curves.iloc[0]
     with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.9)
-        axes = figure.subplots()
-        for k, curve in enumerate(curves.to_dict("records")):
+        figure = new_figure(COLUMN_WIDTH, 0.75 + 1.65 * len(curves))
+        panels = figure.subplots(len(curves), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        for k, (panel, curve) in enumerate(
+            zip(panels, compared.rows.to_dict("records"), strict=True)
+        ):
             colour = CONFIGURATION_COLOURS[k % len(CONFIGURATION_COLOURS)]
-            own = bins["configuration"] == curve["configuration"]
-            _shares(axes, bins[own], colour, 1.0 + 0.02 * (k - 0.5 * (len(curves) - 1)))
-            points = bands[bands["configuration"] == curve["configuration"]]
-            rejected = curve.get("p_fit", np.nan) < REJECTED
-            # what is to be used has the band and the thick line
-            ends = ("share_lower", "share_upper") if rejected else ("lower", "upper")
-            axes.fill_between(
-                points["x"], *(points[end] for end in ends), color=colour, alpha=0.18, linewidth=0
-            )
-            label = f"{shortened(curve['configuration'])}: {_curve_words(curve, rejected)}"
-            if rejected:
-                axes.plot(points["x"], points["probability"], ":", color=colour, linewidth=0.8)
-                axes.plot(points["x"], points["share"], color=colour, label=label)
-            else:
-                axes.plot(points["x"], points["local"], "--", color=colour, linewidth=0.8)
-                axes.plot(points["x"], points["probability"], color=colour, label=label)
-        _probability_axis(axes, np.array([bands["x"].min(), bands["x"].max()]))
-        axes.set_ylabel("Probability of overturning")
-        axes.set_xlabel(_axis_label(first["im"], first["unit"]))
-        figure.legend(loc="outside upper center", ncols=1, handlelength=1.4)
+            own = str(curve["configuration"])
+            _shares(panel, bins[bins["configuration"] == own], colour, 1.0)
+            points = bands[bands["configuration"] == own]
+            _compared_curve(panel, points, colour, compared.nonparametric)
+            _probability_axis(panel, np.array([bands["x"].min(), bands["x"].max()]))
+            panel.set_title(f"{shortened(own)}: {_curve_words(curve)}", loc="left")
+        letter_panels(panels)
+        panels[-1].set_xlabel(_axis_label(first["im"], first["unit"]))
+        figure.supylabel("Probability of overturning", fontsize=8)
+        figure.legend(
+            handles=_curve_handles(compared.nonparametric), loc="outside upper center", ncols=2
+        )
         return figure
 
 
-def _curve_words(curve: Mapping[Hashable, Any], rejected: bool) -> str:
-    """Median and dispersion of the curve that is to be used."""
-    names = ("theta_isotonic", "beta_isotonic") if rejected else ("theta", "beta")
-    theta, beta = (float(curve[name]) for name in names)
+def _compared_curve(axes: Axes, points: pd.DataFrame, colour: str, nonparametric: bool) -> None:
+    """Draw the curve that is to be used with its band, and the other one without."""
+    lower, upper = ("share_lower", "share_upper") if nonparametric else ("lower", "upper")
+    axes.fill_between(
+        points["x"], points[lower], points[upper], color=colour, alpha=0.18, linewidth=0
+    )
+    if nonparametric:
+        axes.plot(points["x"], points["probability"], ":", color=BLACK, linewidth=0.9)
+        axes.plot(points["x"], points["share"], color=colour)
+    else:
+        axes.plot(points["x"], points["probability"], color=colour)
+
+
+def _curve_handles(nonparametric: bool) -> list[Line2D]:
+    handles = [Line2D([], [], color=GREY, label="nonparametric" if nonparametric else "lognormal")]
+    if nonparametric:
+        handles.append(Line2D([], [], color=BLACK, ls=":", lw=0.9, label="lognormal (rejected)"))
+    return [
+        *handles,
+        Line2D([], [], color=GREY, marker="o", ls="", ms=3.2, label="analyses in bins"),
+    ]
+
+
+def _curve_words(curve: Mapping[Hashable, Any]) -> str:
+    """Median and dispersion of a curve."""
+    theta, beta = float(curve["theta"]), float(curve["beta"])
     if not np.isfinite(theta):
-        return "shares without a form" if rejected else "no curve"
+        return "no median"
     words = f"θ = {theta:.3g} {curve['unit']}"
-    words += f", β = {beta:.2f}" if np.isfinite(beta) else ""
-    return f"{words}, without a form" if rejected else words
+    return words + (f", β = {beta:.2f}" if np.isfinite(beta) else "")
 
 
 def _shares(axes: Axes, bins: pd.DataFrame, colour: str, shift: float) -> None:
-    """Shares of overturned tests in bins with their binomial limits."""
+    """Fractions of overturned tests in bins with their binomial limits."""
     share = bins["share"].to_numpy(dtype=float)
     lower, upper = (bins[f"share_{end}"].to_numpy(dtype=float) for end in ("lower", "upper"))
     reach = [np.maximum(share - lower, 0.0), np.maximum(upper - share, 0.0)]
@@ -134,6 +158,7 @@ def measures_figure(
             axes.set_xlabel(_axis_label(item.fit.im, item.fit.unit))
         for axes in grid_of_axes[:, 0]:
             axes.set_ylabel("Probability of overturning")
+        letter_panels(grid_of_axes.flat[: len(labels)])
         return figure
 
 
@@ -197,10 +222,10 @@ def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
         axes.set_aspect("equal")
         axes.set_xlim(-0.02, 1.02)
         axes.set_ylim(-0.02, 1.02)
-        axes.xaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
-        axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
+        axes.xaxis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
+        axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
         axes.set_xlabel("Fitted probability")
-        axes.set_ylabel("Share that overturned")
+        axes.set_ylabel("Fraction overturned")
         axes.legend(loc="upper left", handletextpad=0.3)
         return figure
 
@@ -269,9 +294,10 @@ def _probability_axis(axes: Axes, grid: Floats) -> None:
     axes.set_xscale("log")
     axes.set_xlim(grid[0], grid[-1])
     axes.set_ylim(-0.02, 1.02)
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))
     plain_log(axes, "x")
 
 
 def _axis_label(name: str, unit: str) -> str:
+    name = name[:1].upper() + name[1:]
     return f"{name} [{unit}]" if unit else name

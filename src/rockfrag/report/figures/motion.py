@@ -5,13 +5,27 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
+from rockfrag.figure_style import (
+    BLUE,
+    COLUMN_WIDTH,
+    RED,
+    figure_style,
+    letter_panels,
+    new_figure,
+)
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import shortened
 from rockfrag.units import GRAVITY
 
 MOST_PANELS = 8
 """More motions than this do not fit one figure; the first are drawn."""
+
+
+def _title(motion: Motion, peak_g: float) -> str:
+    """Name of the earthquake and of the record, and the peak."""
+    event = str(motion.metadata.get("event") or "")
+    name = motion.name if event.casefold() in motion.name.casefold() else f"{event}, {motion.name}"
+    return f"{shortened(name, 44)}: {peak_g:.2f} g"
 
 
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
@@ -21,7 +35,7 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """
     shown = motions[:MOST_PANELS]
     with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.5 + 1.15 * len(shown))
+        figure = new_figure(COLUMN_WIDTH, 0.5 + 0.95 * len(shown))
         panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
         for panel, motion in zip(panels, shown, strict=True):
@@ -31,9 +45,8 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
             panel.plot(motion.time, values, color=BLUE, linewidth=0.5)
             panel.plot(motion.time[peak], values[peak], "o", color=RED, markersize=3)
             panel.set_ylim(-highest, highest)
-            panel.set_title(
-                f"{shortened(motion.name)}: peak {abs(values[peak]):.3f} g", loc="left", pad=2
-            )
+            panel.set_title(_title(motion, abs(values[peak])), loc="left", fontsize=7.5)
+        letter_panels(panels)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
         figure.supylabel("Acceleration [g]", fontsize=8)

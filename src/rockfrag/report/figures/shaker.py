@@ -5,10 +5,10 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, figure_style, new_figure
-from rockfrag.report.figures.amplitudes import MARKERS, drawn_tests
+from rockfrag.figure_style import OKABE_ITO, WIDEST, figure_style, new_figure
+from rockfrag.report.figures.amplitudes import GREY, MARKERS, drawn_tests
 from rockfrag.report.figures.sweep import MOST_ROWS
-from rockfrag.report.wording import shortened
+from rockfrag.report.wording import label, shortened
 
 
 def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
@@ -29,11 +29,13 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
     rows = rows[rows["motion"].isin(motions)]
     names = list(dict.fromkeys(rows["configuration"]))
     with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 1.1 + 0.22 * len(motions))
+        figure = new_figure(WIDEST, 1.2 + 0.22 * len(motions))
         axes = figure.subplots()
         largest = limits.set_index("motion")["limit_g"]
         axes.barh(range(len(motions)), largest[motions], color="#dddddd", height=0.8)
-        handles: list[Artist] = [Patch(color="#dddddd", label="within the shaker's limits")]
+        handles: list[Artist] = [
+            Patch(color="#dddddd", label="up to the table's limit of the stated quantity")
+        ]
         for number, name in enumerate(names):
             marker, colour = MARKERS[number % len(MARKERS)], OKABE_ITO[number % len(OKABE_ITO)]
             own = rows[rows["configuration"] == name]
@@ -43,8 +45,19 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
             handles.append(line)
             bounds = own["up"].to_numpy(dtype=bool)
             axes.plot(own["a"].to_numpy()[bounds], y[bounds], ls="", marker=">", color=colour, ms=3)
-        axes.set_yticks(range(len(motions)), [shortened(name, 28) for name in motions])
+        reasons = limits.set_index("motion")["limited_by"]
+        for place_of, motion in enumerate(motions):
+            axes.text(
+                largest[motion],
+                place_of,
+                f" {reasons[motion]}",
+                va="center",
+                fontsize=6.5,
+                color=GREY,
+            )
+        axes.set_xlim(0, 1.2 * float(largest[motions].max()))
+        axes.set_yticks(range(len(motions)), [label(name) for name in motions])
         axes.tick_params(axis="y", length=0)
-        axes.set_xlabel("Peak of the motion [g]")
+        axes.set_xlabel("Peak acceleration of the motion [g]")
         figure.legend(handles=handles, loc="outside upper center", ncols=2)
         return figure

@@ -10,17 +10,17 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from rockfrag.figure_style import (
-    COLUMN_WIDTH,
     CONFIGURATION_COLOURS,
+    WIDEST,
     figure_style,
     new_figure,
 )
-from rockfrag.report.wording import shortened
+from rockfrag.report.wording import label, shortened
 
 MOST_ROWS = 24
 """More motions than this are not legible; the first are drawn."""
 
-_TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1, 2, 3, 5, 10)
+_TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 
 
 def verdict_map(sweep: pd.DataFrame, configurations: Sequence[str]) -> Figure:
@@ -45,7 +45,7 @@ def verdict_map(sweep: pd.DataFrame, configurations: Sequence[str]) -> Figure:
             bars[str(name)] += _bars(one, bottom, height)
     low, high = rows["amplitude_g"].min(), rows["amplitude_g"].max()
     with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 0.9 + 0.22 * len(motions))
+        figure = new_figure(WIDEST, 0.9 + 0.22 * len(motions))
         axes = figure.subplots()
         handles = []
         for name, colour in zip(configurations, CONFIGURATION_COLOURS, strict=False):
@@ -57,9 +57,9 @@ def verdict_map(sweep: pd.DataFrame, configurations: Sequence[str]) -> Figure:
         axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         axes.minorticks_off()
         axes.set_ylim(-0.6, len(motions) - 0.4)
-        axes.set_yticks(range(len(motions)), [shortened(name, 28) for name in motions[::-1]])
-        axes.tick_params(axis="y", length=0)
-        axes.set_xlabel("Peak of the motion [g]")
+        axes.set_yticks(range(len(motions)), [label(name) for name in motions[::-1]])
+        axes.tick_params(axis="y", length=0, labelsize=7)
+        axes.set_xlabel("Peak acceleration of the motion [g]")
         figure.legend(handles=handles, loc="outside upper center", ncols=2)
         return figure
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 from markupsafe import Markup
 
+from rockfrag.engines.response import Response
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
-from rockfrag.rocking.response import Response
 from rockfrag.system.blocks import Block, Body, Vector
 
 _WIDTH, _HEIGHT, _GROUND = 200, 190, 150

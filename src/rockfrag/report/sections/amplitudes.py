@@ -8,35 +8,35 @@ from rockfrag.files import file_name
 from rockfrag.report.figures.sweep import MOST_ROWS, verdict_map
 from rockfrag.report.findings import amplitudes_found, windows_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.wording import amplitude, of_all
 
 
 def _section(results: Results) -> Section:
-    message = amplitudes_found(results.tests).said
+    found = amplitudes_found(results.tests)
     windows = windows_found(results.table("survival_windows"), results.table("tests"))
     tests = results.tests
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = list(dict.fromkeys(tests["configuration"]))
     shown = _wide(tests)
-    columns = [Column("event", "Event"), Column("floor", "Floor"), Column("motion", "Motion")]
+    columns = [Column("event", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion")]
     columns += [Column(name, f"{name} [g]", numeric=True) for name in names]
     return Section(
         "amplitudes",
         "Overturning amplitudes",
-        message,
+        f"{found.headline}.",
         [
+            *opened(found),
             windows.said,
-            "The amplitude is the peak of the motion that shakes the body: raised in steps from rest, "
-            "and read just before the first overturning. Where a body never overturned, “>” stands "
-            "before the largest amplitude that it survived; “<” stands where it overturned at the "
-            "first step. Such bounds are in no mean.",
-            "Bars show every amplitude that overturns; gaps are amplitudes survived although a weaker "
-            "motion overturned the body.",
+            "The motion is raised in steps from rest until the body overturns. “>” stands before the largest "
+            "amplitude survived by a body that never overturned, “<” before the first step where it overturned "
+            "there already. These bounds enter no mean.",
+            "Bars show all amplitudes that overturn. Gaps are amplitudes survived although a weaker motion "
+            "overturned the body.",
         ],
         [
             table_html(
-                shown, columns, "Overturning amplitude of every test, step protocol.", "tests.csv"
+                shown, columns, "Overturning amplitude of every test (step protocol).", "tests.csv"
             ),
             *_maps(results),
         ],
@@ -62,11 +62,13 @@ def _maps(results: Results) -> list[FigureSpec]:
         own = verdicts[verdicts["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
         sweeps = windows[windows["configuration"].isin(configurations)]
-        fallen = of_all(int(sweeps["first_upper"].notna().sum()), len(sweeps), "sweep")
-        caption = f"{name}: every amplitude that overturns it, per motion."
+        fallen = of_all(
+            int(sweeps["first_upper"].notna().sum()), len(sweeps), "analysis", "analyses"
+        )
+        caption = f"{name}: amplitudes that overturn it, by motion."
         motions = sweeps["motion"].nunique()
         if motions > MOST_ROWS:
-            caption += f" The first {MOST_ROWS} of {motions} motions."
+            caption += f" Shown are the first {MOST_ROWS} of {motions} motions; the table has all."
         alt = f"Map of the amplitudes that overturn {name}; it overturns in {fallen}."
         draw = partial(verdict_map, own, configurations)
         specs.append(FigureSpec(f"verdicts_{file_name(name)}", alt, caption, draw))

@@ -1,47 +1,47 @@
-"""A repeat of the records: what each motion overturns as strong as it was."""
+"""The motions as recorded: what each of them overturns at its own strength."""
 
 import pandas as pd
 
 from rockfrag.report.figures.as_recorded import MOST_ROWS, recorded_map
 from rockfrag.report.findings import recorded_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 
 
 def _section(results: Results) -> Section:
     recorded = results.table("as_recorded")
     names = list(dict.fromkeys(recorded["configuration"]))
     columns = [
-        *(Column("event", "Event"), Column("floor", "Floor"), Column("motion", "Motion")),
+        *(Column("event", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion")),
         Column("pga_g", "Peak [g]", 3),
         *(Column(name, name) for name in names),
     ]
     found = recorded_found(recorded)
     motions = recorded["motion"].nunique()
     caption = (
-        "Motions as recorded: filled where the object overturns, as high as it rocked (share of its critical "
-        "angle) where not; a ring where a tenth more or less may decide."
+        "Largest rotation divided by the critical angle, under each motion as recorded. "
+        "A dot marks an outcome that flips if the motion is scaled within ±10 %."
     )
     if motions > MOST_ROWS:
-        caption += f" The {MOST_ROWS} strongest of {motions} motions."
+        caption += f" Shown are the {MOST_ROWS} strongest of {motions} motions; the table has all."
     figure = FigureSpec(
         "as_recorded", f"{found.headline}. {found.text}", caption, lambda: recorded_map(recorded)
     )
     return Section(
         "as_recorded",
-        "In a repeat of the records",
-        found.said,
+        "Motions as recorded",
+        f"{found.headline}.",
         [
-            "Each motion shakes the objects once more as strongly as it was recorded, or as the building passes "
-            "it on to its floor. “Near” marks a verdict that is another for some motions a tenth weaker or "
-            "stronger: there luck decides."
+            *opened(found),
+            "Each motion shakes the objects as strongly as it was recorded, or as the building passes it on to "
+            "the floor. “Sensitive” marks an outcome that flips if the motion is scaled within ±10 %.",
         ],
         [
             figure,
             table_html(
                 _wide(recorded),
                 columns,
-                "Verdict under each motion as recorded.",
+                "Outcome under each motion as recorded.",
                 "as_recorded.csv",
             ),
         ],
@@ -49,7 +49,7 @@ def _section(results: Results) -> Section:
 
 
 def _wide(recorded: pd.DataFrame) -> pd.DataFrame:
-    """A row per motion and a column per configuration, verdicts as words."""
+    """A row per motion and a column per configuration, outcomes as words."""
     rows: dict[str, dict[str, object]] = {}
     for row in recorded.to_dict("records"):
         words = (
@@ -62,7 +62,7 @@ def _wide(recorded: pd.DataFrame) -> pd.DataFrame:
             else "stays"
         )
         if 0 < row["share_near"] < 1:
-            words += ", near"
+            words += " (sensitive)"
         about = {key: row[key] for key in ("event", "floor", "motion", "pga_g")}
         rows.setdefault(row["motion"], about)[row["configuration"]] = words
     return pd.DataFrame(list(rows.values()))

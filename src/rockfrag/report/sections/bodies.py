@@ -33,18 +33,18 @@ def _section(results: Results) -> Section:
         "Bodies",
         _message(shown, results.study.slides or results.study.vertical),
         [
-            "Rigid blocks with two edges to rock on, in the plane of the motion. The critical angle is "
-            "that between the diagonal and the upright; a block starts to rock where the acceleration "
-            "below it exceeds the one given, and falls if it turns too far beyond the angle."
+            "Rigid blocks that rock on two edges in the plane of the motion. The critical angle is the angle "
+            "between the diagonal and the vertical. A block starts to rock when the acceleration of its base "
+            "exceeds the one given, and overturns if it rotates too far beyond the critical angle."
         ],
-        [table_html(shown, _COLUMNS, "The objects, alone and on what they stand on.")],
+        [table_html(shown, _COLUMNS, "The objects, alone and on their pedestals.")],
     )
 
 
 def _message(bodies: pd.DataFrame, may_differ: bool) -> str:
     low, high = (number(value, 2) for value in (bodies["uplift_g"].min(), bodies["uplift_g"].max()))
     span = f"at {low} g" if low == high else f"between {low} and {high} g"
-    where = " on surfaces that hold and do not move vertically" if may_differ else ""
+    where = " if the surfaces neither slip nor move vertically" if may_differ else ""
     return f"{sentence(counted(len(bodies), 'configuration'))}; rocking starts {span} at the base{where}."
 
 

@@ -7,7 +7,7 @@ import pandas as pd
 from rockfrag.report.figures.building import AXIS_NAMES, floor_amplitudes
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import number, of_all, sentence
+from rockfrag.report.wording import agree, number, of_all, sentence
 from rockfrag.study.study import Study
 
 _COLUMNS = (
@@ -34,13 +34,13 @@ def _section(results: Results) -> Section:
     doubtful = int((~variants["credible"].astype(bool)).sum())
     return Section(
         "building",
-        "The building as an assumption",
+        "The assumed building",
         _message(span),
         [
-            "One assumption about the building at a time is another. Lines are geometric means of the "
-            "objects without pedestal over the motions that overturned them on every floor.",
+            "One property of the building is changed at a time. Lines are geometric means of the objects "
+            "without pedestal over the motions that overturned them on every floor.",
             f"{sentence(of_all(doubtful, len(variants), 'building'))} "
-            f"{'is' if doubtful == 1 else 'are'} shaken beyond what the model is to be believed for.",
+            f"{agree(doubtful, len(variants), 'is', 'are')} shaken beyond the validity of the building model.",
         ],
         [
             *(
@@ -48,7 +48,7 @@ def _section(results: Results) -> Section:
                     f"building_{axis}",
                     f"Mean overturning amplitude on each floor over {AXIS_NAMES.get(axis, axis)}.",
                     f"Mean overturning amplitude on each floor. {AXIS_NAMES.get(axis, axis)}; crosses "
-                    "are buildings shaken beyond what their model is to be believed for.",
+                    "mark buildings shaken beyond the validity of their model.",
                     partial(floor_amplitudes, means, axis),
                 )
                 for axis in axes
@@ -65,7 +65,7 @@ def _message(span: pd.DataFrame) -> str:
         return "No mean amplitude is known for other buildings."
     row = max(known.to_dict("records"), key=lambda one: float(one["max"] / one["min"]))
     return (
-        f"Most depends on the {str(row['axis']).lower()}: the mean amplitude on {row['floor']} lies between "
+        f"The {str(row['axis']).lower()} matters most: the mean amplitude on {row['floor']} lies between "
         f"{number(row['min'], 2)} and {number(row['max'], 2)} g over the values tried."
     )
 

@@ -7,7 +7,7 @@ from rockfrag.report.figures.amplitudes import (
 )
 from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.wording import counted
 
 _COLUMNS = (
@@ -39,9 +39,9 @@ def _section(results: Results) -> Section | None:
         tables.append(table_html(floors, _COLUMNS, "Means over the same records and objects."))
     return Section(
         "comparisons",
-        "Objects, floors and sides compared",
-        found[0].said if found else words,
-        [words] if found else [],
+        "Objects, floors and pedestals compared",
+        f"{found[0].headline}." if found else words,
+        [*opened(found[0]), words] if found else [],
         [*figures, *tables],
     )
 

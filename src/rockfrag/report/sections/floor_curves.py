@@ -2,6 +2,7 @@
 
 import pandas as pd
 
+from rockfrag.report.answer import has_one_record
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.wording import estimates, listed
@@ -17,6 +18,8 @@ _COLUMNS = (
 
 
 def _section(results: Results) -> Section | None:
+    if has_one_record(results):
+        return None
     curves = results.table("fragility_floors")
     shown = curves[(curves["measure"] == "pga_g") & curves["theta"].notna()]
     # hidden files are the workflow's own marks
@@ -29,11 +32,11 @@ def _section(results: Results) -> Section | None:
         beta_text=estimates(shown, ("beta", "beta_lower", "beta_upper")),
     )
     words = [
-        "On each floor by itself, in the peak acceleration of that floor. Curves in other measures "
+        "Each floor by itself, as a function of the peak acceleration of that floor. Curves in other measures "
         "are in the table fragility_floors."
     ]
     if files:
-        words.append(f"For other programs they stand in the folder exports: {listed(files)}.")
+        words.append(f"Files for other programs are in the folder exports: {listed(files)}.")
     level = f"{100 * results.study.fragility.confidence:g} %"
     caption = f"Curves by floor, with {level} intervals where there are any."
     message = _message(shown[shown["state"] == "overturned"])
@@ -45,10 +48,10 @@ def _section(results: Results) -> Section | None:
 def _message(fallen: pd.DataFrame) -> str:
     """Say which configuration overturns earliest, and where."""
     if fallen.empty:
-        return "There are curves of rocking only: too few overturned on a floor by itself."
+        return "Curves exist for rocking only: too few objects overturned on a single floor."
     weakest = min(fallen.to_dict("records"), key=lambda one: float(one["theta"]))
     return (
-        f"The least median of overturning is that of {weakest['configuration']} on {weakest['floor']}: "
+        f"{weakest['configuration']} on {weakest['floor']} is the most fragile: it overturns at a median of "
         f"{weakest['theta_text']} g."
     )
 

@@ -9,12 +9,16 @@ import pandas as pd
 from markupsafe import Markup
 
 from rockfrag.files import file_name
+from rockfrag.fragility.checks import REJECTION, TAILS
+from rockfrag.fragility.compared import compared_curves
 from rockfrag.fragility.curve_facts import REJECTED
+from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures.fragility import fragility_figure
-from rockfrag.report.findings import strength_found
+from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.wording import (
+    agree,
     decimals_of,
     estimates,
     listed,
@@ -26,34 +30,41 @@ from rockfrag.report.wording import (
 
 
 def _section(results: Results) -> Section:
+    if has_one_record(results):
+        return Section("fragility", "Fragility", f"{ONE_MOTION.headline}.", [ONE_MOTION.text])
     level = f"{100 * results.study.fragility.confidence:g} %"
     curves = _ordered(results)
     known = curves["theta"].notna()
     known_curves = curves[known]
-    notes = list(dict.fromkeys(note for note in curves["warnings"] if note))
     without = list(dict.fromkeys(curves.loc[~known, "configuration"]))
+    found = strength_found(known_curves, level)
+    message = f"{found.headline}." if found else "No curve rises with the motion."
     return Section(
         "fragility",
         "Fragility",
-        _message(known_curves, level),
+        message,
         [
-            "Lognormal curves: the probability to overturn is Φ(ln(IM/θ)/β). Mean probability "
-            "counts every amplitude, survival windows included; first and always overturning take "
-            f"one amplitude a motion. Intervals are {level} intervals that resample earthquakes or motions, "
-            "not amplitudes; “open” is a limit that the data do not set. A small p says that the tests "
-            "do not lie on such a curve; the last column says how many times the median would be "
-            "without the earthquake or motion on which it leans most.",
+            *(opened(found) if found else []),
+            "Lognormal curves have the form Φ(ln(IM/θ)/β). The reading “mean probability” counts every "
+            "amplitude, survival windows included; “first overturning” and “always overturning” take one "
+            f"amplitude per motion. The {level} intervals resample earthquakes or motions, not amplitudes; "
+            "“open” is a limit that the data do not set. A small p of the fit rejects the lognormal curve. "
+            "The last column of each table gives the factor on the median without the most influential "
+            "earthquake or motion.",
             *_rejected_words(known_curves),
-            *([f"There is not a curve of every reading for {listed(without)}."] if without else []),
-            *notes,
+            *([f"Some readings give no curve for {listed(without)}."] if without else []),
+            *_notes(curves),
         ],
         [*_figures(results, curves), *_tables(known_curves, level)],
     )
 
 
-def _message(curves: pd.DataFrame, level: str) -> str:
-    found = strength_found(curves, level)
-    return found.said if found else "No curve rises with the motion."
+def _notes(curves: pd.DataFrame) -> list[str]:
+    """Warnings of the curves, without those that the tables show number by number."""
+    notes = [REJECTION.sub("", str(note)).strip() for note in curves["warnings"] if note]
+    tails = any(TAILS in note for note in notes)
+    others = dict.fromkeys(rest for note in notes if (rest := note.replace(TAILS, "").strip()))
+    return [*others, *([TAILS] if tails else [])]
 
 
 def _ordered(results: Results) -> pd.DataFrame:
@@ -66,21 +77,23 @@ def _ordered(results: Results) -> pd.DataFrame:
 def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
     bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
     measure = str(results.table("fragility")["im"].iloc[0])
+    level = f"{100 * results.study.fragility.confidence:g} %"
+    same = curves[(curves["im"] == measure) & (curves["estimator"] == "mean_probability")]
+    same, nonparametric, _ = compared_curves(same)
     specs = []
     for name in results.objects:
         own = [one.name for one in results.study.configurations if one.object == name]
-        chosen = curves[
-            curves["configuration"].isin(own)
-            & (curves["im"] == measure)
-            & (curves["estimator"] == "mean_probability")
-        ]
+        chosen = same[same["configuration"].isin(own)]
         caption = (
-            f"{name}: probability of overturning over {measure}, with intervals; points are shares of "
-            "all runs in bins, the dashed line is the local share."
+            f"{name}: probability of overturning over {measure}, with {level} limits (band). Points are "
+            "fractions of all analyses in bins, with binomial limits."
         )
-        if (chosen["p_fit"] < REJECTED).any():
-            caption += " Dotted: a lognormal curve that is rejected; the line with the band assumes no form."
-
+        if nonparametric:
+            caption += (
+                " Line: nonparametric monotone curve; dotted: lognormal curve, rejected for at least one of "
+                "them. The band is wide where all earthquakes agree, because few earthquakes cannot bound a "
+                "probability closely."
+            )
         medians = "; ".join(
             f"{row['configuration']} {number(row['theta'], decimals_of(row['theta']))} {row['unit']}"
             for row in chosen.dropna(subset=["theta"]).to_dict("records")
@@ -96,10 +109,9 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
                 partial(
                     fragility_figure,
                     chosen,
-                    *(
-                        t[t["configuration"].isin(own) & (t["im"] == measure)]
-                        for t in (bands, bins)
-                    ),
+                    bands[bands["configuration"].isin(own) & (bands["im"] == measure)],
+                    bins[bins["configuration"].isin(own) & (bins["im"] == measure)],
+                    nonparametric,
                 ),
             )
         )
@@ -111,7 +123,7 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
     tables = []
     for (measure, unit, reading), rows in curves.groupby(["im", "unit", "estimator"], sort=False):
         shown = rows.assign(
-            **_rejected_texts(rows),
+            **_nonparametric_texts(rows),
             theta_text=estimates(rows, ("theta", "theta_lower", "theta_upper")),
             beta_text=estimates(rows, ("beta", "beta_lower", "beta_upper")),
             p_text=[probability(p) for p in rows["p_fit"]],
@@ -122,10 +134,12 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
             Column("theta_text", f"Median θ [{unit}]", numeric=True),
             Column("beta_text", "Dispersion β", numeric=True),
             Column("p_text", "p of the fit", numeric=True),
-            Column("lean_text", "Leans on"),
-            *_without_form(rows),
+            Column("lean_text", "Most influential"),
+            *_nonparametric_columns(rows),
         )
-        caption = f"{measure}, {str(reading).replace('_', ' ')}: with {level} intervals."
+        caption = (
+            f"{sentence(str(measure))}, {str(reading).replace('_', ' ')}, with {level} intervals."
+        )
         tables.append(table_html(shown, columns, caption))
     return tables
 
@@ -135,12 +149,12 @@ def _rejected_words(curves: pd.DataFrame) -> list[str]:
     rejected = int((curves["p_fit"] < REJECTED).sum())
     if not rejected:
         return []
-    who = sentence(of_all(rejected, len(curves), "curve"))
+    who = sentence(of_all(rejected, len(curves), "lognormal curve"))
     return [
-        f"{who} {'does' if rejected == 1 else 'do'} not describe the tests (p below {REJECTED:g}). In their place "
-        "use the never-falling share closest to the tests, which assumes no form: its median and half the "
-        "distance from its 16 to its 84 % point stand in the last columns, its points with their intervals in the "
-        "table fragility_shares."
+        f"{who} {agree(rejected, len(curves), 'is', 'are')} rejected (p below {REJECTED:g}). Where one is, all "
+        "curves of that measure and reading are compared by the nonparametric monotone curve: the columns "
+        "“nonparametric” give its median and half the distance from its 16 to its 84 % point; its points with "
+        "their intervals are in the table fragility_shares."
     ]
 
 
@@ -150,22 +164,19 @@ _TEXTS = {
 }
 
 
-def _rejected_texts(rows: pd.DataFrame) -> dict[str, list[str]]:
-    """Median and dispersion without a form, of the curves that are rejected."""
-    texts = {}
-    for name, columns in _TEXTS.items():
-        known = (rows["p_fit"] < REJECTED) & rows[columns[0]].notna()
-        known_texts = iter(estimates(rows[known], columns))
-        texts[f"{name}_share_text"] = [next(known_texts) if one else "–" for one in known]
-    return texts
+def _nonparametric_texts(rows: pd.DataFrame) -> dict[str, list[str]]:
+    """Median and dispersion of the nonparametric curves, of all rows where one lognormal curve is rejected."""
+    if not (rows["p_fit"] < REJECTED).any():
+        return {}
+    return {f"{name}_share_text": estimates(rows, columns) for name, columns in _TEXTS.items()}
 
 
-def _without_form(rows: pd.DataFrame) -> tuple[Column, ...]:
+def _nonparametric_columns(rows: pd.DataFrame) -> tuple[Column, ...]:
     if not (rows["p_fit"] < REJECTED).any():
         return ()
     return (
-        Column("theta_share_text", "Median without a form", numeric=True),
-        Column("beta_share_text", "β without a form", numeric=True),
+        Column("theta_share_text", "Nonparametric median", numeric=True),
+        Column("beta_share_text", "Nonparametric β", numeric=True),
     )
 
 

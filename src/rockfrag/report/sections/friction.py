@@ -20,9 +20,9 @@ Means = dict[tuple[float, float], dict[str, Any]]
 _COLUMNS = (
     Column("ground_text", "Friction at the ground", numeric=True),
     Column("interface_text", "between pedestal and object", numeric=True),
-    Column("here", "P/NP on the ground [95 % interval]", numeric=True),
+    Column("here", "With/without pedestal on the ground [95 % interval]", numeric=True),
     Column("above", "above it", numeric=True),
-    Column("left_out", "Pairs without a fall", 0),
+    Column("left_out", "Pairs without overturning", 0),
 )
 
 
@@ -53,18 +53,30 @@ def _section(results: Results) -> Section | None:
     )
     explanation = results.study.more.explanation
     wanted = {} if explanation is None else dict(explanation.wanted_percent)
+    words = [*_ordinary(ground, above), *_wished(ground, above, wanted)]
     return Section(
         "friction",
         "What friction does to the effect of the pedestal",
-        " ".join([*_ordinary(ground, above), *_wished(ground, above, wanted)]),
+        _first(words),
         [
-            "Bodies slide, rock and fly on surfaces with these coefficients of friction, on the ladder of the "
-            "protocol. Alone, an object stands on the ground. A pair has no ratio where nothing falls with or "
-            "without the pedestal: on a surface smoother than its width over its height nothing rocks, however "
-            "strong the motion."
+            *words[1:],
+            "Bodies slide, rock and fly on surfaces with these friction coefficients, with the amplitudes of "
+            "the protocol. Without pedestal an object stands on the ground. A pair has no ratio where nothing "
+            "overturns with or without the pedestal: a body slides and never rocks if the friction "
+            "coefficient is below its width over its height.",
         ],
-        [table_html(shown, _COLUMNS, "Ratio P/NP by friction.")],
+        [
+            table_html(
+                shown,
+                _COLUMNS,
+                "Ratio of overturning amplitudes with/without pedestal by friction.",
+            )
+        ],
     )
+
+
+def _first(words: list[str]) -> str:
+    return words[0] if words else "The ratio is known for these friction coefficients."
 
 
 def _by_pair(effects: pd.DataFrame, place: str) -> Means:
@@ -88,17 +100,19 @@ def _is_ordinary(pair: tuple[float, float]) -> bool:
 
 
 def _ordinary(ground: Means, above: Means) -> list[str]:
-    """Say how far P/NP goes with ordinary friction everywhere."""
+    """Say how far the mean ratio goes with ordinary friction everywhere."""
     words = []
     for place, table in (("on the ground", ground), ("above it", above)):
         inside = [row["ratio"] for pair, row in table.items() if _is_ordinary(pair)]
         inside = [ratio for ratio in inside if math.isfinite(ratio)]
         if inside:
-            words.append(f"from {min(inside):.2f} to {max(inside):.2f} {place}")
+            words.append(f"{min(inside):.2f} to {max(inside):.2f} {place}")
     if not words:
         return []
     low, high = ORDINARY
-    return [f"With ordinary friction, {low} to {high} everywhere, mean P/NP goes {listed(words)}."]
+    return [
+        f"Friction of ordinary surfaces ({low} to {high}) changes the mean ratio to {listed(words)}."
+    ]
 
 
 def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
@@ -122,13 +136,13 @@ def _wished(ground: Means, above: Means, wanted: dict[str, float]) -> list[str]:
         f"{percent:+g} % {places[name]}".replace("-", "−") for name, percent in wanted.items()
     )
     if not signs:
-        return [f"No pair of coefficients gives the signs asked for ({goal})."]
+        return [f"No pair of friction coefficients gives the signs asked for ({goal})."]
     words = [f"{_coefficient(one)} and {_coefficient(two)}" for one, two in signs]
     usual = sum(map(_is_ordinary, signs))
     return [
-        f"The signs asked for ({goal}) come with {len(signs)} of {len(ground)} pairs of coefficients, ground and "
-        f"interface: {listed(words[:6])}{' among them' if len(words) > 6 else ''}; their intervals leave no doubt "
-        f"in {len(clear)}, and {usual} are of ordinary surfaces."
+        f"{len(signs)} of {len(ground)} pairs of friction coefficients (ground, interface) give the signs asked "
+        f"for ({goal}): {listed(words[:6])}{' among them' if len(words) > 6 else ''}. The intervals have these "
+        f"signs too in {len(clear)}; {usual} are of ordinary surfaces."
     ]
 
 

@@ -1,4 +1,4 @@
-"""What would give the effect that a study asks for: departures from the ideal model, alone and in pairs."""
+"""Which perturbed parameters, alone and in pairs, would give the effect that a study asks for."""
 
 import math
 from collections.abc import Hashable, Mapping
@@ -15,12 +15,12 @@ SHOWN = 12
 """Rows of the table, the closest first; the others are in ``explanation/inversion.csv``."""
 
 _COLUMNS = (
-    Column("name", "Departure, at the level that comes closest"),
+    Column("name", "Perturbed parameters, at the values that come closest"),
     Column("acts_on", "Acts on"),
-    Column("ground", "P/NP on the ground", 3),
-    Column("above", "P/NP above", 3),
-    Column("together", "Simulated together: ground, above", numeric=True),
-    Column("excluded", "Excluded"),
+    Column("ground", "With/without pedestal on the ground", 3),
+    Column("above", "above it", 3),
+    Column("together", "Both simulated together: ground, above", numeric=True),
+    Column("excluded", "Ruled out"),
 )
 
 
@@ -45,18 +45,20 @@ def _section(results: Results) -> Section | None:
         together=[_together(row) for row in rows],
         excluded=["no" if row["plausible"] else "yes" for row in rows],
     )
+    first, *rest = inversion_words(readable, wanted)
     columns = [one for one in _COLUMNS if one.name not in ("ground", "above") or one.name in wanted]
-    caption = f"The closest of {len(table)} departures and pairs of them."
+    caption = f"The closest of {len(table)} mechanisms (single perturbed parameters and pairs)."
     return Section(
         "inversion",
-        "What would give the effect asked for",
-        inversion_words(readable, wanted),
+        "What would produce the effect asked for",
+        first,
         [
-            "Between the levels tried, changes of ln P/NP are taken as straight; beyond them nothing is said. "
-            "Changes of two departures are added; the closest pairs, and friction of both interfaces, were also "
-            "simulated together. "
-            "“Excluded” are departures that no level brings within the scatter between earthquakes "
-            "(Hotelling’s T² at 5 %, all departures counted): few earthquakes exclude little."
+            *rest,
+            "Between the values tried, ln(with/without pedestal) is interpolated linearly; nothing is said "
+            "beyond them. The changes of two parameters are added; the closest pairs, and friction at both "
+            "interfaces, were also simulated together. A mechanism is ruled out if no value of it lies within "
+            "the scatter between earthquakes (Hotelling’s T² at 5 %, Bonferroni over all mechanisms). Few "
+            "earthquakes rule out little.",
         ],
         [table_html(shown, columns, caption)],
     )
@@ -67,8 +69,10 @@ def _title(factor: str) -> str:
 
 
 def mechanism_name(row: Mapping[Hashable, Any]) -> str:
-    """Name of one departure or of two, with their levels, of a row of the inversion."""
-    return " with ".join(_departure(row, number) for number in (1, 2) if row[f"factor_{number}"])
+    """Name of one perturbed parameter or of two, with their values, of a row of the inversion."""
+    return " together with ".join(
+        _departure(row, number) for number in (1, 2) if row[f"factor_{number}"]
+    )
 
 
 def _departure(row: Mapping[Hashable, Any], number: int) -> str:

@@ -16,11 +16,9 @@ def _section(results: Results) -> Section | None:
     named = listed(names) if len(names) <= _MOST_NAMED else f"{names[0]}, {names[1]} and others"
     message = (
         f"{len(names)} of {counted(len(results.study.catalogue), 'record')} could not be used: {named}. "
-        "What this page says holds for the others alone."
+        "This page describes the others."
     )
-    shown = table_html(
-        table, _COLUMNS, "Records that the study names and could not use.", "left_out.csv"
-    )
+    shown = table_html(table, _COLUMNS, "Records that could not be used.", "left_out.csv")
     return Section("left-out", "Left out", message, [], [shown])
 
 

@@ -1,50 +1,60 @@
 """Which intensity measure predicts overturning best."""
 
+from collections.abc import Sequence
+
 import pandas as pd
 
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.wording import listed
+from rockfrag.stages.measure_choice import best_of
 
 _COLUMNS = (
     Column("configuration", "Configuration"),
     Column("im", "Recommended"),
     Column("beta_amplitude", "β", 3),
     Column("auc", "AUC", 3),
-    Column("chosen_share", "Best in share of bootstrap samples", 2),
+    Column("chosen_share", "Fraction of bootstrap samples in which it is best", 2),
     Column("words", "Reasons"),
 )
 
 
 def _section(results: Results) -> Section:
     choice = results.table("measure_choice")
+    asked = results.study.fragility.measures
     best = choice[choice["recommended"].astype(bool)]
-    none = [
-        name
-        for name in dict.fromkeys(choice["configuration"])
-        if name not in set(best["configuration"])
-    ]
+    named = set(best["configuration"])
+    none = [name for name in dict.fromkeys(choice["configuration"]) if name not in named]
     words = [
-        "Measures compared by how well they predict the first overturning amplitude of each "
-        "motion, over all floors."
+        "Measures are compared by how well they predict the first overturning amplitude of each motion, over "
+        f"all floors. The table recommends one of all {choice['measure'].nunique()} that were compared, whether "
+        "or not the study gives curves in it."
     ]
     if none:
         words.append(f"No measure can be recommended for {', '.join(none)}.")
     return Section(
         "measures",
-        "Which intensity measure",
-        _message(best),
+        "Recommended intensity measure",
+        _message(choice, asked),
         words,
         [table_html(best, _COLUMNS, "Recommended measure of each configuration, with reasons.")],
     )
 
 
-def _message(best: pd.DataFrame) -> str:
-    """Say which measure is recommended for which configurations."""
-    if best.empty:
+def _message(choice: pd.DataFrame, asked: Sequence[str]) -> str:
+    """Say which of the measures that a study asks for is the best, and whether another one is better."""
+    named = best_of(choice, asked)
+    if not named:
         return "No measure can be recommended."
-    names = best.groupby("im", sort=False)["configuration"].agg(list)
-    return listed([f"{measure} for {listed(own)}" for measure, own in names.items()]) + "."
+    others = choice.loc[
+        choice["recommended"].astype(bool) & ~choice["measure"].isin(list(asked)), "im"
+    ]
+    words = f"Best of the measures asked for: {listed(named)}."
+    if len(others):
+        better = list(dict.fromkeys(others))
+        verb = "predicts" if len(better) == 1 else "predict"
+        words += f" Of all compared, {listed(better)} {verb} better."
+    return words
 
 
 MEASURES = Part(("measure_choice",), _section)

@@ -20,9 +20,7 @@ _COLUMNS = (
 
 def _section(results: Results) -> Section:
     measures = results.table("measures")
-    table = table_html(
-        measures, _COLUMNS, "Intensity of every motion, before it is scaled.", "measures.csv"
-    )
+    table = table_html(measures, _COLUMNS, "Intensity of every motion as recorded.", "measures.csv")
     return Section("motions", "Motions", _floors(results), [], [table, _accelerations(results)])
 
 
@@ -30,11 +28,10 @@ def _floors(results: Results) -> str:
     study = results.study
     floors = list(dict.fromkeys(results.table("measures")["floor"]))
     if study.building is None:
-        return "The records themselves shake the objects; no building stands between."
+        return "The records shake the objects directly, without a building."
     return (
-        f"The motions of {counted(len(floors), 'floor')} ({listed(floors)}) are those of a model of a "
-        f"building ({study.building.name}) shaken by the records. What is said of floors is said of "
-        "that model."
+        f"The motions of {counted(len(floors), 'floor')} ({listed(floors)}) are computed with a building model "
+        f"({study.building.name})."
     )
 
 
@@ -42,9 +39,9 @@ def _accelerations(results: Results) -> FigureSpec:
     ground = results.ground
     shown = min(len(ground), MOST_PANELS)
     peak = max(ground[:shown], key=lambda motion: motion.pga)
-    caption = "Accelerations of the ground motions over time; the dot marks the peak."
+    caption = "Ground accelerations over time; the dot marks the peak."
     if shown < len(results.records):
-        caption += f" The first {shown} of {len(results.records)}."
+        caption += f" The first {shown} of {len(results.records)}; all are in the table."
     alt = (
         f"Ground accelerations of {counted(shown, 'record')}; the strongest, {peak.name}, peaks at "
         f"{peak.pga / GRAVITY:.2f} g."

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from rockfrag.report.figures.effects import forest_figure
 from rockfrag.report.findings import pedestal_effect, ratio_of, ratio_text
 from rockfrag.report.page import MOST_TABLE_ROWS, Column, table_html
-from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.wording import estimate, has_interval, listed, number, probability
 from rockfrag.shaketable.readings import READING
 from rockfrag.study.study import Study
@@ -21,9 +21,9 @@ EFFECT_COLUMNS = (
     Column("scope", "Scope"),
     Column("level", "Of"),
     Column("pairs", "Pairs", 0),
-    Column("at_bound", "of which at a bound", 0),
-    Column("ratio_text", "P/NP [95 % interval]", numeric=True),
-    Column("detectable_text", "Detectable", numeric=True),
+    Column("at_bound", "of which bounds", 0),
+    Column("ratio_text", "With/without pedestal [95 % interval]", numeric=True),
+    Column("detectable_text", "Detectable ratio", numeric=True),
     Column("equivalent", "Within ±10 %"),
     Column("p_text", "p (Holm)", numeric=True),
 )
@@ -32,7 +32,7 @@ EFFECT_COLUMNS = (
 _METHODS = (
     Column("reading", "Reading"),
     Column("method", "Method"),
-    Column("ratio_text", "P/NP [95 % interval]", numeric=True),
+    Column("ratio_text", "With/without pedestal [95 % interval]", numeric=True),
     Column("p_text", "p", numeric=True),
     Column("smallest_text", "Smallest possible p", numeric=True),
     Column("remark", "Remark"),
@@ -48,7 +48,9 @@ def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
     """Effects with texts to be shown: intervals and p values only where they say something."""
     rows = effects.to_dict("records")
     return effects.assign(
-        scope=effects["scope"].replace({"whole": "all pairs", "cell": "floor and object"}),
+        scope=effects["scope"].replace(
+            {"whole": "all pairs", "cell": "floor and object", "event": "earthquake"}
+        ),
         level=effects["level"].str.replace("/", ", "),
         ratio_text=[ratio_text(row) for row in rows],
         equivalent=["yes" if _width(row) and row["equivalent"] else "–" for row in rows],
@@ -83,21 +85,26 @@ def _section(results: Results) -> Section:
         parts = [
             _forest(here),
             _table(here),
-            table_html(methods, _METHODS, "All pairs by other methods and readings."),
+            table_html(
+                methods,
+                _METHODS,
+                "All pairs, by other methods and other ways to read the amplitude.",
+            ),
         ]
     notes = results.table("pedestal/notes")
     notes = notes[notes["reading"] == READING] if len(notes) else notes
     return Section(
         "pedestal",
         "Effect of the pedestal",
-        found[0].said,
+        f"{found[0].headline}.",
         [
+            *opened(found[0]),
             *(one.said for one in found[1:]),
-            "Ratio of the overturning amplitude with the pedestal (P) to that without (NP), paired "
-            "by object and motion. Motions of one earthquake are not independent, so intervals rest "
-            "on earthquakes where there are several. “Detectable” is the ratio that would be found "
-            "with 80 % power. Where all amplitudes agree to the steps tested there is no interval, "
-            "and no test.",
+            "The ratio is the overturning amplitude with the pedestal divided by that without, paired by "
+            "object and motion. Motions of one earthquake are not independent, so intervals are over "
+            "earthquakes where there are several. “Detectable” is the smallest ratio found with 80 % power. "
+            "There is neither interval nor test where all amplitudes agree to the steps tested. p values are "
+            "adjusted within each scope (Holm).",
             *dict.fromkeys(_plain(note) for note in notes["note"]),
         ],
         parts,
@@ -126,12 +133,12 @@ def _forest(effects: pd.DataFrame) -> FigureSpec:
             shown = shown[shown["scope"] != scope]
             left_out.append({"cell": "floors by object", "event": "earthquakes"}[scope])
     caption = (
-        "Amplitude with over amplitude without pedestal, with 95 % intervals where there are any; grey "
-        "is the range that counts as no effect. Step protocol."
+        "Overturning amplitude with pedestal divided by that without, with 95 % intervals; grey is ±10 %, the "
+        "range that counts as no effect. Step protocol."
     )
     if left_out:
-        caption += f" Too many to draw, and in the table only: {listed(left_out)}."
-    alt = f"Ratios P/NP by scope. All pairs: {ratio_of(effects)('whole', 'all')}."
+        caption += f" Not drawn, and in the table only: {listed(left_out)}."
+    alt = f"Ratios by scope. All pairs: {ratio_of(effects)('whole', 'all')}."
     return FigureSpec("pedestal_effect", alt, caption, lambda: forest_figure(shown))
 
 

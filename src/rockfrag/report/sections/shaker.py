@@ -3,7 +3,7 @@
 from rockfrag.report.figures.shaker import shaker_limits
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
-from rockfrag.report.wording import listed, of_all, sentence
+from rockfrag.report.wording import listed, of_all
 from rockfrag.stages.shaker import LIMITED
 from rockfrag.study.study import Study
 
@@ -28,16 +28,15 @@ def _section(results: Results) -> Section:
     new = ended[~ended["test"].isin(free["test"])]
     names = [f"{row['test']} ({row['remark']})" for row in new.to_dict("records")]
     words = (
-        f"With the shaker’s limits {of_all(len(new), len(limited), 'test')} "
-        f"{'ends' if len(new) == 1 else 'end'} before the object overturns: {listed(names)}."
+        f"The shaking table’s limits end {of_all(len(new), len(limited), 'test')} before the object overturns."
         if len(new)
-        else "The shaker’s limits end no test before the object overturns."
+        else "The shaking table’s limits end no test before the object overturns."
     )
     figure = FigureSpec(
         "shaker_limits",
-        sentence(words),
-        "Peak up to which each motion fits the shaker (bars), and the peak up to which objects "
-        "stand without a limit.",
+        words,
+        "Peak up to which the shaking table can reproduce each motion (bars; behind each its limiting quantity: "
+        "stroke, velocity, acceleration or force), and the peak that overturns each object.",
         lambda: shaker_limits(limits, results.tests),
     )
     return Section(
@@ -45,15 +44,16 @@ def _section(results: Results) -> Section:
         "What the shaking table could do",
         words,
         [
-            "The reading “step protocol shaker” carries this through the statistics of the pedestal; the "
-            "other readings are free of it, since where the table starts is an assumption.",
+            *([f"These are {listed(names)}."] if names else []),
+            "The reading “step protocol shaker” of the pedestal’s effect includes these limits. The other "
+            "readings do not, because the position at which the table starts is an assumption.",
         ],
         [
             figure,
             table_html(
                 limits,
                 _COLUMNS,
-                "What each motion asks of the shaker per g of its peak.",
+                "What each motion requires of the shaking table, per g of its peak.",
                 "shaker.csv",
             ),
         ],

@@ -5,7 +5,7 @@ import pandas as pd
 
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Part, Results, Section
+from rockfrag.report.part import Part, Results, Section, opened
 from rockfrag.stages.validity import MOST_TESTED
 
 _COLUMNS = (
@@ -14,14 +14,14 @@ _COLUMNS = (
     Column("tests", "Tests", 0),
     Column("median", "Friction needed, median", 2),
     Column("largest", "largest", 2),
-    Column("beyond", "No friction enough", 0),
+    Column("beyond", "No friction is enough", 0),
     Column("lifted", "Lifts off", 0),
 )
 
 
 _SLIDING = (
     Column("configuration", "Configuration"),
-    Column("cases", "Cases", 0),
+    Column("cases", "Analyses", 0),
     Column("slid", "Slides", 0),
     Column("flew", "Flies", 0),
     Column("largest_slip_cm", "Largest slip [cm]", 1),
@@ -36,6 +36,7 @@ def _section(results: Results) -> Section | None:
     validity = results.table("validity")
     if validity.empty:
         return None
+    found = model_allowed(validity)[0]
     rows = [
         _row(str(name), str(side), part)
         for (name, side), part in validity.groupby(["object", "pedestal"], sort=False)
@@ -43,16 +44,17 @@ def _section(results: Results) -> Section | None:
     return Section(
         "validity",
         "What the model assumes",
-        model_allowed(validity)[0].said,
+        f"{found.headline}.",
         [
+            *opened(found),
             f"Blocks neither slide nor jump in this model. The contact forces of {_which(validity)}, at its "
-            "amplitude, say what that asks of the surfaces."
+            "overturning amplitude, give the friction that this requires.",
         ],
         [
             table_html(
                 pd.DataFrame(rows),
                 _COLUMNS,
-                "Coefficient of friction needed, and tests with lift-off.",
+                "Friction coefficient needed, and tests with lift-off.",
             )
         ],
     )
@@ -64,17 +66,19 @@ def _which(validity: pd.DataFrame) -> str:
 
 
 def _what_friction_did(sliding: pd.DataFrame) -> Section:
+    found = sliding_found(sliding)
     shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
     return Section(
         "validity",
-        "What friction did",
-        sliding_found(sliding).said,
+        "What friction does",
+        f"{found.headline}.",
         [
+            *opened(found),
             "Bodies stick, slide, rock and fly with the friction of this study, at every amplitude of every "
-            "motion. Each case is simulated once more on surfaces that hold: “saved” overturns there only, and "
-            "“overturned by it” overturns with sliding and flight only."
+            "motion. Each analysis is repeated without sliding. “Saved by sliding” overturns only without "
+            "sliding, “overturned by it” only with sliding and flight.",
         ],
-        [table_html(shown, _SLIDING, "Sliding and flight in all cases.")],
+        [table_html(shown, _SLIDING, "Sliding and flight in all analyses.")],
     )
 
 

@@ -103,9 +103,9 @@ function contacts(c1, c2) {
   const side = (c) => (c > 0 ? "right" : "left");
   if (!outline.pedestal) return c2 === 0 ? "at rest" : `rocks on its ${side(c2)} edge`;
   if (c1 === 0 && c2 === 0) return "at rest";
-  if (c1 === 0) return `the object rocks on its ${side(c2)} edge, the pedestal stands (pattern 4)`;
-  if (c2 === 0) return `both rock as one on the pedestal’s ${side(c1)} edge (pattern 3)`;
-  return `the object rocks on its ${side(c2)} edge on a pedestal that rocks on its ${side(c1)} edge (pattern ${c1 === c2 ? 1 : 2})`;
+  if (c1 === 0) return `the object rocks on its ${side(c2)} edge, the pedestal stands`;
+  if (c2 === 0) return `both rock as one on the pedestal’s ${side(c1)} edge`;
+  return `the object rocks on its ${side(c2)} edge on a pedestal that rocks on its ${side(c1)} edge`;
 }
 const shown = (value, digits) => value.toFixed(digits).replace("-", "−");
 
@@ -152,6 +152,8 @@ function sized(canvas) {
   context.font = "12px system-ui, sans-serif";
   return [context, width, height];
 }
+// a canvas that is not laid out, as while a page is measured, cannot be copied
+const hasPixels = (canvas) => canvas.width > 0 && canvas.height > 0;
 function polygon(context, points, fill) {
   context.beginPath();
   for (const [x, y] of points) context.lineTo(x, y);
@@ -298,7 +300,7 @@ function drawHistory() {
   context.fillText("0", left, height - 4);
   context.fillText(`${shown(end, 1)} s`, width - 42, height - 4);
   Object.assign(drawnHistory, { width: canvas.width, height: canvas.height });
-  drawnHistory.getContext("2d").drawImage(canvas, 0, 0);
+  if (hasPixels(canvas)) drawnHistory.getContext("2d").drawImage(canvas, 0, 0);
   drawTime();
   canvas.setAttribute("aria-label",
     `Rotation over ${shown(end, 1)} s with ${peaks.length} impacts; ${response.fallen > 0 ? "it overturns" : "it stays up"}.`);
@@ -306,7 +308,7 @@ function drawHistory() {
 function drawTime() {
   if (!response) return;
   const [context, width, height] = sized(find("history"));
-  context.drawImage(drawnHistory, 0, 0, width, height);
+  if (hasPixels(drawnHistory)) context.drawImage(drawnHistory, 0, 0, width, height);
   const x = 44 + (time / Math.max(duration(), motion().dt)) * (width - 52);
   context.strokeStyle = colours.accent;
   context.beginPath();

@@ -20,8 +20,8 @@ import numpy as np
 from rockfrag.engines.kernels._numba import whole_ir
 from rockfrag.engines.kernels.jit import KNOWN, TESTED_NUMBA
 from rockfrag.engines.kernels.record import EVENT, SAMPLE
+from rockfrag.engines.steps import FREE_TIME, STEP
 from rockfrag.rocking.browser.entry import CALL, describe, march_call
-from rockfrag.rocking.inputs import FREE_TIME, STEP
 from rockfrag.units import GRAVITY
 
 MODULE = Path(__file__).with_name("march.wasm")

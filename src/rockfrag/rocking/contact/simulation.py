@@ -1,81 +1,34 @@
-"""One body, one motion, with friction, flight and vertical motion."""
+"""One body with friction, by the contact kernels alone: what tests hold beside pure rocking and other programs."""
 
-import math
-from collections.abc import Sequence
-from typing import Any
-
-import numpy as np
-import pandas as pd
-from numpy.typing import ArrayLike, NDArray
-
-from rockfrag.engines.kernels.single import GRAZING_SPEED
-from rockfrag.engines.planar.integrate import (
-    CHANGE,
-    FALLEN,
-    IMPACT,
-    PARADOX,
-    PASSING,
-    Book,
-    Shaking,
-    event_columns,
-    history_columns,
-    integrate,
-)
-from rockfrag.engines.planar.records import posed, working_memory
-from rockfrag.input_checks import positive_number
-from rockfrag.rocking.contact.friction import (
-    FrictionInput,
-    contact_record,
-    interface_frictions,
-)
-from rockfrag.rocking.inputs import (
-    STEP,
-    MotionLike,
-    checked_motion,
-    checked_start,
-    checked_vertical,
-    free_samples,
-    step_count,
-)
-from rockfrag.rocking.response import FLIGHT, Response, mode_name, pattern_name, sampled_demand
-from rockfrag.system.blocks import Block, Body
-from rockfrag.system.contact import ImpactLaw
+from rockfrag.engines.planar.history import CLOSING, contact_history
+from rockfrag.engines.response import Response
+from rockfrag.engines.steps import STEP
+from rockfrag.rocking.inputs import MotionLike, Standing, ground_motion
+from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.rocking.options import FrictionInput, StartInput, system_of
 from rockfrag.units import GRAVITY
-
-Array = NDArray[np.float64]
-Modes = tuple[tuple[int, int], ...]
-"""Contact state and sign of slip of each interface."""
-
-CLOSING = 1e-6
-"""Parting speed over √(g b) below which a contact stays closed after an impact, where the history is kept."""
-
-_KINDS = {IMPACT: "impact", PARADOX: "paradox", FALLEN: "fall", PASSING: "edge"}
-_STATES = (FLIGHT, -1, +1, 0)
-"""Contact state of an interface whose closed ends are the bits (left, right) of a number."""
 
 
 def simulate_with_friction(
-    body: Body,
-    acceleration: ArrayLike,
+    body: Standing,
+    acceleration: MotionLike,
     dt: float,
     *,
     friction: FrictionInput,
-    laws: Sequence[ImpactLaw] | None = None,
+    restitution: Restitution = None,
     vertical: MotionLike | None = None,
-    theta0: float | Sequence[float] | None = None,
-    omega0: float | Sequence[float] | None = None,
+    theta0: StartInput = None,
+    omega0: StartInput = None,
     g: float = GRAVITY,
     step: float = STEP,
     closing: float = CLOSING,
 ) -> Response:
-    """Simulate a block, or a statue on its pedestal, that may slide, rock and fly, by the contact kernels alone.
+    """Simulate what :func:`rockfrag.rocking.simulate` does, never by pure rocking.
 
     Parameters
     ----------
-    body, acceleration, dt, friction, vertical, theta0, omega0, g
+    body, acceleration, dt, friction, restitution, vertical, theta0, omega0, g
         As in :func:`rockfrag.rocking.simulate`.
-    laws
-        Laws of the impacts of each contact, from below; momentum if None.
     step
         Largest product of the frequency parameter and the step [-].
     closing
@@ -87,155 +40,6 @@ def simulate_with_friction(
     InputError
         If an argument cannot be used; the message says which and why.
     """
-    values, interval = checked_motion(acceleration, dt)
-    up = checked_vertical(vertical, values, interval)
-    positive_number("g", g, "m/s²")
-    p = contact_record(body, interface_frictions(body, friction), g, laws)
-    blocks = int(p["count"])
-    start = posed(p, checked_start(body, theta0, "theta0"), checked_start(body, omega0, "omega0"))
-    substeps, free = int(step_count(body, interval, g, step)), int(free_samples(body, interval, g))
-    shaking = Shaking(values, up, interval, 1.0, substeps, free)
-    history = np.zeros((values.size + free, history_columns(blocks)))
-    work = working_memory()
-    capacity = 4096
-    while True:
-        events = np.zeros((capacity, event_columns(blocks)))
-        done, count, fall = integrate(p, shaking, start, closing, Book(history, events), work)
-        if count <= capacity:
-            break
-        capacity = count
-    history, events = history[:done], events[:count]
-    time = np.arange(done, dtype=np.float64) * interval
-    centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).transpose(1, 0, 2, 3)
-    slips, normal, shear, alpha = (
-        history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks).transpose(1, 0, 2)
-    )
-    modes = [_modes(number, blocks) for number in history[:, -1]]
-    fallen = int(work["fallen"])
-    names = ("", "block") if isinstance(body, Block) else ("", "pedestal", "statue")
-    table = _event_table(events, blocks)
-    ground = np.zeros(done)
-    ground[: min(done, values.size)] = values[:done]
-    return Response(
-        body=body,
-        time=time,
-        ground_acceleration=ground,
-        position=centres[:, :, :2],
-        theta=centres[:, :, 2],
-        omega=speeds[:, :, 2],
-        alpha=alpha,
-        state=np.array([[state for state, _ in mode] for mode in modes]),
-        slides=np.array([[slides for _, slides in mode] for mode in modes]),
-        slip=slips,
-        events=table,
-        overturned=fallen > 0,
-        overturned_body=names[fallen],
-        overturning_time=float(fall),
-        energy=_energy_table(p, time, history, events),
-        normal_force=normal,
-        friction_force=shear,
-        impacts=int(work["impacts"]),
-        grazings=_grazings(table),
-        given_way=int(work["given_way"]),
-        friction_demand=sampled_demand(normal, shear),
-        least_normal_force=np.asarray(normal.min(axis=0)),
-        lost_contact=math.nan,
-        paradoxes=int(work["paradoxes"]),
-        forced=int(work["forced"]),
-        closest_approach=float("nan"),
-    )
-
-
-def _modes(number: float, blocks: int) -> Modes:
-    """Contact states and signs of slip in the number that the kernels keep."""
-    digits = [(int(number) >> (4 * k)) & 15 for k in range(blocks)]
-    return tuple((_STATES[digit & 3], (digit >> 2) - 1) for digit in digits)
-
-
-def _event_table(events: Array, blocks: int) -> pd.DataFrame:
-    rows: list[dict[str, Any]] = []
-    for event in events:
-        before, after = _modes(event[2], blocks), _modes(event[3], blocks)
-        slips, theta, old, new = event[6:].reshape(4, blocks).tolist()
-        rows.append(
-            {
-                "time": event[0],
-                "kind": _KINDS.get(int(event[1])) or _kind_of_change(before, after),
-                "from": _pattern(before),
-                "to": _pattern(after),
-                "omega_before": tuple(old),
-                "omega_after": tuple(new),
-                "theta": tuple(theta),
-                "energy_before": event[4],
-                "energy_after": event[5],
-                "modes": tuple(mode_name(*mode) for mode in after),
-                "slip": tuple(slips),
-            }
-        )
-    columns = [
-        "time", "kind", "from", "to", "omega_before", "omega_after", "theta",
-        "energy_before", "energy_after", "modes", "slip",
-    ]  # fmt: skip
-    return pd.DataFrame(rows, columns=columns)
-
-
-def _kind_of_change(before: Modes, after: Modes) -> str:
-    """Name of an event without an impact: what opens first, then what slides."""
-    pairs = list(zip(before, after, strict=True))
-    assert CHANGE not in _KINDS
-    if any(new[0] == FLIGHT and old[0] != FLIGHT for old, new in pairs):
-        return "flight"
-    if any(new[0] != 0 and old[0] == 0 for old, new in pairs):
-        return "opening"
-    if any(new[0] != old[0] for old, new in pairs):
-        return "closing"
-    return "slip" if any(new[1] not in (0, old[1]) for old, new in pairs) else "stick"
-
-
-def _pattern(modes: Modes) -> str:
-    states = [state for state, _ in modes]
-    return pattern_name(states[0] if len(states) > 1 else 0, states[-1])
-
-
-def _grazings(events: pd.DataFrame) -> int:
-    """Impacts that met with less than the speed of grazing."""
-    speeds = [np.abs(np.diff([0.0, *omega])).max() for omega in events["omega_before"]]
-    return int(((events["kind"] == "impact") & (np.array(speeds) < GRAZING_SPEED)).sum())
-
-
-def _energy_table(p: np.void, time: Array, history: Array, events: Array) -> pd.DataFrame:
-    """Ledger of energy by cause over time [J]."""
-    blocks = int(p["count"])
-    coordinates = slice(0, 3 * blocks)
-    inertia = 1.0 / p["inverse"][coordinates]
-    kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
-    potential = float(p["g"]) * (p["mass"][:blocks] * history[:, 1 : 3 * blocks : 3]).sum(axis=1)
-    struck = np.isin(events[:, 1], (IMPACT, PARADOX))
-    loss = np.where(struck, events[:, 4] - events[:, 5], 0.0)
-    # an impact closes the ground if the pedestal's contact changed, the interface otherwise
-    by_ground = np.array([_meets_ground(event, blocks) for event in events], dtype=bool)
-    at = np.searchsorted(time, events[:, 0] - 1e-12 * max(1.0, time[-1]))
-    lost = np.zeros((2, time.size + 1))
-    for row, mine in enumerate((by_ground, ~by_ground)):
-        np.add.at(lost[row], at, loss * mine)
-    ground, interface = np.cumsum(lost, axis=1)[:, : time.size]
-    work, rubbed = history[:, -4], history[:, -3]
-    start = kinetic[0] + potential[0] + ground[0] + interface[0]
-    return pd.DataFrame(
-        {
-            "time": time,
-            "kinetic": kinetic,
-            "potential": potential,
-            "input": work,
-            "lost_ground": ground,
-            "lost_interface": interface,
-            "lost_friction": rubbed,
-            "residual": kinetic + potential + ground + interface + rubbed - work - start,
-        }
-    )
-
-
-def _meets_ground(event: Array, blocks: int) -> bool:
-    """Whether the pedestal's contact changes, as it comes down."""
-    before, after = (_modes(number, blocks)[0][0] for number in event[2:4])
-    return blocks == 2 and before not in (0, after)
+    system = system_of(body, friction, restitution, theta0, omega0)
+    motion = ground_motion(acceleration, dt, vertical)
+    return contact_history(system, motion, g, step, closing)[0]

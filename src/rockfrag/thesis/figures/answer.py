@@ -15,8 +15,13 @@ REPORTED_SIDE = {GROUND: 1, THIRD: -1, FIFTH: -1}
 """Whether the thesis reports a ratio above (1) or below one (-1) on a floor (sections 4.3 and 4.4)."""
 
 
+def has_thesis_floors(effects: pd.DataFrame) -> bool:
+    """Whether effects have a floor of which the thesis reports a direction."""
+    return bool(set(effects.loc[effects["scope"] == "floor", "level"]) & set(REPORTED_SIDE))
+
+
 def ratios_figure(effects: pd.DataFrame) -> Figure:
-    """Draw the ratio P/NP over all pairs and on each floor.
+    """Draw the ratio with over without pedestal, of all pairs and on each floor.
 
     Parameters
     ----------
@@ -24,7 +29,7 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
         Rows of one reading of :func:`rockfrag.pedestal.effects_table`.
     """
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
-    rows = [("all floors", row) for row in whole.to_dict("records")]
+    rows = [("all pairs", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 1.0 + 0.33 * len(rows))
@@ -55,7 +60,10 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
         ratio_axis(axes, drawn)
         handles = [
             Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated"),
-            Line2D([], [], color=ORANGE, lw=1.8, marker=">", label="the thesis reports"),
         ]
+        if has_thesis_floors(effects):
+            handles.append(
+                Line2D([], [], color=ORANGE, lw=1.8, marker=">", label="direction in the thesis")
+            )
         figure.legend(handles=handles, loc="outside upper center", ncols=2, handlelength=1.6)
         return figure

@@ -6,7 +6,7 @@ from rockfrag.report.figures.amplitudes import (
     slenderness_figure,
 )
 from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
-from rockfrag.report.part import FigureSpec, Part, Results, Section
+from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
 from rockfrag.report.sections.comparisons import COMPARISONS
 
 
@@ -26,15 +26,16 @@ def _section(results: Results) -> Section | None:
     return Section(
         "counterparts",
         "Counterparts of the thesis’s figures",
-        found[0].said if found else words,
+        f"{found[0].headline}." if found else words,
         [
+            *(opened(found[0]) if found else []),
             f"{words} The thesis draws the same amplitudes again for each floor, tower and earthquake; here each "
-            "question is drawn once, and the accelerations of its figure 3.4 stand under Motions."
+            "comparison is drawn once. The accelerations of its figure 3.4 are in the chapter Motions.",
         ],
         [
             FigureSpec(
                 "figure_4_1",
-                f"Amplitude falls or rises with slenderness. {found[0].said if found else words}",
+                f"Amplitude against slenderness. {found[0].said if found else words}",
                 "Counterpart of figures 4.1, 4.2 and 4.4: overturning amplitude against slenderness, with means.",
                 lambda: slenderness_figure(tests, means, slenderness),
             ),

@@ -1,11 +1,13 @@
 """What stands first on the page of a study that is compared with the thesis."""
 
-from rockfrag.report.answer import could_overturn, questions, rests_on, study_answer
+from rockfrag.report.answer import could_change, questions, rests_on, study_answer
+from rockfrag.report.findings import FRICTION
 from rockfrag.report.part import Answer, FigureSpec, Results
 from rockfrag.report.sections.explanation import asks_explanation
 from rockfrag.report.sections.inversion import asks_inversion
+from rockfrag.report.wording import agree, of_all
 from rockfrag.shaketable.readings import READING
-from rockfrag.thesis.figures.answer import ratios_figure
+from rockfrag.thesis.figures.answer import has_thesis_floors, ratios_figure
 from rockfrag.thesis.first_page import first_page
 
 
@@ -22,17 +24,29 @@ def thesis_answer(results: Results) -> Answer:
     found = first_page(effects, results.table("claims"), explanation, inversion, wanted)
     here = effects[effects["reading"] == READING]
     return Answer(
-        asked="Does a pedestal make a statue overturn later on the ground and earlier on upper floors, as the "
-        "thesis reports of its shake-table tests, if its towers only rock?",
+        asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
         figure=FigureSpec(
             "answer",
             f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
-            "Overturning amplitude with over that without pedestal, with 95 % intervals over earthquakes; grey is "
-            "±10 %. Arrows show on which side of 1 the thesis reports each floor.",
+            "Ratio with/without pedestal, 95 % intervals; grey: ±10 %."
+            + (" Arrows: thesis." if has_thesis_floors(here) else ""),
             lambda: ratios_figure(here),
         ),
+        advice=_advice(results),
         rests_on=rests_on(results),
-        could_overturn=could_overturn(results),
+        could_change=could_change(results),
         questions=questions(results),
     )
+
+
+def _advice(results: Results) -> list[str]:
+    """What to measure: the friction that rocking without sliding needs, where that is much."""
+    validity = results.table("validity")
+    if results.study.slides or validity.empty:
+        return []
+    with_pedestal = validity[validity["pedestal"] == "P"]
+    beyond = int((~(with_pedestal["friction_demand"].astype(float) <= FRICTION)).sum())
+    who = of_all(beyond, len(with_pedestal), "test with", "tests with")
+    verb = agree(beyond, len(with_pedestal), "needs", "need")
+    return [f"Measure the friction under the statue: {who} pedestal {verb} more than {FRICTION:g}."]

@@ -25,11 +25,11 @@ def _section(results: Results) -> Section:
     rows = margins[margins["reading"] == READING]
     order = rows[(rows["axis"] == "first_period_s") & (rows["statement"] == "order")]
     holds = [f"{value:g} s" for value in order.loc[order["margin"] > 0.02, "value"]]
-    words = "By the step protocol the thesis’s order of the floors, ground highest and 3rd lowest, "
+    words = "The thesis’s order of the floors, ground highest and 3rd lowest, "
     words += (
-        f"appears by more than 2 % at the first periods {', '.join(holds)} of {len(order)} tried."
+        f"appears by more than 2 % at {len(holds)} of {len(order)} first periods tried ({', '.join(holds)})."
         if holds
-        else "appears at none of the first periods tried by more than 2 %."
+        else f"does not appear by more than 2 % at any of {len(order)} first periods tried."
     )
     varied = rows[rows["axis"] != "reference"]
     span = varied.groupby(["axis", "statement"], sort=False)["margin"].agg(["min", "max"])
@@ -72,7 +72,7 @@ def _statements(results: Results, axis: str) -> FigureSpec:
     return FigureSpec(
         f"sensitivity_statements_{axis}",
         f"Margins of the thesis’s statements on floors over {AXIS_NAMES[axis]}.",
-        "By how much each statement on floors holds (positive) or fails; dots: by more than 2 %. "
+        "Margin by which each statement on floors is true (positive) or false; dots: true by more than 2 %. "
         f"{AXIS_NAMES[axis]}.",
         partial(floor_statements, margins, axis, READING),
     )

@@ -26,9 +26,11 @@ def _section(results: Results) -> Section:
         "The thesis’s printed tables",
         _message(results),
         [
+            *_differing(results),
+            "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s². "
             "GF is the ground motion itself; F3 and F5 are floors of an assumed building, which the "
-            "thesis does not describe. Below each value stands the printed one, with ✓ where they agree "
-            "to its digits."
+            "thesis does not describe. The printed value is below each computed one, with ✓ where they agree "
+            "to its digits.",
         ],
         [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()],
     )
@@ -82,17 +84,33 @@ def _compared(row: Mapping[str, Any] | None) -> Markup:
     )
 
 
-def _message(results: Results) -> str:
+def _known(results: Results) -> pd.DataFrame:
     comparison = pd.concat([results.table(name) for name in _CAPTIONS], ignore_index=True)
-    known = comparison[comparison["agrees"].notna()]
+    return comparison[comparison["agrees"].notna()]
+
+
+def _reproduced(right: int, total: int) -> str:
+    if right == total:
+        return f"All {total} printed values of Tables 3.1, 3.3 and 4.1 are"
+    return f"{right} of {total} printed values of Tables 3.1, 3.3 and 4.1 are"
+
+
+def _differing(results: Results) -> list[str]:
+    known = _known(results)
+    wrong = known[~known["agrees"].astype(bool)]
+    return (
+        [f"Different: {listed(list(wrong['name'] + ' ' + wrong['quantity']))}."]
+        if len(wrong)
+        else []
+    )
+
+
+def _message(results: Results) -> str:
+    known = _known(results)
     if known.empty:
         return "None of these values is printed in the thesis."
     right = int(known["agrees"].sum())
-    text = "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s²."
-    wrong = known[~known["agrees"].astype(bool)]
-    if len(wrong):
-        text += f" Different: {listed(list(wrong['name'] + ' ' + wrong['quantity']))}."
-    return f"{right} of {len(known)} printed values of Tables 3.1, 3.3 and 4.1 come out. {text}"
+    return f"{_reproduced(right, len(known))} reproduced."
 
 
 PRINTED = Part(tuple(_CAPTIONS), _section)

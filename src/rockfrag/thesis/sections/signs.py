@@ -1,10 +1,10 @@
-"""Which departures from the ideal model give the signs that the thesis reports on its floors."""
+"""Which perturbed parameters give the signs that the thesis reports on its floors."""
 
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.explanation import asks_explanation
-from rockfrag.report.wording import listed, number, of_all, sentence
-from rockfrag.thesis.pattern import departures_by_floor, expected_by_chance
+from rockfrag.report.wording import agree, listed, of_all, sentence
+from rockfrag.thesis.pattern import departures_by_floor
 from rockfrag.thesis.statements.floors import FLOORS
 
 
@@ -12,24 +12,27 @@ def _section(results: Results) -> Section:
     table = departures_by_floor(results.table("explanation/effects"))
     named = list(table.loc[table["signs"], "name"])
     clear = list(table.loc[table["beyond_chance"], "name"])
-    words = (
-        f"{sentence(of_all(len(named), len(table), 'departure'))} give mean ratios with the signs that the "
-        "thesis reports, above one on the ground floor and below one on the others"
-        + (f" ({listed(named)})" if named else "")
-        + f"; of so many without any effect {number(expected_by_chance(len(table)), 1)} would by chance. "
+    verb = agree(len(named), len(table), "gives", "give")
+    message = (
+        f"{sentence(of_all(len(named), len(table), 'perturbation'))} {verb} mean ratios with the signs "
+        f"of the thesis."
     )
-    words += (
-        f"With intervals on those sides: {listed(clear)}."
+    words = [
+        "The thesis reports a ratio above 1 on the ground floor and below 1 on the other two. The "
+        "perturbations share the same pairs of tests, and many leave the ratio at exactly 1, so no chance "
+        "level is given for them.",
+        f"The mean ratios have these signs for {listed(named)}." if named else "",
+        f"The intervals have them for {listed(clear)}."
         if clear
-        else "None has its intervals on those sides."
-    )
+        else "No perturbation has its intervals on these sides.",
+    ]
     shown = table.assign(
         name=table["name"].map(sentence),
         signs=table["signs"].map({True: "yes", False: "no"}),
         beyond_chance=table["beyond_chance"].map({True: "yes", False: "no"}),
     )
-    columns = [Column("name", "Departure from the ideal model")]
-    columns += [Column(floor, f"P/NP on {floor}", 3) for floor in FLOORS]
+    columns = [Column("name", "Perturbed parameter")]
+    columns += [Column(floor, f"With/without pedestal on {floor}", 3) for floor in FLOORS]
     columns += [
         Column("signs", "Means have the signs"),
         Column("beyond_chance", "Intervals have them"),
@@ -37,9 +40,9 @@ def _section(results: Results) -> Section:
     return Section(
         "signs",
         "What would give the thesis’s signs",
-        words,
-        [],
-        [table_html(shown, columns, "Mean ratio P/NP by floor.")],
+        message,
+        [one for one in words if one],
+        [table_html(shown, columns, "Mean ratio of amplitudes with/without pedestal by floor.")],
     )
 
 

@@ -1,4 +1,4 @@
-"""The thesis's statements with their verdicts, and where it contradicts itself."""
+"""The thesis's statements with what was found of each, and where it contradicts itself."""
 
 import pandas as pd
 
@@ -7,6 +7,7 @@ from rockfrag.report.part import Part, Results, Section
 from rockfrag.report.sections.pedestal import has_pairs
 from rockfrag.report.wording import listed, number
 from rockfrag.thesis.ledger_html import ledger_html, verdicts_by_kind
+from rockfrag.thesis.statements.statement import EXCLUDED
 
 _CONTRADICTIONS = (
     Column("statements", "Statements"),
@@ -19,7 +20,7 @@ _CONTRADICTIONS = (
 _KINDS = (
     Column("kind", "Kind of statement"),
     Column("statements", "Statements"),
-    Column("verdicts", "Verdicts"),
+    Column("verdicts", "Found"),
 )
 
 
@@ -31,7 +32,7 @@ def _section(results: Results) -> Section:
         verdicts_in_words(claims),
         [words_on_verdicts(claims)],
         [
-            table_html(verdicts_by_kind(claims), _KINDS, "Verdicts on the thesis’s statements."),
+            table_html(verdicts_by_kind(claims), _KINDS, "What was found, by kind of statement."),
             ledger_html(claims),
             table_html(contradictions, _CONTRADICTIONS, "Where the thesis contradicts itself."),
         ],
@@ -39,22 +40,33 @@ def _section(results: Results) -> Section:
 
 
 def words_on_verdicts(claims: pd.DataFrame) -> str:
-    """Say what the verdicts mean, and how many may be wrong by chance."""
+    """Say what the words mean, and how many may be wrong by chance."""
     inferred = int(claims["p"].notna().sum())
     return (
         "A simulation can reproduce what a laboratory reports or not; only measured tests can confirm or "
-        "reject it. Statements about the model’s equations hold or do not, for the specimens or everywhere. "
-        "Each rule of inference reads the 95 % interval that is printed and errs in at most 2.5 % of tables "
-        f"each way, so that of the {inferred} statements inferred here up to {number(0.05 * inferred, 1)} may "
-        "be wrong by chance; the second p value of each counts them all (Holm)."
+        "reject it. Statements about the model’s equations are confirmed or refuted, for the specimens or in "
+        "general. Each rule of inference uses the printed 95 % interval and errs in at most 2.5 % of tables "
+        f"each way, so up to {number(0.05 * inferred, 1)} of the {inferred} statements inferred here may be "
+        "wrong by chance; the second p value of each is adjusted for all of them (Holm). Where the sign of a "
+        "change is not shown but a change of 10 % or more is excluded, just that is said: 10 % is the smallest "
+        "mean change that the thesis’s own tests could detect (80 % power)."
     )
 
 
 def verdicts_in_words(claims: pd.DataFrame) -> str:
-    """Say how many statements are tested, and how many have each verdict."""
+    """Say how many statements are tested, and how many have each outcome."""
     counts = claims["verdict"].value_counts()
-    each = listed([f"{count} {verdict}" for verdict, count in counts.items()])
+    each = listed(
+        [f"{count} {SHORT.get(str(verdict), verdict)}" for verdict, count in counts.items()]
+    )
     return f"{claims['number'].nunique()} statements of the thesis are tested: {each}."
+
+
+SHORT = {
+    EXCLUDED: "undecided but below 10 %",
+    "confirmed for the specimens, with exceptions elsewhere": "confirmed with exceptions",
+}
+"""Outcomes in a sentence that counts them."""
 
 
 STATEMENTS = Part(("claims", "contradictions"), _section, asked=has_pairs)

@@ -16,9 +16,9 @@ from rockfrag.thesis.statements.statement import Finding, Kind, Result, Undecida
 from rockfrag.thesis.statements.verdicts import LEVEL, p_nonzero
 
 EVENTS = FRIULI, KOBE, LOMA_PRIETA, NORTHRIDGE = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
-OF_ONE_EVENT = "pairs of tests, means by motion of the event"
+OF_ONE_EVENT = "pairs of tests, means by motion of the earthquake"
 FLOOR_BY_FLOOR = "pairs of tests, floor by floor"
-INFERENCE = "about motions of the same events on the tested floors"
+INFERENCE = "about motions of the same earthquakes on the tested floors"
 
 
 @order_statement(
@@ -27,14 +27,14 @@ INFERENCE = "about motions of the same events on the tested floors"
     "4.4, Fig. 4.7",
     Kind.DESCRIPTION,
     evidence=OF_ONE_EVENT,
-    rule="an increase in each of the three events",
+    rule="an increase in each of the three earthquakes",
     several=True,
     unit="motion",
     more=lambda _: INFERENCE,
 )
 def c45(tests: Evidence) -> Parts:
     """Three increases."""
-    return {f"P/NP in {name}": Part(tests.effect(event=name), Size.PLAIN) for name in EVENTS[:3]}
+    return {f"P/NP in {name}": Part(tests.effect(event=name)) for name in EVENTS[:3]}
 
 
 @order_statement(
@@ -49,7 +49,7 @@ def c45(tests: Evidence) -> Parts:
 )
 def c46(tests: Evidence) -> Parts:
     """One decrease."""
-    return {"NP/P in Northridge": Part(tests.effect(event=NORTHRIDGE).times(-1), Size.PLAIN)}
+    return {"NP/P in Northridge": Part(tests.effect(event=NORTHRIDGE).times(-1))}
 
 
 def _lead(tests: Evidence, top: str, others: tuple[str, ...], size: Size) -> Parts:
@@ -66,7 +66,7 @@ def _lead(tests: Evidence, top: str, others: tuple[str, ...], size: Size) -> Par
     "4.4, Fig. 4.7",
     Kind.DESCRIPTION,
     evidence=FLOOR_BY_FLOOR,
-    rule="P/NP in Loma Prieta exceeds that in each other event, floor by floor",
+    rule="P/NP in Loma Prieta exceeds that in each other earthquake, floor by floor",
     several=True,
     unit="floor",
     more=lambda _: f"{INFERENCE}; C48 says otherwise",
@@ -125,12 +125,12 @@ def _motions_with_measures(tests: Evidence) -> pd.DataFrame:
     measures = tests.measures.drop_duplicates("name").set_index("name")[wanted]
     joined = effects.join(measures, on="motion", how="inner")
     if joined["event"].nunique() < 3:
-        raise Undecidable("motions of fewer than three events have measures by their name")
+        raise Undecidable("motions of fewer than three earthquakes have measures by their name")
     return joined
 
 
 def rank_correlation(joined: pd.DataFrame, measure: str) -> Estimate:
-    """Spearman's correlation of the motions' d with a measure, in Fisher's z, by jackknife over events.
+    """Spearman's correlation of the motions' d with a measure, in Fisher's z, by jackknife over earthquakes.
 
     Motions of one event are not independent, so whole events are left out.
     """
@@ -152,7 +152,7 @@ def rank_correlation(joined: pd.DataFrame, measure: str) -> Estimate:
     rule="Spearman's correlation with each: true if |ρ| = "
     f"{COULD_BE_FOUND:.2f}, what {MOTIONS} independent motions could show, is excluded for all; false if "
     "one is not zero",
-    error_rate="about 2.5 % each way (jackknife over events; Bonferroni over the measures to be false)",
+    error_rate="about 2.5 % each way (jackknife over earthquakes; Bonferroni over the measures to be false)",
 )
 def c52(tests: Evidence) -> Result:
     """Rank correlation of the motions' effects with what the motions are like."""
@@ -182,7 +182,7 @@ def c52(tests: Evidence) -> Result:
     one = found[strongest]
     return Result(
         finding,
-        f"{n} motions of {joined['event'].nunique()} events: "
+        f"{n} motions of {joined['event'].nunique()} earthquakes: "
         + ", ".join(
             f"{name} ρ = {math.tanh(each.mean):.2f} [{math.tanh(each.lower):.2f}, "
             f"{math.tanh(each.upper):.2f}]"
@@ -192,5 +192,8 @@ def c52(tests: Evidence) -> Result:
         math.tanh(one.lower),
         math.tanh(one.upper),
         p=min(1.0, 2 * min(p_some, p_none)),
+        p_of="no correlation"
+        if p_some <= p_none
+        else f"a correlation of {COULD_BE_FOUND:.2f} or more",
         remark=f"the figure is that of the {strongest}",
     )

@@ -13,6 +13,7 @@ from rockfrag.pedestal.permutation import sign_flip_test
 from rockfrag.thesis.statements.evidence import Evidence
 from rockfrag.thesis.statements.orders import (
     AMPLITUDES,
+    ONE_RULE,
     PAIRS,
     Part,
     Parts,
@@ -54,7 +55,7 @@ def c34(tests: Evidence) -> Parts:
 )
 def c35(tests: Evidence) -> Parts:
     """The ground floor's increase."""
-    return {"P/NP on GF": Part(tests.effect(floor=GROUND), Size.PLAIN)}
+    return {"P/NP on GF": Part(tests.effect(floor=GROUND))}
 
 
 @order_statement(
@@ -124,7 +125,7 @@ def _first_tower(tests: Evidence, floor: str, sign: int) -> Parts:
     "on the ground floor T1's increase is much greater than T2's and T3's",
     "4.3, Fig. 4.6b",
     Kind.DESCRIPTION,
-    rule="an increase of T1 on GF, and more than that of T2 and of T3, event by event",
+    rule="an increase of T1 on GF, and more than that of T2 and of T3, earthquake by earthquake",
     several=True,
 )
 def c39(tests: Evidence) -> Parts:
@@ -137,7 +138,7 @@ def c39(tests: Evidence) -> Parts:
     "on the 5th floor T1's decrease is much greater than T2's and T3's",
     "4.3, Fig. 4.6b",
     Kind.DESCRIPTION,
-    rule="a decrease of T1 on F5, and more than that of T2 and of T3, event by event",
+    rule="a decrease of T1 on F5, and more than that of T2 and of T3, earthquake by earthquake",
     several=True,
 )
 def c40(tests: Evidence) -> Parts:
@@ -150,7 +151,7 @@ def c40(tests: Evidence) -> Parts:
     "the relative change is largest on the ground floor",
     "4.4, Fig. 4.5",
     Kind.DESCRIPTION,
-    rule="the change on GF exceeds that on F3 and F5 and the opposite of each, event by event",
+    rule="the change on GF exceeds that on F3 and F5 and the opposite of each, earthquake by earthquake",
     error_rate="at most 5 % to be true (GF's change may have either sign), 2.5 % to be false",
 )
 def c41(tests: Evidence) -> Parts:
@@ -184,7 +185,7 @@ def _leading_floor(tests: Evidence, side: str, floor: str) -> Parts:
     "4.4, Fig. 4.6",
     Kind.DESCRIPTION,
     evidence=AMPLITUDES,
-    rule="ln a of P on F5 exceeds that on GF and on F3, event by event",
+    rule="ln a of P on F5 exceeds that on GF and on F3, earthquake by earthquake",
     several=True,
     more=lambda tests: _means(tests, "P"),
 )
@@ -199,7 +200,7 @@ def c42(tests: Evidence) -> Parts:
     "4.4, Fig. 4.6",
     Kind.DESCRIPTION,
     evidence=AMPLITUDES,
-    rule="ln a of NP on GF exceeds that on F3 and on F5, event by event",
+    rule="ln a of NP on GF exceeds that on F3 and on F5, earthquake by earthquake",
     several=True,
     more=lambda tests: _means(tests, "NP"),
 )
@@ -214,7 +215,7 @@ def c43(tests: Evidence) -> Parts:
     "4.4",
     Kind.DESCRIPTION,
     evidence=AMPLITUDES,
-    rule="ln a on GF and on F5 exceeds that on F3 for every tower and side, event by event",
+    rule="ln a on GF and on F5 exceeds that on F3 for every tower and side, earthquake by earthquake",
     several=True,
 )
 def c44(tests: Evidence) -> Parts:
@@ -235,8 +236,8 @@ def c44(tests: Evidence) -> Parts:
     "5",
     Kind.INFERENCE,
     evidence=PAIRS,
-    rule="a decrease on F3 and F5 together; to be true, more pairs decrease than increase by more than "
-    "their steps",
+    rule="a decrease on F3 and F5 together, with more pairs decreasing than increasing by more than their "
+    f"steps. {ONE_RULE}",
     error_rate=ONE_INTERVAL,
 )
 def c50(tests: Evidence) -> Result:
@@ -247,7 +248,6 @@ def c50(tests: Evidence) -> Result:
     down, up = int((rows["d"] < -steps).sum()), int((rows["d"] > steps).sum())
     found = order(
         {"NP/P on F3 and F5": Part(mean_effect(rows).times(-1))},
-        tests.basis,
         more=f"of {len(rows)} pairs {down} decrease and {up} increase by more than their steps",
     )
     if found.finding is Finding.FOR and down <= up:
@@ -261,7 +261,7 @@ def c50(tests: Evidence) -> Result:
     "5",
     Kind.INFERENCE,
     evidence=PAIRS,
-    rule=f"an increase on GF; false also if one of {SEEN:.0%} or more is excluded",
+    rule=f"an increase on GF. {ONE_RULE}",
     error_rate=ONE_INTERVAL,
 )
 def c51(tests: Evidence) -> Result:
@@ -270,9 +270,8 @@ def c51(tests: Evidence) -> Result:
     flips = sign_flip_test(unit_means(rows, "event"))
     return order(
         {"P/NP on GF": Part(mean_effect(rows), Size.NOTICEABLE)},
-        tests.basis,
-        more=f"the thesis made no test; by sign flips p = {flips.p:.3f}, of which {flips.units} events "
-        f"give none below {flips.smallest_p:.3g}",
+        more=f"the thesis made no test; sign flips give p = {flips.p:.3f}, and {flips.units} earthquakes "
+        f"cannot give less than {flips.smallest_p:.3g}",
     )
 
 

@@ -51,6 +51,7 @@ COLUMNS = (
     "upper",
     "unit",
     "p",
+    "p_of",
     "p_holm",
     "basis",
     "remark",
@@ -135,9 +136,7 @@ def _row(one: Statement, evidence: Setting | Evidence, basis: str) -> Row:
     try:
         result = one.test(evidence)
     except (Undecidable, TooFewUnitsError) as reason:
-        result = Result(
-            Finding.OPEN, "no figure", remark=f"not decidable with these data: {reason}"
-        )
+        result = Result(Finding.OPEN, "no figure", remark=f"these data cannot decide it: {reason}")
     if one.kind is Kind.IDENTITY:
         basis = "computed"
     return Row(one, result, result.basis or basis)
@@ -162,6 +161,7 @@ def _table(rows: Iterable[Row]) -> pd.DataFrame:
                 "upper": row.result.upper,
                 "unit": row.result.unit,
                 "p": row.result.p,
+                "p_of": row.result.p_of,
                 "p_holm": math.nan,
                 "basis": row.basis,
                 "remark": row.result.remark,

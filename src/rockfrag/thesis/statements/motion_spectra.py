@@ -69,5 +69,5 @@ class MotionSpectra:
                 threads=self.threads,
             )
             shape = (self.alpha.size, SIZES.size, len(self.motions))
-            self._rotation[factor] = np.moveaxis(found.peak_rotation.reshape(shape), 2, 1)
+            self._rotation[factor] = np.moveaxis(found.of_top("peak_rotation").reshape(shape), 2, 1)
         return self._rotation[factor]

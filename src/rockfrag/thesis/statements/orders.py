@@ -27,14 +27,12 @@ AMPLITUDES = "overturning amplitudes, means by earthquake"
 
 
 class Size(Enum):
-    """How large a claimed change is meant to be, which decides what excludes it."""
+    """How large a claimed change is meant to be."""
 
     SLIGHT = "slight"
-    """Slight, or a lead of unstated size: only the opposite sign excludes it."""
-    PLAIN = "plain"
-    """A change of unstated size: the opposite sign, or in a model any change that could be seen."""
+    """Slight, or of unstated size: only the opposite sign excludes it."""
     NOTICEABLE = "noticeable"
-    """Noticeable, significant, much greater: excluded together with any change that could be seen."""
+    """Noticeable, significant, much greater: a change of `SEEN` or more."""
 
 
 @dataclass(frozen=True)
@@ -56,25 +54,29 @@ class Part:
         """One-sided p value of the hypothesis that the difference is not positive; 1 if unknown."""
         return known(self.estimate.p_above(0.0))
 
-    def p_against(self, basis: str) -> float:
-        """One-sided p value of the hypothesis that the difference is as the statement says."""
-        visible = self.size is Size.NOTICEABLE or (self.size is Size.PLAIN and basis == "simulated")
-        return known(self.estimate.p_below(math.log1p(SEEN) if visible else 0.0))
+    def p_against(self) -> float:
+        """One-sided p value of the hypothesis that the difference is positive, however small."""
+        return known(self.estimate.p_below(0.0))
+
+    def p_bounded(self) -> float:
+        """One-sided p value of the hypothesis that the difference is `SEEN` or more."""
+        return known(self.estimate.p_below(math.log1p(SEEN)))
 
 
 Parts = Mapping[str, Part]
 """What a statement about orders says: differences by name, all positive if it is true."""
 
 
-def order(parts: Parts, basis: str, *, unit: str = "event", more: str = "") -> Result:
+NO_CHANGE, LARGE_CHANGE = "no change", "a change of 10 % or more"
+
+
+def order(parts: Parts, *, unit: str = "event", more: str = "") -> Result:
     """Judge differences of which a statement says that all are positive.
 
     Parameters
     ----------
     parts
         The differences by name, at least one.
-    basis
-        ``simulated`` or ``measured``.
     unit
         What was sampled, for the note on power.
     more
@@ -87,29 +89,43 @@ def order(parts: Parts, basis: str, *, unit: str = "event", more: str = "") -> R
         that speaks most against the statement.
     """
     for_it = {name: part.p_for() for name, part in parts.items()}
-    against = {name: part.p_against(basis) for name, part in parts.items()}
+    against = {name: part.p_against() for name, part in parts.items()}
     weakest = max(parts, key=for_it.__getitem__)
     strongest = min(parts, key=against.__getitem__)
     p_for, p_against = for_it[weakest], min(1.0, against[strongest] * len(parts))
     finding = finding_of(p_for, p_against)
+    p, p_of = min(1.0, 2 * min(p_for, p_against)), NO_CHANGE
+    if finding is Finding.OPEN and (p_bounded := _p_bounded(parts)) < LEVEL:
+        finding, p, p_of = Finding.BOUNDED, min(1.0, 2 * p_bounded), LARGE_CHANGE
     decisive = strongest if finding is Finding.AGAINST else weakest
     one = parts[decisive].estimate
     notes = [more] if more else []
     if finding is Finding.OPEN:
         notes.append(power_note(one, unit))
-    elif finding is Finding.AGAINST and known(one.p_below(0.0)) * len(parts) >= LEVEL:
-        notes.append(
-            f"not shown to be of the other sign, but one of {SEEN:.0%} or more is excluded"
-        )
+    elif finding is Finding.BOUNDED:
+        notes.append("a smaller change, or none, is not excluded")
     return Result(
         finding,
         _listed(parts, decisive),
         one.ratio,
         one.ratio_lower,
         one.ratio_upper,
-        p=min(1.0, 2 * min(p_for, p_against)),
+        p=p,
+        p_of=p_of,
         remark="; ".join(notes),
     )
+
+
+def _p_bounded(parts: Parts) -> float:
+    """P value of changes of `SEEN` or more: of one that is claimed to be noticeable, or else of all of them.
+
+    Where a statement claims noticeable changes it is enough that one of them is excluded, with Bonferroni's
+    adjustment; where it names no size every one has to be (an intersection-union test, which needs none).
+    """
+    noticeable = [part.p_bounded() for part in parts.values() if part.size is Size.NOTICEABLE]
+    if noticeable:
+        return min(1.0, min(noticeable) * len(noticeable))
+    return max(part.p_bounded() for part in parts.values())
 
 
 def _listed(parts: Parts, decisive: str) -> str:
@@ -118,14 +134,24 @@ def _listed(parts: Parts, decisive: str) -> str:
     names = list(parts) if len(parts) <= 4 else [decisive]
     ratios = ", ".join(f"{name} {parts[name].estimate.text()}" for name in names)
     if len(parts) == 1:
-        return f"{ratios}; the mean is {'' if positive else 'not '}as stated"
-    return f"{ratios}; {positive} of {len(parts)} means are as stated"
+        return f"{ratios}; the mean is {'' if positive else 'not '}in the stated direction"
+    return f"{ratios}; {positive} of {len(parts)} means are in the stated direction"
 
 
 def margin(parts: Parts) -> float:
     """Least of the differences [-]: positive where the means are as stated; no inference."""
     return min(part.estimate.mean for part in parts.values())
 
+
+ONE_RULE = (
+    "The 95 % interval decides: above 1 for it, below 1 against it; if neither and it ends below 1.1, a change "
+    "of 10 % or more is excluded"
+)
+SEVERAL_RULE = (
+    "The 95 % intervals decide: all above 1 for it, one below 1 against it (Bonferroni); if neither, 10 % or "
+    "more is excluded where all end below 1.1, or one of those called noticeable (Bonferroni)"
+)
+"""What is said beside every statement about an order, so that a reader can apply it to the row."""
 
 Differences = Callable[[Evidence], Parts]
 
@@ -165,9 +191,12 @@ def order_statement(
 
     def enter(differences: Differences) -> Differences:
         def test(tests: Evidence) -> Result:
-            return order(differences(tests), tests.basis, unit=unit, more=more(tests))
+            return order(differences(tests), unit=unit, more=more(tests))
 
-        entry = statement(number, text, source, kind, evidence=evidence, rule=rule, error_rate=rate)
+        stated = f"{rule}. {SEVERAL_RULE if several else ONE_RULE}"
+        entry = statement(
+            number, text, source, kind, evidence=evidence, rule=stated, error_rate=rate
+        )
         entry(test)
         _ORDERS[number] = differences
         return differences

@@ -8,7 +8,6 @@ from rockfrag.thesis.statements.orders import (
     PAIRS,
     Part,
     Parts,
-    Size,
     order_statement,
 )
 from rockfrag.thesis.statements.statement import Kind, Result, statement
@@ -17,7 +16,7 @@ from rockfrag.thesis.statements.verdicts import ONE_INTERVAL, SEEN, same
 
 def general_increase(tests: Evidence) -> Parts:
     """The effect over all pairs: C29 and C49 say the same and so have one rule."""
-    return {"P/NP of all pairs": Part(tests.effect(), Size.PLAIN)}
+    return {"P/NP of all pairs": Part(tests.effect())}
 
 
 def _changed(tests: Evidence) -> str:
@@ -76,7 +75,7 @@ def c31(tests: Evidence) -> Result:
     "the increase with the pedestal is largest for T3",
     "4.3, Fig. 4.4",
     Kind.DESCRIPTION,
-    rule="P/NP of T3 exceeds that of T1 and of T2, event by event",
+    rule="P/NP of T3 exceeds that of T1 and of T2, earthquake by earthquake",
     several=True,
 )
 def c32(tests: Evidence) -> Parts:
@@ -92,7 +91,7 @@ def c32(tests: Evidence) -> Parts:
     "for T2 the pedestal has nearly the opposite effect, still a slight increase",
     "4.3",
     Kind.DESCRIPTION,
-    rule="an increase of T2, however slight; 'nearly opposite' says nothing that could be tested",
+    rule="an increase of T2; “nearly opposite” cannot be tested",
 )
 def c33(tests: Evidence) -> Parts:
     """T2's effect."""

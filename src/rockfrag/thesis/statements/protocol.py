@@ -157,7 +157,7 @@ def c58(tests: Evidence) -> Result:
     )
     gain = rows["gain"]
     effect = t_estimate(rows.groupby("event")["gain"].mean())
-    found = order({"amplitude with sliding over without": Part(effect)}, "simulated")
+    found = order({"amplitude with sliding over without": Part(effect)})
     worse = int((gain < 0).sum())
     return replace(
         found,

@@ -61,7 +61,7 @@ def c25(tests: Evidence) -> Result:
     means = _event_means(tests)
     low, middle, high = (means[name] for name in means.columns)
     bend = t_estimate(np.log(2 * middle / (low + high)))
-    falls = order({"fall of a per unit of H/B": Part(_fall(tests.amplitudes))}, tests.basis)
+    falls = order({"fall of a per unit of H/B": Part(_fall(tests.amplitudes))})
     straight = same(bend, f"T2 over the straight line {bend.text()}")
     return Result(
         all_of(falls.finding, straight.finding),
@@ -70,6 +70,7 @@ def c25(tests: Evidence) -> Result:
         straight.lower,
         straight.upper,
         p=max(falls.p, straight.p),
+        p_of=straight.p_of if straight.p >= falls.p else falls.p_of,
         remark=straight.remark or falls.remark,
     )
 
@@ -98,7 +99,7 @@ def c26(tests: Evidence) -> Parts:
     "4.2",
     Kind.DESCRIPTION,
     evidence=PAIRS,
-    rule=f"decrease from T1 to T3 with P over that without, event by event, within ±{SEEN:.0%}",
+    rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{SEEN:.0%}",
     error_rate=ONE_INTERVAL,
 )
 def c27(tests: Evidence) -> Result:
@@ -146,6 +147,7 @@ def c28(tests: Evidence) -> Result:
     elif all(one.finding is Finding.FOR for one in alike):
         finding = Finding.AGAINST
     one = pairs[widest]
+    p_alike = max(each.p for each in alike)
     means = ", ".join(f"{floor} {math.exp(-fall):.3f}" for floor, fall in table.mean().items())
     return Result(
         finding,
@@ -154,7 +156,8 @@ def c28(tests: Evidence) -> Result:
         one.ratio,
         one.ratio_lower,
         one.ratio_upper,
-        p=min(1.0, p_differ[widest], max(each.p for each in alike)),
+        p=min(1.0, p_differ[widest], p_alike),
+        p_of="no difference" if p_differ[widest] <= p_alike else "a difference of 10 % or more",
         remark=power_note(one) if finding is Finding.OPEN else "",
     )
 
@@ -216,7 +219,7 @@ def c30(tests: Evidence) -> Result:
     "5",
     Kind.INFERENCE,
     evidence=AMPLITUDES,
-    rule="ln a of T1 exceeds that of T2, and that of T2 that of T3, event by event",
+    rule="ln a of T1 exceeds that of T2, and that of T2 that of T3, earthquake by earthquake",
     several=True,
 )
 def c53(tests: Evidence) -> Parts:
@@ -271,5 +274,6 @@ def c54(tests: Evidence) -> Result:
         own.ratio_lower,
         own.ratio_upper,
         p=min(1.0, p_miss, reaches.p),
+        p_of="no error" if p_miss <= reaches.p else reaches.p_of,
         remark=power_note(own) if finding is Finding.OPEN else "",
     )

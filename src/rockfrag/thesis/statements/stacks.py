@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 import pandas as pd
 
+from rockfrag.engines.response import PATTERNS
 from rockfrag.rocking import Block, Stack, simulate
-from rockfrag.rocking.response import PATTERNS
 from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.thesis.statements.setting import (
     EXACT,

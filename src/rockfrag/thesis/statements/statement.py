@@ -26,6 +26,8 @@ class Finding(StrEnum):
     FOR = "for"
     AGAINST = "against"
     OPEN = "open"
+    BOUNDED = "bounded"
+    """The sign of the change is not shown, but one of 10 % or more in the stated direction is excluded."""
     SPECIMENS_ONLY = "specimens only"
     """It holds for the thesis's specimens, with exceptions among other bodies or inputs."""
 
@@ -33,21 +35,27 @@ class Finding(StrEnum):
 BASES = ("computed", "simulated", "measured")
 """What a row of the ledger rests on: algebra, the model, or a laboratory."""
 
+UNDECIDED = "undecided"
+EXCLUDED = "a change of 10 % or more is excluded"
+
 _ABOUT_THE_MODEL = {
-    Finding.FOR: "holds",
-    Finding.AGAINST: "does not hold",
-    Finding.OPEN: "open",
-    Finding.SPECIMENS_ONLY: "holds for the specimens, exceptions elsewhere",
+    Finding.FOR: "confirmed",
+    Finding.AGAINST: "refuted",
+    Finding.OPEN: UNDECIDED,
+    Finding.BOUNDED: EXCLUDED,
+    Finding.SPECIMENS_ONLY: "confirmed for the specimens, with exceptions elsewhere",
 }
 _FROM_THE_MODEL = {
     Finding.FOR: "reproduced",
     Finding.AGAINST: "not reproduced",
-    Finding.OPEN: "open",
+    Finding.OPEN: UNDECIDED,
+    Finding.BOUNDED: EXCLUDED,
 }
 _FROM_A_LABORATORY = {
     Finding.FOR: "confirmed",
     Finding.AGAINST: "rejected",
-    Finding.OPEN: "open",
+    Finding.OPEN: UNDECIDED,
+    Finding.BOUNDED: EXCLUDED,
 }
 
 
@@ -80,6 +88,8 @@ class Result:
         Unit of the three, ``-`` for ratios and probabilities.
     p
         Two-sided p value behind the finding [-], where there is inference; NaN elsewhere.
+    p_of
+        The hypothesis that p concerns, such as ``no change``; empty where there is none.
     remark
         What else a reader must know, such as the power needed where the finding is open.
     basis
@@ -94,6 +104,7 @@ class Result:
     upper: float = math.nan
     unit: str = "-"
     p: float = math.nan
+    p_of: str = ""
     remark: str = ""
     basis: str | None = None
 

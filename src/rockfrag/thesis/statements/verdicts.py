@@ -5,11 +5,9 @@ Every rule reads the 95 % interval that is printed, so that a reader can apply i
 * **Orders** ("higher", "largest", "lower on both floors") are differences that must all be positive.
   They are true if every interval lies above zero (an intersection-union test, Berger 1982, which needs
   no adjustment), false if one lies below, with Bonferroni's adjustment for the number of differences.
-* **Sizes.** A slight change, or a lead of unstated size, can be so small that no table excludes it.  A
-  change that the thesis calls noticeable, significant or much greater is one that its tests could show,
-  `SEEN`; it is also false if such a change is excluded.  For simulated tests that bound serves changes
-  of unstated size too: the question there is whether the model shows what the thesis saw, and the
-  thesis could see no less.
+* **Sizes.** No table excludes a change that may be as small as one likes.  Where the sign is not shown either
+  way, a change of `SEEN` or more, which the thesis's tests could have shown, may still be excluded; the word for
+  it says just that, whatever the statement, so that equal figures get equal words.
 * **Sameness** ("nearly equal", "no correlation") is true if the interval lies inside ±`SEEN`, false
   if it lies outside.
 
@@ -83,7 +81,15 @@ def same(
         estimate.ratio_lower,
         estimate.ratio_upper,
         p=min(1.0, 2 * min(inside, outside)),
+        p_of=_difference(bound, inside <= outside),
         remark="; ".join(notes),
+    )
+
+
+def _difference(bound: float, large: bool) -> str:
+    """The hypothesis whose p value is the smaller one."""
+    return (
+        f"a difference {'of' if large else 'below'} {100 * bound:g} %{' or more' if large else ''}"
     )
 
 

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from rockfrag.elementary import hypot
 from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.kernels.record import fill_sines
-from rockfrag.system.blocks import Block, Body, Vector
+from rockfrag.system import geometry
+from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
+Pair = tuple[float, float]
 
 
 class _Turning(NamedTuple):
@@ -26,14 +28,14 @@ class _Turning(NamedTuple):
     alpha: Array
 
 
-def _acceleration(arm: Vector, turning: _Turning) -> tuple[Array, Array]:
+def _acceleration(arm: Pair, turning: _Turning) -> tuple[Array, Array]:
     """Acceleration of the tip of ``arm`` that turns clockwise about its foot [m/s²]."""
     sine, cosine, omega, alpha = turning
-    x, y = arm.x * cosine + arm.y * sine, -arm.x * sine + arm.y * cosine
+    x, y = arm[0] * cosine + arm[1] * sine, -arm[0] * sine + arm[1] * cosine
     return alpha * y - omega * omega * x, -alpha * x - omega * omega * y
 
 
-def centres(body: Body, state: NDArray[np.int64], theta: Array) -> Array:
+def centres(system: System, state: NDArray[np.int64], theta: Array) -> Array:
     """Centres of gravity of a body that rocks without sliding, relative to the moving ground [m].
 
     Parameters
@@ -49,24 +51,26 @@ def centres(body: Body, state: NDArray[np.int64], theta: Array) -> Array:
     sine, cosine = _sines(theta)
     signs = np.where(state == 0, 1, state)
 
-    def turned(arm: Vector, rows: NDArray[np.bool_], block: int) -> Array:
+    def turned(arm: Pair, rows: NDArray[np.bool_], block: int) -> Array:
         s, c = sine[rows, block], cosine[rows, block]
-        return np.column_stack([arm.x * c + arm.y * s, -arm.x * s + arm.y * c])
+        return np.column_stack([arm[0] * c + arm[1] * s, -arm[0] * s + arm[1] * c])
 
-    if isinstance(body, Block):
+    lowest = system.shapes[0]
+    if system.count == 1:
         for pole in (+1, -1):
-            rows = signs[:, 0] == pole
-            found[rows, 0] = turned(body.arm(pole), rows, 0)
-            found[rows, 0, 0] += body.centre.x - body.arm(pole).x
+            rows, arm = signs[:, 0] == pole, geometry.arm(lowest, pole)
+            found[rows, 0] = turned(arm, rows, 0)
+            found[rows, 0, 0] += lowest.x - arm[0]
         return found
+    pile = system.pile
     for one in (+1, -1):
-        arm = body.pedestal.arm(one)
+        arm = geometry.arm(lowest, one)
         for two in (+1, -1):
             rows = (signs[:, 0] == one) & (signs[:, 1] == two)
             found[rows, 0] = turned(arm, rows, 0)
-            found[rows, 1] = turned(body.reach(one, two), rows, 0)
-            found[rows, 1] += turned(body.statue_arm(two), rows, 1)
-            found[rows, :, 0] += body.pedestal.centre.x - arm.x
+            found[rows, 1] = turned(geometry.reach(pile, one, two), rows, 0)
+            found[rows, 1] += turned(geometry.statue_arm(pile, two), rows, 1)
+            found[rows, :, 0] += lowest.x - arm[0]
     return found
 
 
@@ -79,7 +83,7 @@ def _sines(theta: Array) -> tuple[Array, Array]:
 
 
 def contact_forces(
-    body: Body,
+    system: System,
     ground: Array,
     state: NDArray[np.int64],
     theta: Array,
@@ -108,31 +112,33 @@ def contact_forces(
     def turning(rows: NDArray[np.bool_], block: int) -> _Turning:
         return _Turning(*(values[rows, block] for values in (sine, cosine, omega, alpha)))
 
-    if isinstance(body, Block):
+    lowest = system.shapes[0]
+    if system.count == 1:
         for pole in (+1, -1):
             rows = (state[:, 0] == pole) | (state[:, 0] == 0) & (pole == 1)
-            ax, ay = _acceleration(body.arm(pole), turning(rows, 0))
-            friction[rows, 0] = body.mass * (ground[rows] + ax)
-            normal[rows, 0] = body.mass * (gravity[rows] + ay)
+            ax, ay = _acceleration(geometry.arm(lowest, pole), turning(rows, 0))
+            friction[rows, 0] = lowest.mass * (ground[rows] + ax)
+            normal[rows, 0] = lowest.mass * (gravity[rows] + ay)
         return normal, friction
-    m1, m2 = body.pedestal.mass, body.statue.mass
+    pile = system.pile
+    m1, m2 = pile.pedestal.mass, pile.statue.mass
     for one in (+1, -1):
         for two in (+1, -1):
             rows = (state[:, 0] == one) | (state[:, 0] == 0) & (one == 1)
             rows &= (state[:, 1] == two) | (state[:, 1] == 0) & (two == 1)
             first, second = turning(rows, 0), turning(rows, 1)
-            x1, y1 = _acceleration(body.pedestal.arm(one), first)
-            xd, yd = _acceleration(body.reach(one, two), first)
-            x2, y2 = _acceleration(body.statue_arm(two), second)
+            x1, y1 = _acceleration(geometry.arm(lowest, one), first)
+            xd, yd = _acceleration(geometry.reach(pile, one, two), first)
+            x2, y2 = _acceleration(geometry.statue_arm(pile, two), second)
             friction[rows, 1] = m2 * (ground[rows] + xd + x2)
             normal[rows, 1] = m2 * (gravity[rows] + yd + y2)
             friction[rows, 0] = friction[rows, 1] + m1 * (ground[rows] + x1)
             normal[rows, 0] = normal[rows, 1] + m1 * (gravity[rows] + y1)
     # of the interface so far upright and level: the pedestal's top turns with it
-    along = body.interface_pole(+1).minus(body.interface_pole(-1))
-    length = hypot(along.x, along.y)
-    tx = (along.x * cosine[:, 0] + along.y * sine[:, 0]) / length
-    ty = (along.y * cosine[:, 0] - along.x * sine[:, 0]) / length
+    x, y = pile.right[0] - pile.left[0], pile.right[1] - pile.left[1]
+    length = hypot(x, y)
+    tx = (x * cosine[:, 0] + y * sine[:, 0]) / length
+    ty = (y * cosine[:, 0] - x * sine[:, 0]) / length
     across = tx * normal[:, 1] - ty * friction[:, 1]
     friction[:, 1] = tx * friction[:, 1] + ty * normal[:, 1]
     normal[:, 1] = across

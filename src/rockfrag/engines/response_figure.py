@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rockfrag.engines.response import Response
 from rockfrag.figure_style import (
     BLACK,
     BLUE,
@@ -14,8 +15,8 @@ from rockfrag.figure_style import (
     figure_style,
     new_figure,
 )
-from rockfrag.rocking.response import Response
-from rockfrag.system.blocks import Block
+from rockfrag.system import geometry
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 _PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
@@ -23,15 +24,10 @@ _PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 def response_figure(response: Response, title: str) -> Figure:
     """Draw acceleration [g], rotations over the critical angle with impacts, slip and the pattern over time."""
-    body = response.body
-    single = isinstance(body, Block)
-    critical = (
-        [body.alpha]
-        if isinstance(body, Block)
-        else [body.rigidly_joined().alpha, body.statue.alpha]
-    )
-    names = ["body"] if single else ["pedestal", "statue"]
-    colours = [BLUE] if single else [ORANGE, BLUE]
+    critical, names = critical_angles(response.system), response.system.names
+    single = len(names) == 1
+    # the object has its colour wherever it stands
+    colours = [BLUE, ORANGE, *OKABE_ITO[2:]][: len(names)][::-1]
     slides = bool((response.slides != 0).any())
     heights = [2, 3, 2, 2] if slides else [2, 3, 2]
     with figure_style():
@@ -74,10 +70,18 @@ def response_figure(response: Response, title: str) -> Figure:
         return figure
 
 
+def critical_angles(system: System) -> list[float]:
+    """Smaller critical angle of each body [rad]: of the uppermost by itself, of lower ones with all above them."""
+    shapes = list(system.shapes)
+    if system.count == 2:
+        shapes[0] = geometry.joined(system.pile)
+    return [min(geometry.critical_angle(shape, side) for side in (+1, -1)) for shape in shapes]
+
+
 def _slips(panel: Axes, response: Response, colours: list[str]) -> None:
     """Draw how far each interface has slid."""
-    names = ["ground", "interface"]
-    for i, (name, colour) in enumerate(zip(names, colours, strict=False)):
+    names = ["ground", *(f"under {name}" for name in response.system.names[1:])]
+    for i, (name, colour) in enumerate(zip(names, colours, strict=True)):
         panel.plot(response.time, 1000 * response.slip[:, i], color=colour, lw=0.8, label=name)
     panel.set_ylabel("Slip [mm]")
     if len(colours) > 1:

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.short_repr import short_repr
-from rockfrag.system.blocks import Body
+from rockfrag.system.system import System
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,12 +57,12 @@ def mode_name(state: int, slides: int) -> str:
 class Response:
     """Response of one body to one motion.
 
-    Columns are (block,) for a lone block and (pedestal, statue) for a stack.
+    Columns are bodies, or the contacts under them, from below.
 
     Attributes
     ----------
-    body
-        The body that was simulated.
+    system
+        The system that was simulated.
     time
         Times of the samples [s], shape (n,); the motion and the free rocking after it.
     ground_acceleration
@@ -91,13 +91,13 @@ class Response:
     overturned
         Whether a block fell.
     overturned_body
-        ``"block"``, ``"pedestal"``, ``"statue"``, or ``""``.
+        Name of the body that fell, or ``""``.
     overturning_time
         When it lay down [s], NaN if it did not.
     energy
-        Table over time [J]: ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_ground``
-        and ``lost_interface`` (in impacts so far), with friction ``lost_friction``, and ``residual``, which is
-        zero but for rounding.
+        Table over time [J]: ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_contact_1``
+        and on (in impacts of each contact so far, the ground's first), with friction ``lost_friction``, and
+        ``residual``, which is zero but for rounding.
     normal_force, friction_force
         Forces of each interface on the block above it, across and along the face that carries [N], shape (n,
         blocks).
@@ -117,14 +117,14 @@ class Response:
         coarsely than usual (``docs/contact.md``).
     given_way
         Number of impacts in which the law of a measured restitution had to give way, lest energy grow.
-    closest_approach
+    unstable_distance
         Least distance of the response from an unstable equilibrium, in units of the critical angle (and of
         p times it for the velocity).  A verdict with a small one hangs on little; a large one promises nothing,
         since impacts and chaos decide too (see :func:`rockfrag.rocking.sureness.verdict_sureness`).  NaN once
         a block has slid or flown.
     """
 
-    body: Body
+    system: System
     time: NDArray[np.float64]
     ground_acceleration: NDArray[np.float64]
     position: NDArray[np.float64]
@@ -149,14 +149,14 @@ class Response:
     paradoxes: int
     forced: int
     given_way: int
-    closest_approach: float
+    unstable_distance: float
 
     __repr__ = short_repr
 
     def plot(self, title: str = "") -> Figure:
         """Draw the ground's acceleration [g], rotations over the critical angle, any slip, and patterns."""
         # matplotlib is loaded only by those who draw
-        from rockfrag.rocking.response_figure import response_figure
+        from rockfrag.engines.response_figure import response_figure
 
         return response_figure(self, title)
 

@@ -1,0 +1,146 @@
+"""What engines that integrate many cases side by side share: motions as the lanes sample them, and the threads."""
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.engines.contract import Cases
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.lanes.case import BLOCK, Motions
+from rockfrag.engines.steps import STEP, step_count
+from rockfrag.outcomes.outcomes import Outcomes
+
+Array = NDArray[np.float64]
+
+
+def step_of(cases: Cases) -> float:
+    """Step that is asked for, or the usual one."""
+    return STEP if math.isnan(cases.request.step) else cases.request.step
+
+
+def intervals_of(cases: Cases) -> Array:
+    """Sampling interval of each motion [s], shape (motions,)."""
+    return np.array([motion.dt for motion in cases.motions])
+
+
+def march(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:
+    """Let threads call an entry kernel, each with memory of its own, until no case is left."""
+    ensemble, *others = arguments
+    with compiling_alone(kernel):
+        kernel(ensemble._replace(count=0), *others[:-1], worker(), others[-1])
+    ensemble.counter[0] = 0
+
+    def work(_: int) -> None:
+        kernel(ensemble, *others[:-1], worker(), others[-1])
+
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, range(threads)))
+
+
+def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Array]:
+    """Sample the motions as densely as the systems need; which each system × motion uses, and its interval [s].
+
+    ``per_gravity`` makes of vertical accelerations what factors make parts of gravity of.
+    """
+    values = [motion.x.acceleration for motion in cases.motions]
+    dts = intervals_of(cases)
+    g, step = cases.request.g, step_of(cases)
+    times = np.array([step_count(system, dts, g, step) for system in cases.systems])
+    # the next power of two
+    mantissa, exponent = np.frexp(times)
+    times = 2 ** (exponent - (mantissa == 0.5))
+    kinds, number = np.unique(times * len(values) + np.arange(len(values)), return_inverse=True)
+
+    each_kind = [divmod(kind, len(values)) for kind in kinds.tolist()]
+    sizes = np.array([values[motion].size * times + 1 for times, motion in each_kind])
+    # whole blocks each, so that no block straddles two motions
+    offsets = np.concatenate([[0], np.cumsum(sizes + -sizes % BLOCK)])
+
+    def end_to_end(each: Sequence[Array]) -> Array:
+        made = np.zeros(offsets[-1])
+        for start, (times, motion) in zip(offsets.tolist(), each_kind, strict=False):
+            dense = _refined(each[motion], times)
+            made[start : start + dense.size] = dense
+        return made
+
+    horizontal = end_to_end(values)
+    upward = np.zeros(0)
+    if cases.motions[0].z is not None:
+        upward = end_to_end(
+            [per_gravity * motion.z.acceleration for motion in cases.motions if motion.z]
+        )
+    highest, lowest, ahead_high, ahead_low = _extremes(horizontal, offsets)
+    _, _, upward_high, upward_low = _extremes(upward, offsets)
+    motions = Motions(
+        samples=horizontal,
+        vertical=upward,
+        highest=highest,
+        lowest=lowest,
+        ahead_high=ahead_high,
+        ahead_low=ahead_low,
+        upward_high=upward_high,
+        upward_low=upward_low,
+        offsets=offsets,
+        lasts=offsets[:-1] + sizes - 1,
+    )
+    return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
+
+
+def _extremes(samples: Array, offsets: NDArray[np.int64]) -> tuple[Array, Array, Array, Array]:
+    """Extremes of each BLOCK of samples, and from the beginning of each to the end of its motion."""
+    blocks = samples.reshape(-1, BLOCK)
+    high, low = blocks.max(axis=1, initial=-np.inf), blocks.min(axis=1, initial=np.inf)
+    ahead, behind = high.copy(), low.copy()
+    for start, end in pairwise((offsets // BLOCK).tolist()):
+        # from the last to the first
+        at = slice(start, end)
+        ahead[at][::-1] = np.maximum.accumulate(high[at][::-1])
+        behind[at][::-1] = np.minimum.accumulate(low[at][::-1])
+    return high, low, ahead, behind
+
+
+def _refined(values: Array, times: int) -> Array:
+    """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least."""
+    if times == 1:
+        return values
+    closed = np.append(values, 0.0)
+    at = np.arange((closed.size - 1) * times + 1) / times
+    return np.asarray(np.interp(at, np.arange(closed.size), closed))
+
+
+def write_rocking(into: Outcomes, rows: Sequence[int], found: NDArray[np.void]) -> None:
+    """Write what the kernels of pure rocking tell of cases into outcomes of one or two bodies.
+
+    Parameters
+    ----------
+    into
+        Outcomes.
+    rows
+        Positions of the systems in them, which all have as many bodies.
+    found
+        ``OUTCOME`` of each case of these systems, shape (rows, motions, scales).
+    """
+    count, place = into.counts[rows[0]], np.asarray(rows, dtype=np.intp)
+    # a lone body is the kernels' block 2
+    fell = np.where(found["fallen"] > 0, found["fallen"] - (2 - count), 0)
+    into.overturned[place] = fell > 0
+    into.overturned_body[place] = fell
+    for k in range(count):
+        peak = found["peak2" if k == count - 1 else "peak1"]
+        into.peak_rotation[place, ..., k] = np.where(fell == k + 1, np.inf, peak)
+        into.slip[place, ..., k] = into.peak_slip[place, ..., k] = 0.0
+    into.impacts[place] = found["impacts"]
+    into.given_way[place] = found["given_way"]
+    into.unstable_distance[place] = found["closest"]
+
+
+def write_lanes(into: Outcomes, found: NDArray[np.void], interval: Array) -> None:
+    """Write what lanes tell of cases, which count time in samples of ``interval`` [s], into outcomes."""
+    write_rocking(into, range(len(into.names)), found)
+    into.certain_time[:] = np.where(into.overturned, found["certain"] * interval, np.nan)
+    into.peak_velocity[..., -1] = found["fast"] / interval

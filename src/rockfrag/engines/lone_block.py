@@ -1,0 +1,87 @@
+"""Engine of lone bodies in pure rocking: 64 lanes side by side."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.engines.response import Response
+from rockfrag.errors import InputError
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.system import geometry
+from rockfrag.system.system import System
+
+
+class LoneBlock:
+    """Lone planar bodies that rock and never slide, from rest (``kernels.lanes.block``)."""
+
+    name = "lanes of lone blocks"
+    meets = frozenset({Wish.VERTICAL, Wish.RESTITUTION})
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        return by_wishes(self, system, motion, request)
+
+    def run(self, cases: Cases) -> Outcomes:
+        """Return the outcomes of cases."""
+        from rockfrag.engines.kernels.lanes import block
+        from rockfrag.engines.kernels.lanes.case import OUTCOME, Ensemble
+        from rockfrag.engines.lanes import march, sampled, write_lanes
+
+        g = cases.request.g
+        motions, rows, intervals = sampled(cases, 1.0)
+        pivots = np.empty((*intervals.shape, 2), block.POLE)
+        for i, system in enumerate(cases.systems):
+            pivots[i] = _pivots(system, g, block.POLE)
+        pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
+        pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
+        count = len(cases.systems) * cases.scales.size
+        ensemble = Ensemble(
+            counter=np.array([0]),
+            count=count,
+            bodies=pivots,
+            factors=cases.scales / g,
+            rows=rows,
+            intervals=intervals,
+            parts=np.ones(intervals.shape),
+            free=np.zeros(intervals.shape, np.int64),
+        )
+        found = np.empty(count, OUTCOME)
+        march(block.march_blocks, block.worker, cases.threads, ensemble, motions, found)
+        outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
+        write_lanes(outcomes, found.reshape(cases.shape), intervals[:, :, np.newaxis])
+        return outcomes
+
+    def history(self, case: Case) -> Response:
+        """Refuse: lanes keep no history."""
+        raise NotImplementedError
+
+
+def _pivots(system: System, g: float, dtype: np.dtype[np.void]) -> NDArray[np.void]:
+    """Constants of a body's right and left pivot, with p² where p² dt² belongs."""
+    pivots = np.empty(2, dtype)
+    shape, law = system.shapes[0], system.contacts[0].law
+    for at, pivot in ((0, +1), (1, -1)):
+        alpha, arm = geometry.critical_angle(shape, pivot), geometry.arm(shape, pivot)
+        frequency = geometry.frequency(shape, pivot, g)
+        swing, aside, radius = (
+            frequency * frequency,
+            -pivot * arm[0],
+            geometry.radius(shape, pivot),
+        )
+        if not swing * alpha * alpha > 0:
+            raise InputError(
+                "body: lengths, mass and inertia are too far apart; check their units."
+            )
+        # of the impact that ends rocking on this pivot and comes down on the other
+        e = geometry.momentum_restitution(shape, -pivot)
+        if law.name != "momentum":
+            e = law.left if pivot > 0 else law.right
+        pivots[at] = (
+            alpha, aside / arm[1], aside / radius, arm[1] / radius, swing, e, 1 / alpha,
+            1 / (swing * alpha * alpha),
+        )  # fmt: skip
+    return pivots
+
+
+ENGINE = LoneBlock()

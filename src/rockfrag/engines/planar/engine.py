@@ -1,0 +1,149 @@
+"""Engine of planar bodies that stick, slide, rock, fly and land (``docs/contact.md``)."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.engines.contract import (
+    Case,
+    Cases,
+    Engine,
+    Request,
+    Support,
+    Wish,
+    by_wishes,
+    engines,
+    run_cases,
+)
+from rockfrag.engines.response import Response
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.system.system import System
+
+
+class PlanarContact:
+    """Bodies whose contacts have friction: pure rocking where nothing slides or flies, and contact otherwise.
+
+    One rule decides, for outcomes and for histories: the contact kernels integrate the case, and where in their
+    response no contact reached its friction, none opened as a whole and no mode was inconsistent, the case is one
+    of pure rocking, and the answer is that of the engine of pure rocking.
+    """
+
+    name = "planar contact"
+    meets = frozenset(
+        {
+            *(Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.VERTICAL, Wish.FRICTION, Wish.RESTITUTION),
+            *(Wish.START, Wish.HISTORY),
+        }
+    )
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        return by_wishes(self, system, motion, request)
+
+    def run(self, cases: Cases) -> Outcomes:
+        """Return the outcomes of cases."""
+        from rockfrag.engines.planar.ensemble import contact_outcomes
+
+        outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
+        rocking = [i for i, system in enumerate(cases.systems) if self._rocks(cases, system)]
+        if rocking:
+            stuck = tuple(without_friction(cases.systems[i]) for i in rocking)
+            pure = run_cases(replace(cases, systems=stuck))
+            outcomes = replace(outcomes, engines=(self.name, *pure.engines))
+            merge_outcomes(outcomes, rocking, pure)
+        found = contact_outcomes(cases)
+        for i, count in enumerate(outcomes.counts):
+            self._write(outcomes, i, count, found[i], everything=i not in rocking)
+        return outcomes
+
+    def _rocks(self, cases: Cases, system: System) -> bool:
+        """Whether another engine knows the system in pure rocking."""
+        motion = max(cases.motions, key=lambda motion: len(motion.components))
+        return self._pure(without_friction(system), motion, cases.request) is not None
+
+    def _pure(self, system: System, motion: GroundMotion, request: Request) -> Engine | None:
+        """Engine of pure rocking of a system, if there is one."""
+        others = (engine for engine in engines() if engine is not self)
+        return next((one for one in others if one.supports(system, motion, request)), None)
+
+    def _write(
+        self, into: Outcomes, i: int, count: int, found: NDArray[np.void], everything: bool
+    ) -> None:
+        """Write what became of one system over what pure rocking has found, where it slid or flew."""
+        flights = found["flights"].sum(axis=-1)
+        other = (found["slid"].max(axis=-1) > 0) | (flights > 0) | (found["paradoxes"] > 0)
+        other |= everything
+        place: tuple[Any, ...] = (i, *np.nonzero(other))
+        left = found[other]
+        fell = left["fallen"]
+        into.engine[place] = 0
+        into.overturned[place] = fell > 0
+        into.overturned_body[place] = fell
+        into.overturning_time[place] = np.where(fell > 0, left["time"], np.nan)
+        into.certain_time[place] = np.nan
+        into.impacts[place] = left["impacts"]
+        into.flights[place] = flights[other]
+        into.paradoxes[place] = left["paradoxes"]
+        into.given_way[place] = left["given_way"]
+        into.unstable_distance[place] = np.nan
+        for k in range(count):
+            own = (*place, k)
+            into.peak_rotation[own] = np.where(fell == k + 1, np.inf, left["peak"][:, k])
+            into.peak_velocity[own] = left["peak_speed"][:, k]
+            into.slip[own] = left["slip"][:, k]
+            into.peak_slip[own] = left["peak_slip"][:, k]
+
+    def history(self, case: Case) -> Response:
+        """Return the response of a case."""
+        from rockfrag.engines.planar.ensemble import COARSE_CLOSING
+        from rockfrag.engines.planar.history import contact_history
+
+        motion, g = scaled(case.motion, case.scale), case.request.g
+        # as outcomes have it, so that history and outcome are of one response
+        found, loose = contact_history(case.system, motion, g, closing=COARSE_CLOSING)
+        pure = replace(case, system=without_friction(case.system))
+        engine = self._pure(pure.system, motion, pure.request)
+        if loose or engine is None:
+            return found
+        return without_slip(replace(engine.history(pure), system=case.system))
+
+
+def without_friction(system: System) -> System:
+    """Return the system whose contacts never slide."""
+    contacts = tuple(replace(contact, friction=None) for contact in system.contacts)
+    return replace(system, contacts=contacts)
+
+
+def scaled(motion: GroundMotion, factor: float) -> GroundMotion:
+    """Return a ground motion with all its components multiplied."""
+    if factor == 1.0:
+        return motion
+    each = [
+        None if one is None else replace(one, acceleration=factor * one.acceleration)
+        for one in (motion.x, motion.y, motion.z)
+    ]
+    assert each[0] is not None
+    return GroundMotion(each[0], each[1], each[2])
+
+
+def without_slip(response: Response) -> Response:
+    """Give a response of pure rocking the columns of one with friction."""
+    import pandas as pd
+
+    from rockfrag.engines.response import PATTERNS, mode_name
+
+    bodies = response.slip.shape[1]
+    states = {name: pair[2 - bodies :] for pair, name in PATTERNS.items()}
+    modes = [tuple(mode_name(state, 0) for state in states[name]) for name in response.events["to"]]
+    events = response.events.copy()
+    events["modes"] = pd.Series(modes, dtype=object)
+    events["slip"] = pd.Series([(0.0,) * bodies] * len(modes), dtype=object)
+    energy = response.energy.copy()
+    energy.insert(energy.shape[1] - 1, "lost_friction", 0.0)
+    return replace(response, events=events, energy=energy)
+
+
+ENGINE = PlanarContact()

@@ -1,0 +1,86 @@
+"""Many systems × motions × amplitudes at once, with friction, flight and vertical motion."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.engines.contract import Cases as Grid
+from rockfrag.engines.lanes import intervals_of, step_of
+from rockfrag.engines.planar.integrate import Book, Cases, integrate_cases
+from rockfrag.engines.planar.records import (
+    BODY,
+    MOST,
+    OUTCOME,
+    posed,
+    system_record,
+    working_memory,
+)
+from rockfrag.engines.steps import free_samples, step_count
+from rockfrag.system.system import System
+
+COARSE_CLOSING = 1e-4
+"""Parting speed over √(g b) below which a contact stays closed after an impact, where only the verdict matters."""
+
+CHUNK = 4
+"""Cases that a thread takes at once."""
+
+
+def contact_outcomes(
+    grid: Grid, wanted: NDArray[np.bool_] | None = None, closing: float = COARSE_CLOSING
+) -> NDArray[np.void]:
+    """Integrate the ``wanted`` cases of systems × motions × scales.
+
+    Parameters
+    ----------
+    grid
+        Planar systems, motions, scales, and what is asked of them.
+    wanted
+        Which cases to integrate, shape (systems, motions, scales); the others are left zero.  All if None.
+    closing
+        Parting speed over √(g b) below which a contact stays closed after an impact [-].
+
+    Returns
+    -------
+    Outcomes, (systems, motions, scales) of ``OUTCOME``.
+    """
+    g, step, dts = grid.request.g, step_of(grid), intervals_of(grid)
+    wanted = np.ones(grid.shape, dtype=bool) if wanted is None else wanted
+    table = np.zeros(len(grid.systems), BODY)
+    starts = np.zeros((len(grid.systems), 2, 3 * MOST))
+    for i, system in enumerate(grid.systems):
+        table[i] = system_record(system, g)
+        starts[i] = posed(table[i], *started(system))
+    ups = [motion.z.acceleration for motion in grid.motions if motion.z is not None]
+    sizes = [motion.x.acceleration.size for motion in grid.motions]
+    cases = Cases(
+        bodies=table,
+        starts=starts,
+        horizontal=np.concatenate([motion.x.acceleration for motion in grid.motions]),
+        vertical=np.concatenate(ups) if ups else np.zeros(0),
+        offsets=np.concatenate([[0], np.cumsum(sizes)]),
+        dts=dts,
+        factors=grid.scales,
+        substeps=np.array([step_count(system, dts, g, step) for system in grid.systems]),
+        free_samples=np.array([free_samples(system, dts, g) for system in grid.systems]),
+    )
+    outcome = np.zeros(wanted.size, OUTCOME)
+    numbers = np.flatnonzero(wanted)
+    book = Book(np.zeros((0, 0)), np.zeros((0, 0)))
+
+    def work(first: int, last: int) -> None:
+        integrate_cases(numbers[first:last], cases, closing, book, working_memory(), outcome)
+
+    work(0, 0)
+    with ThreadPoolExecutor(grid.threads) as pool:
+        firsts = range(0, numbers.size, CHUNK)
+        list(pool.map(work, firsts, [first + CHUNK for first in firsts]))
+    return outcome.reshape(wanted.shape)
+
+
+def started(system: System) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Rotations [rad] and angular velocities [rad/s] of the bodies at the start."""
+    zeros = (0.0,) * system.count
+    return (
+        (zeros, zeros) if system.start is None else (system.start.rotation, system.start.velocity)
+    )

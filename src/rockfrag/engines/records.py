@@ -1,0 +1,81 @@
+"""From a system to the record of numbers that the kernels read."""
+
+import numpy as np
+
+from rockfrag.engines.kernels.equations import BODY
+from rockfrag.input_checks import positive_number
+from rockfrag.system import geometry
+from rockfrag.system.contact import ImpactLaw
+from rockfrag.system.system import System
+from rockfrag.units import GRAVITY
+
+After = tuple[int, float]
+"""Law and number of the impacts that end on one pivot, as the kernels have them (``kernels.equations.AFTER``)."""
+
+BY_MOMENTUM: After = (0, 1.0)
+FIELDS = ("after1r", "after1l", "after2r", "after2l")
+
+
+def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.void:
+    """Return the record of a system of one or two bodies that the kernels read (``kernels.equations.BODY``).
+
+    Parameters
+    ----------
+    system
+        One or two planar bodies.
+    linear
+        Use the linearised equations: eq. 2.9 for one body, eq. 2.60-2.65 for two.
+    g
+        Acceleration of gravity [m/s²].
+
+    Raises
+    ------
+    InputError
+        If ``g`` is not positive.
+    """
+    positive_number("g", g, "m/s²")
+    store = np.zeros(1, BODY)
+    p: np.void = store[0]
+    found = afters(system)
+    for name, after in zip(FIELDS, found, strict=True):
+        p[name] = after
+    p["gravity"] = g
+    # a view whose fields are attributes, as those of records are in kernels
+    named = store.view(np.recarray)[0]
+    if system.count == 1:
+        geometry.fill_block(named, system.shapes[0])
+        p["linear"] = 2 if linear else 0
+    else:
+        geometry.fill_pile(named, system.pile)
+        p["linear"] = 1 if linear else 0
+    p["measured"] = any(after != BY_MOMENTUM for after in found)
+    return p
+
+
+def afters(system: System) -> tuple[After, ...]:
+    """Return how ground and interface come off impacts that end on their right and left pivots.
+
+    Of a lone body, which the interface stands for, all laws are the same.
+    """
+    if system.count == 1:
+        law = system.contacts[0].law
+        if law.name == "momentum":
+            return (BY_MOMENTUM,) * 4
+        return BY_MOMENTUM, BY_MOMENTUM, (geometry.RATIO, law.right), (geometry.RATIO, law.left)
+    return tuple(
+        after_impact(contact.law, shape, pivot)
+        for contact, shape in zip(system.contacts, system.carried, strict=True)
+        for pivot in (+1, -1)
+    )
+
+
+def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> After:
+    """Law and number of the impacts of a contact that end on a pivot of the body above it."""
+    if law.name == "momentum":
+        return BY_MOMENTUM
+    value = law.right if pivot > 0 else law.left
+    if law.name == "ratio":
+        return geometry.RATIO, value
+    if law.name == "position":
+        return geometry.by_position(shape, value, pivot)
+    return geometry.COUPLE, value / geometry.momentum_restitution(shape, pivot)

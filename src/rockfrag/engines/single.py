@@ -1,0 +1,325 @@
+"""Engine of single histories in pure rocking: one or two bodies, every impact, everything about the response."""
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.engines.response import PATTERNS, Response
+from rockfrag.engines.two_blocks import pair_support
+from rockfrag.errors import InputError
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.system.system import System
+
+Array = NDArray[np.float64]
+
+
+class Single:
+    """One or two planar bodies that rock and never slide, case by case (``kernels.single``)."""
+
+    name = "single histories"
+    meets = frozenset(
+        {
+            *(Wish.TWO_BODIES, Wish.VERTICAL, Wish.RESTITUTION, Wish.START, Wish.LINEAR),
+            *(Wish.FORCES, Wish.HISTORY),
+        }
+    )
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        found = by_wishes(self, system, motion, request)
+        return found if not found else pair_support(system)
+
+    def run(self, cases: Cases) -> Outcomes:
+        """Return the outcomes of cases, whose histories are not kept."""
+        from rockfrag.engines.kernels.lanes.case import OUTCOME
+        from rockfrag.engines.kernels.record import EVENT, SAMPLE, SUMMARY
+        from rockfrag.engines.lanes import write_rocking
+        from rockfrag.engines.records import body_record
+
+        g, linear = cases.request.g, cases.request.linear
+        records = [body_record(system, linear, g) for system in cases.systems]
+        starts = [initial_state(system) for system in cases.systems]
+        found = np.zeros(cases.shape, OUTCOME)
+        summaries = np.zeros(cases.shape, SUMMARY)
+        nothing = np.empty(0, SAMPLE), np.empty(0, EVENT)
+
+        def work(place: tuple[int, int, int]) -> None:
+            i, j, k = place
+            case = Case(
+                cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
+            )
+            done, summary = run_march(records[i], shaking_of(case), starts[i], *nothing)
+            found[place] = (
+                summary["fallen"], done - 1, summary["ratio1"], summary["ratio2"],
+                summary["speed2"] * case.motion.dt, summary["closest"], summary["impacts"],
+                summary["given_way"],
+            )  # fmt: skip
+            summaries[place] = summary
+
+        with ThreadPoolExecutor(cases.threads) as pool:
+            list(pool.map(work, np.ndindex(*cases.shape)))
+        outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
+        for count in sorted(set(outcomes.counts)):
+            rows = [i for i, system in enumerate(cases.systems) if system.count == count]
+            write_rocking(outcomes, rows, found[rows])
+            _write_summaries(outcomes, rows, summaries[rows], cases.request.forces)
+        return outcomes
+
+    def history(self, case: Case) -> Response:
+        """Return the response of a case.
+
+        Raises
+        ------
+        InputError
+            If its samples are more than are admitted.
+        """
+        from rockfrag.engines.kernels.record import EVENT, SAMPLE
+        from rockfrag.engines.records import body_record
+        from rockfrag.engines.steps import MOST_SAMPLES
+
+        record = body_record(case.system, case.request.linear, case.request.g)
+        initial, shaking = initial_state(case.system), shaking_of(case)
+        most = case.motion.x.acceleration.size + shaking.free_samples
+        if most > MOST_SAMPLES:
+            raise InputError(
+                f"motion: {most} samples, with the free rocking after it, are more than the {MOST_SAMPLES} "
+                "allowed."
+            )
+        history = np.zeros(most, SAMPLE)
+        capacity = 4096
+        while True:
+            events = np.zeros(capacity, EVENT)
+            done, summary = run_march(record, shaking, initial, history, events)
+            if summary["events"] <= capacity:
+                break
+            capacity = int(summary["events"])
+        return _response(
+            case.system, record, shaking, history[:done], events[: summary["events"]], summary
+        )
+
+
+def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
+    """Return times [s], rotations [rad], velocities [rad/s] and contact states of a case, without what follows.
+
+    Returns
+    -------
+    Times of shape (n,), and the others as in :class:`Response`, shape (n, bodies).
+    """
+    from rockfrag.engines.kernels.record import EVENT, SAMPLE
+    from rockfrag.engines.records import body_record
+
+    record = body_record(case.system, case.request.linear, case.request.g)
+    shaking = shaking_of(case)
+    rows = np.empty(case.motion.x.acceleration.size + shaking.free_samples, SAMPLE)
+    done, _ = run_march(record, shaking, initial_state(case.system), rows, np.empty(0, EVENT))
+    blocks = BLOCKS[-case.system.count :]
+    theta, omega, state = (
+        np.column_stack([rows[name + block][:done] for block in blocks])
+        for name in ("theta", "omega", "c")
+    )
+    return np.arange(done, dtype=np.float64) * case.motion.dt, theta, omega, state
+
+
+def _write_summaries(
+    into: Outcomes, rows: list[int], summaries: NDArray[np.void], forces: bool
+) -> None:
+    """Write what single histories tell beside what lanes do."""
+    count = into.counts[rows[0]]
+    into.overturning_time[rows] = summaries["fall_time"]
+    into.peak_velocity[rows, ..., count - 1] = summaries["speed2"]
+    if not forces:
+        return
+    into.lost_contact[rows] = summaries["lost_contact"]
+    # a lone body is the kernels' block 2
+    for k, number in enumerate(BLOCKS[-count:]):
+        into.friction_demand[rows, ..., k] = summaries["demand"]["friction" + number]
+        into.least_normal_force[rows, ..., k] = summaries["demand"]["normal" + number]
+
+
+BLOCKS = ("1", "2")
+"""What the kernels call the two bodies."""
+
+
+def initial_state(system: System) -> np.void:
+    """Return the STATE that the integration begins with."""
+    from rockfrag.engines.kernels.equations import STATE
+
+    initial: np.void = np.zeros(1, STATE)[0]
+    if system.start is not None:
+        for name, values in (("theta", system.start.rotation), ("omega", system.start.velocity)):
+            initial[name + "1"], initial[name + "2"] = (0.0, *values)[-2:]
+    return initial
+
+
+def shaking_of(case: Case) -> Any:
+    """Return what a system is shaken with (``kernels.single.Shaking``), in steps that follow from the system."""
+    from rockfrag.engines.kernels.single import Shaking
+    from rockfrag.engines.steps import STEP, free_samples, step_count
+
+    motion, request = case.motion, case.request
+    step = STEP if math.isnan(request.step) else request.step
+    return Shaking(
+        samples=motion.x.acceleration,
+        vertical=np.zeros(0) if motion.z is None else motion.z.acceleration / request.g,
+        scale=float(case.scale),
+        dt=motion.dt,
+        substeps=int(step_count(case.system, motion.dt, request.g, step)),
+        free_samples=int(free_samples(case.system, motion.dt, request.g)),
+    )
+
+
+def run_march(
+    record: np.void,
+    shaking: Any,
+    initial: np.void,
+    history: NDArray[np.void],
+    events: NDArray[np.void],
+) -> tuple[int, np.void]:
+    """Integrate one system; return the number of samples done and the summary."""
+    from rockfrag.engines.kernels.jit import compiling_alone
+    from rockfrag.engines.kernels.record import SUMMARY
+    from rockfrag.engines.kernels.single import march, scratch
+
+    summary: np.void = np.zeros(1, SUMMARY)[0]
+    with compiling_alone(march):
+        done = march(record, shaking, initial, history, events, summary, scratch())
+    return int(done), summary
+
+
+def _response(
+    system: System,
+    record: np.void,
+    shaking: Any,
+    history: NDArray[np.void],
+    events: NDArray[np.void],
+    summary: np.void,
+) -> Response:
+    """Put the response of a system together."""
+    from rockfrag.engines.forces import centres, contact_forces
+
+    n = len(history)
+    blocks = list(BLOCKS[-system.count :])
+    theta, omega, alpha, state = (
+        np.column_stack([history[name + block] for block in blocks])
+        for name in ("theta", "omega", "alpha", "c")
+    )
+    samples, dt = shaking.samples * shaking.scale, shaking.dt
+    ground, gravity = np.zeros(n), np.full(n, float(record["gravity"]))
+    ground[: min(n, samples.size)] = samples[:n]
+    up = shaking.scale * shaking.vertical[:n]
+    gravity[: up.size] += gravity[: up.size] * up
+    normal, friction = contact_forces(system, ground, state, theta, omega, alpha, gravity)
+    time = np.arange(n, dtype=np.float64) * dt
+    fallen = int(summary["fallen"])
+    which = fallen - (2 - system.count) if fallen else 0
+    return Response(
+        system=system,
+        time=time,
+        ground_acceleration=ground,
+        position=centres(system, state, theta),
+        theta=theta,
+        omega=omega,
+        alpha=alpha,
+        state=state,
+        slides=np.zeros_like(state),
+        slip=np.zeros_like(theta),
+        events=_event_table(events, blocks),
+        overturned=fallen > 0,
+        overturned_body=("", *system.names)[which],
+        overturning_time=float(summary["fall_time"]),
+        energy=_energy_table(record, time, history, events, system.count == 1),
+        normal_force=normal,
+        friction_force=friction,
+        impacts=int(summary["impacts"]),
+        grazings=int(summary["grazings"]),
+        paradoxes=0,
+        forced=0,
+        given_way=int(summary["given_way"]),
+        friction_demand=np.array([summary["demand"]["friction" + block] for block in blocks]),
+        least_normal_force=np.array([summary["demand"]["normal" + block] for block in blocks]),
+        lost_contact=float(summary["lost_contact"]),
+        unstable_distance=float(summary["closest"]),
+    )
+
+
+def _event_table(events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
+    """Make the table of events of a response."""
+    from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
+
+    kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
+    before, after = events["before"], events["after"]
+
+    def each(state: NDArray[np.void], name: str) -> list[tuple[float, ...]]:
+        return list(zip(*(state[name + block].tolist() for block in blocks), strict=True))
+
+    def patterns(state: NDArray[np.void]) -> list[str]:
+        return [
+            PATTERNS[pair] for pair in zip(state["c1"].tolist(), state["c2"].tolist(), strict=True)
+        ]
+
+    return pd.DataFrame(
+        {
+            "time": events["time"],
+            "kind": [kinds[kind] for kind in events["kind"].tolist()],
+            "from": patterns(before),
+            "to": patterns(after),
+            "omega_before": each(before, "omega"),
+            "omega_after": each(after, "omega"),
+            "theta": each(after, "theta"),
+            "energy_before": events["energy_before"],
+            "energy_after": events["energy_after"],
+        }
+    )
+
+
+def _energy_table(
+    record: np.void, time: Array, history: NDArray[np.void], events: NDArray[np.void], lone: bool
+) -> pd.DataFrame:
+    """Ledger of energy by cause over time [J]."""
+    from rockfrag.engines.kernels.equations import STATE
+    from rockfrag.engines.kernels.jit import compiling_alone
+    from rockfrag.engines.kernels.record import OPENING, fill_energies
+
+    kinetic = np.empty(len(history))
+    potential = np.empty(len(history))
+    with compiling_alone(fill_energies):
+        fill_energies(record, history, kinetic, potential, np.zeros(1, STATE)[0])
+    # an impact closes the ground if the pedestal's contact changed, the interface otherwise
+    before = events["before"]["c1"]
+    by_ground = (before != 0) & (before != events["after"]["c1"])
+    loss = np.where(
+        events["kind"] == OPENING, 0.0, events["energy_before"] - events["energy_after"]
+    )
+    at = np.searchsorted(time, events["time"] - 1e-12 * max(1.0, time[-1]))
+
+    def so_far(values: Array) -> Array:
+        total = np.zeros(len(time) + 1)
+        np.add.at(total, at, values)
+        return np.cumsum(total)[: len(time)]
+
+    # of a lone body, the kernels' second, the interface is the ground
+    lost = [so_far(loss)] if lone else [so_far(loss * by_ground), so_far(loss * ~by_ground)]
+    work = history["work"]
+    start = kinetic[0] + potential[0]
+    total = kinetic + potential
+    for each in lost:
+        total = total + each
+    return pd.DataFrame(
+        {
+            "time": time,
+            "kinetic": kinetic,
+            "potential": potential,
+            "input": work,
+            **{f"lost_contact_{k + 1}": values for k, values in enumerate(lost)},
+            "residual": total - work - start,
+        }
+    )
+
+
+ENGINE = Single()

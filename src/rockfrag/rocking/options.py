@@ -1,0 +1,170 @@
+"""Options of every door as people write them, and the system that they make of a body."""
+
+import numbers
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from rockfrag.errors import InputError
+from rockfrag.input_checks import shown
+from rockfrag.rocking.inputs import Standing, check_one_per_body, checked_start
+from rockfrag.rocking.measured_restitution import Restitution, impact_laws
+from rockfrag.system.blocks import as_system
+from rockfrag.system.contact import Friction, checked_friction
+from rockfrag.system.system import Start, System, each_contact
+
+FrictionInput = float | Friction | dict[str, Any] | Sequence[Any]
+"""A coefficient for all contacts; a :class:`Friction`; ``{"ground": …, "interface": …}``; of a lone block a pair
+(static, kinetic); of several bodies one entry per contact from below."""
+
+StartInput = float | Sequence[float] | None
+"""Rotation or angular velocity of each body at the start, from below; one number for a lone block."""
+
+
+def system_of(
+    body: Standing,
+    friction: FrictionInput | None = None,
+    restitution: Restitution = None,
+    theta0: StartInput = None,
+    omega0: StartInput = None,
+    name: str = "",
+) -> System:
+    """Return the system that a body and its options are.
+
+    Parameters
+    ----------
+    body
+        What stands.
+    friction
+        Friction of its contacts; None as the body has it.
+    restitution
+        Restitution of its contacts, likewise.
+    theta0, omega0
+        Rotations [rad] and angular velocities [rad/s] at the start, likewise.
+    name
+        What messages add to the name of an option, such as ``[3]``.
+
+    Raises
+    ------
+    InputError
+        If an option does not fit the body.
+    """
+    system = as_system(body)
+    contacts = list(system.contacts)
+    if friction is not None:
+        given = frictions_of(system.count, friction, "friction" + name)
+        contacts = [replace(one, friction=mu) for one, mu in zip(contacts, given, strict=True)]
+    if restitution is not None:
+        laws = impact_laws(system, restitution, "restitution" + name)
+        contacts = [replace(one, law=law) for one, law in zip(contacts, laws, strict=True)]
+    start = system.start
+    if theta0 is not None or omega0 is not None:
+        start = Start(
+            checked_start(system, theta0, "theta0"), checked_start(system, omega0, "omega0")
+        )
+    if friction is None and restitution is None and start is system.start:
+        return system
+    return replace(system, contacts=tuple(contacts), start=start)
+
+
+def systems_of(
+    bodies: Sequence[Standing],
+    friction: FrictionInput | None = None,
+    restitution: Sequence[Restitution] | None = None,
+    theta0: Sequence[StartInput] | None = None,
+    omega0: Sequence[StartInput] | None = None,
+) -> tuple[System, ...]:
+    """Return the systems that bodies and their options are.
+
+    Parameters
+    ----------
+    bodies
+        What stands.
+    friction
+        A list with one entry per body, each as in :func:`system_of`; or one coefficient, one :class:`Friction`
+        or one mapping for all.
+    restitution, theta0, omega0
+        Lists with one entry per body.
+
+    Raises
+    ------
+    InputError
+        If there is not one entry for each body, or one does not fit its body.
+    """
+    count = len(bodies)
+    each = _friction_of_each(friction, count)
+    for name, given in (("restitution", restitution), ("theta0", theta0), ("omega0", omega0)):
+        check_one_per_body(name, given, count)
+    nothing: list[Any] = [None] * count
+    several = count > 1
+    return tuple(
+        system_of(*written, f"[{i}]" if several else "")
+        for i, written in enumerate(
+            zip(
+                bodies,
+                each,
+                nothing if restitution is None else restitution,
+                nothing if theta0 is None else theta0,
+                nothing if omega0 is None else omega0,
+                strict=True,
+            )
+        )
+    )
+
+
+def _friction_of_each(friction: Any, count: int) -> list[Any]:
+    """Friction of each body; a tuple that could mean several things is refused."""
+    if isinstance(friction, np.ndarray) and friction.ndim == 0:
+        friction = friction.item()
+    if friction is None or isinstance(friction, (numbers.Real, Friction, dict)):
+        return [friction] * count
+    bare = isinstance(friction, tuple) and all(isinstance(v, numbers.Real) for v in friction)
+    if bare:
+        raise InputError(
+            f"friction: {shown(friction)} could be one coefficient per body, (ground, interface) or (static, "
+            "kinetic); give a list with one entry per body, or name the contacts: "
+            '{"ground": 0.6, "interface": 0.2}.'
+        )
+    if not isinstance(friction, (list, tuple, np.ndarray)) or len(friction) != count:
+        raise InputError(
+            f"friction: expected a number or a list with {count} entries, one per body, got {shown(friction)}."
+        )
+    return list(friction)
+
+
+def frictions_of(count: int, friction: object, name: str = "friction") -> list[Friction | None]:
+    """Return the friction of each contact of a body, the ground's first.
+
+    Raises
+    ------
+    InputError
+        If the numbers do not fit the body, one is negative or none, or a static coefficient is less than the
+        kinetic one.
+    """
+    places = (
+        ["ground", "interface"]
+        if count == 2
+        else ["ground", *[f"interface {k}" for k in range(1, count)]]
+    )
+    given: Sequence[object]
+    if isinstance(friction, np.ndarray) and friction.ndim == 0:
+        friction = friction.item()
+    if isinstance(friction, (numbers.Real, Friction, dict)) or count == 1:
+        given = each_contact(name, friction, count)
+    elif isinstance(friction, (list, tuple, np.ndarray)) and len(friction) == count:
+        given = list(friction)
+    elif count == 2:
+        raise InputError(
+            f"{name}: a stack takes (ground, interface), each a coefficient or a pair (static, kinetic), got "
+            f"{shown(friction)}."
+        )
+    else:
+        raise InputError(
+            f"{name}: expected one entry for each of {count} contacts, got {shown(friction)}."
+        )
+    return [
+        checked_friction(f"{name} of the {place}", value)
+        for place, value in zip(places, given, strict=True)
+    ]
