@@ -94,11 +94,72 @@ def test_what_is_slow_to_load_is_loaded_only_when_it_is_used():
     assert done.stdout.strip() == "[]"
 
 
+WORKFLOWS = ROOT / ".github" / "workflows"
+
+
+def hosted(name: str) -> dict:
+    return yaml.safe_load((WORKFLOWS / name).read_text(encoding="utf-8"))
+
+
 def test_hosted_checks_and_the_makefile_agree():
-    checks = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    checks = "".join(path.read_text(encoding="utf-8") for path in WORKFLOWS.glob("*.yml"))
     targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
     used = set(re.findall(r"run: make ([a-z]+)", checks))
     assert used <= targets
-    assert {"lint", "coverage", "smoke"} <= used
+    assert {"lint", "coverage", "smoke", "docs", "validate", "fuzz", "torture"} <= used
     for folder in re.findall(r"tests/[a-z]+", checks):
-        assert (ROOT / folder).exists() or (ROOT / f"{folder}_cli.py").exists(), folder
+        assert (ROOT / folder).exists() or any(ROOT.glob(f"{folder}*.py")), folder
+
+
+def test_every_supported_version_of_python_is_checked():
+    tested = hosted("ci.yml")["jobs"]["test"]["strategy"]["matrix"]["python"]
+    said = [
+        one.rpartition(" :: ")[2]
+        for one in PROJECT["project"]["classifiers"]
+        if re.search(r"Python :: 3\.\d", one)
+    ]
+    assert tested == said == ["3.11", "3.12", "3.13"]
+
+
+def test_long_checks_run_every_week():
+    weekly = hosted("weekly.yml")
+    # YAML reads the key `on` as a truth value
+    assert weekly[True]["schedule"][0]["cron"].endswith(" 0")
+    steps = [step.get("run", "") for job in weekly["jobs"].values() for step in job["steps"]]
+    assert "make validate" in steps
+
+
+def test_a_tag_builds_tests_and_publishes_package_and_site():
+    jobs = hosted("release.yml")["jobs"]
+    assert hosted("release.yml")[True] == {"push": {"tags": ["v*"]}}
+    for publishing in ("package", "pages"):
+        assert set(jobs[publishing]["needs"]) == {"build", "test", "site"}
+
+
+def test_the_changelog_dates_every_version():
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    found = re.findall(r"^## (\S+) - (\d{4}-\d{2}-\d{2})$", text, re.MULTILINE)
+    assert len(found) == text.count("\n## ")
+    assert found[0][0] == rockfrag.__version__
+    assert [date for _, date in found] == sorted((date for _, date in found), reverse=True)
+
+
+def test_forms_for_issues_ask_for_something():
+    forms = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
+    assert len(forms) >= 4
+    for form in forms:
+        content = yaml.safe_load(form.read_text(encoding="utf-8"))
+        if form.name != "config.yml":
+            assert {"name", "description", "body"} <= set(content)
+            assert any(one.get("validations", {}).get("required") for one in content["body"])
+
+
+def test_what_only_the_owner_can_fill_in_is_listed_and_still_missing():
+    words = (ROOT / "docs" / "publishing.md").read_text(encoding="utf-8")
+    assert "urls" not in PROJECT["project"]
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    for key in ("repository-code", "doi"):
+        assert key not in citation
+        assert key in words
+    for name in re.findall(r"`([A-Za-z_]+\.(?:md|toml|cff))`", words):
+        assert (ROOT / name).is_file(), name

@@ -109,12 +109,12 @@ def plain_log(axes: Axes, which: str) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def letter_panels(axes: Iterable[Axes]) -> None:
+def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
     """Name panels (a), (b), … above their upper left corners, where there is more than one."""
     panels = list(axes)
     for letter, panel in zip("abcdefghijklmnop", panels if len(panels) > 1 else [], strict=False):
         title = panel.get_title(loc="left")
-        panel.set_title(f"({letter}) {title}".strip(), loc="left", pad=3)
+        panel.set_title(f"({letter}) {title}".strip(), loc="left", pad=3, fontsize=size)
 
 
 def note_figure(words: str) -> Figure:

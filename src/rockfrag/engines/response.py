@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -40,9 +41,20 @@ MODES = {
 """What an interface does in each contact state."""
 
 
-def pattern_name(ground: int, interface: int) -> str:
-    """Name of the pattern of two contact states: that of the thesis, or "flight"."""
-    return "flight" if FLIGHT in (ground, interface) else PATTERNS[ground, interface]
+LETTERS = {0: "0", +1: "R", -1: "L", FLIGHT: "F"}
+"""Letter of each contact state, in the pattern of three and more bodies."""
+
+
+def pattern_name(states: Sequence[int]) -> str:
+    """Name of a pattern, of the contact states from below.
+
+    Of one and two bodies that of the thesis, or "flight"; of more a letter per contact from below: 0 stands, R and
+    L rocks on its right and left end, F flies.
+    """
+    if len(states) > 2:
+        return "".join(LETTERS[int(state)] for state in states)
+    ground, interface = (0, *states)[-2:]
+    return "flight" if FLIGHT in (ground, interface) else PATTERNS[int(ground), int(interface)]
 
 
 def mode_name(state: int, slides: int) -> str:
@@ -163,10 +175,7 @@ class Response:
     @property
     def pattern(self) -> NDArray[np.str_]:
         """Pattern of rocking at each sample ("rest", "4a", …, "flight"), shape (n,)."""
-        state = self.state
-        if state.shape[1] == 1:
-            state = np.column_stack([np.zeros(len(state), dtype=int), state])
-        return np.array([pattern_name(int(one), int(two)) for one, two in state])
+        return np.array([pattern_name(states) for states in self.state.tolist()])
 
     @property
     def mode(self) -> NDArray[np.str_]:

@@ -19,6 +19,9 @@ from rockfrag.system import geometry
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
+MOST_PATTERNS = len(OKABE_ITO)
+"""Rows of patterns; more are counted."""
+
 _PATTERNS = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 
@@ -91,7 +94,14 @@ def _slips(panel: Axes, response: Response, colours: list[str]) -> None:
 def _patterns(panel: Axes, response: Response) -> None:
     """Mark at which times each pattern of rocking is there."""
     labels = response.pattern
-    seen = [name for name in _PATTERNS if (labels == name).any()]
+    known = _PATTERNS if len(response.system.names) < 3 else sorted(set(labels))
+    seen = [name for name in known if (labels == name).any()]
+    if len(seen) > MOST_PATTERNS:
+        # of a long column the number of bodies that rock or fly tells more than a row for each pattern
+        moving = (response.state != 0).sum(axis=1)
+        panel.step(response.time, moving, color=BLACK, lw=0.6)
+        panel.set_ylabel("Open contacts")
+        return
     for row, name in enumerate(seen):
         times = response.time[labels == name]
         panel.plot(times, np.full(times.size, row), "|", color=OKABE_ITO[row], ms=6, mew=0.6)

@@ -41,7 +41,7 @@ class Outcomes:
         Which of them answered each case.
     overturned, overturned_body, overturning_time, certain_time, impacts, flights, given_way, paradoxes
         Of cases, see :func:`columns`.
-    unstable_distance, minimum_gravity_ratio, lost_contact
+    parted_contact, several_modes, unstable_distance, minimum_gravity_ratio, lost_contact
         Likewise.
     peak_rotation, peak_velocity, turn, walk, fall_direction
         Of bodies.
@@ -79,6 +79,15 @@ class Outcomes:
         "",
         "Impacts in which the law of a restitution gave way, lest energy grow.",
         np.int64(0),
+    )
+    parted_contact: Small = column(
+        "cases",
+        "",
+        "Number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told.",
+        np.int8(0),
+    )
+    several_modes: Whole = column(
+        "cases", "", "Times that more than one mode of contact was found consistent.", np.int64(0)
     )
     paradoxes: Whole = column(
         "cases", "", "Times that no mode of contact was consistent.", np.int64(0)

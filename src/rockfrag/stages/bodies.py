@@ -4,20 +4,26 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from rockfrag.rocking.inputs import least_uplift
 from rockfrag.study.configurations import Configuration
-from rockfrag.system.blocks import Block, Body
+from rockfrag.system.blocks import Block, Body, Column
 from rockfrag.units import GRAVITY
 
 
-def uplift_accelerations(body: Body, g: float = GRAVITY) -> tuple[float, float]:
+def uplift_accelerations(body: Body | Column, g: float = GRAVITY) -> tuple[float, float]:
     """Least accelerations [m/s²] at which a body starts to rock in pattern 3 and in pattern 4.
 
     A body at rest opens about the pole whose overturning moment first exceeds the weight's (thesis
     eq. 2.1, 2.21-2.25). A lone block rocks like a statue on a pedestal that cannot move: its own
-    value is that of pattern 4, and its pattern 3 is NaN.
+    value is that of pattern 4, and its pattern 3 is NaN. Of three and more blocks the first is the least at
+    which any contact opens.
     """
     if isinstance(body, Block):
         return float("nan"), min(_tangent(body.arm(pole)) for pole in (+1, -1)) * g
+    if isinstance(body, Column):
+        top = body.blocks[-1]
+        alone = min(_tangent(top.arm(pole)) for pole in (+1, -1)) * g
+        return least_uplift(body.system(), g), alone
     return (
         min(_tangent(body.common_arm(pole)) for pole in (+1, -1)) * g,
         min(_tangent(body.statue_arm(pole)) for pole in (+1, -1)) * g,

@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.system.blocks import Block, Body
+from rockfrag.rocking.inputs import least_uplift
+from rockfrag.system.blocks import Block, Body, Column
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
@@ -21,10 +22,12 @@ FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
 """What peaks are called where the motion is that of a floor above the ground."""
 
 
-def uplift_amplitude(body: Body) -> float:
+def uplift_amplitude(body: Body | Column) -> float:
     """Peak acceleration above which something rocks, the smallest b/h of any pole [g]; thesis eq. 2.1."""
     if isinstance(body, Block):
         arms = [(pole, body.arm(pole)) for pole in (+1, -1)]
+    elif isinstance(body, Column):
+        return least_uplift(body.system(), 1.0)
     else:
         arms = [(pole, body.statue_arm(pole)) for pole in (+1, -1)]
         arms += [(pole, body.common_arm(pole)) for pole in (+1, -1)]
@@ -41,7 +44,7 @@ def floor_curves(
     slid: Mapping[tuple[str, str], "SweepData"],
     measures: pd.DataFrame,
     floors: Mapping[str, int],
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, Body | Column],
     record_set: str,
     level: float,
     rocks_at_once: bool = True,

@@ -15,7 +15,7 @@ from rockfrag.rocking.measured_restitution import (
     Restitution,
 )
 from rockfrag.rocking.options import FrictionInput, system_of
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.blocks import Block, Body, Column, Stack
 from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
 
@@ -29,7 +29,8 @@ class Configuration:
     name
         Its name in tables, for example ``P&T1``.
     object, pedestal
-        Names of the blocks; ``pedestal`` is empty where the object stands on the ground.
+        Names of the blocks; ``pedestal`` is empty where the object stands on the ground, and names all blocks
+        under it, from above, as ``base|plinth``.
     body
         What the mechanics see.
     restitution
@@ -41,7 +42,7 @@ class Configuration:
     name: str
     object: str
     pedestal: str
-    body: Body
+    body: Body | Column
     restitution: Restitution = None
     friction: FrictionInput | None = None
 
@@ -63,7 +64,14 @@ class Configuration:
     @property
     def fallen_names(self) -> tuple[str, ...]:
         """What tables call the body that fell, by its number in outcomes."""
+        if len(self.below) > 1:
+            return ("", *reversed(self.below), self.object)
         return ("", "pedestal", "statue") if self.pedestal else ("", "statue")
+
+    @property
+    def below(self) -> tuple[str, ...]:
+        """Names of the blocks under the object, from above."""
+        return names_from_above(self.pedestal)
 
     @property
     def slug(self) -> str:
@@ -126,7 +134,9 @@ def read_configurations(
 ) -> list[Configuration]:
     """Read which block stands on which.
 
-    Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none.
+    Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several
+    blocks under an object are named from above, ``base|plinth``; they may stand behind the object too,
+    ``venus|base|plinth``.
 
     Raises
     ------
@@ -137,22 +147,39 @@ def read_configurations(
     found: dict[str, Configuration] = {}
     checked: dict[str, str] = {}
     for row in read_rows(path, ["name", "object"], ["pedestal"]):
-        name, object_name = row.text("name"), row.text("object")
-        pedestal = row.cells.get("pedestal", "")
-        for column, block in (("object", object_name), ("pedestal", pedestal)):
-            if block and block not in blocks:
+        name = row.text("name")
+        object_name, *behind = names_from_above(row.text("object")) or ("",)
+        under = names_from_above(row.cells.get("pedestal", ""))
+        if behind and under:
+            raise row.error("pedestal", "what stands under the object is named behind it already")
+        below = tuple(behind) or under
+        for column, block in (("object", object_name), *(("pedestal", one) for one in below)):
+            if block not in blocks:
                 known = ", ".join(blocks)
                 raise row.error(column, f"expected one of the specimens {known}, found {block}")
         if name in found:
             raise row.error("name", f"{name} is given twice")
         try:
-            statue = blocks[object_name]
-            body = Stack(blocks[pedestal], statue) if pedestal else statue
+            body = arranged([blocks[one] for one in (object_name, *below)])
             distinct_file_names([name], checked)
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
-        found[name] = Configuration(name, object_name, pedestal, body)
+        found[name] = Configuration(name, object_name, "|".join(below), body)
     return list(found.values())
+
+
+def names_from_above(text: str) -> tuple[str, ...]:
+    """Names in a cell that are separated by upright bars."""
+    return tuple(name.strip() for name in text.split("|")) if text.strip() else ()
+
+
+def arranged(from_above: list[Block]) -> Body | Column:
+    """Return blocks that stand on each other, the uppermost first, as a block, a stack or a column."""
+    if len(from_above) == 1:
+        return from_above[0]
+    if len(from_above) == 2:
+        return Stack(from_above[1], from_above[0])
+    return Column(tuple(reversed(from_above)))
 
 
 def each_alone(blocks: dict[str, Block]) -> list[Configuration]:
@@ -178,11 +205,10 @@ def with_restitution(
     InputError
         If a block would gain energy.
     """
-    of_object = measured.get(configuration.object)
-    of_pedestal = measured.get(configuration.pedestal)
-    if of_object is None and (of_pedestal is None or not configuration.pedestal):
+    each = [measured.get(name) for name in (*reversed(configuration.below), configuration.object)]
+    if all(one is None for one in each):
         return configuration
-    value = (of_pedestal, of_object) if configuration.pedestal else of_object
+    value = tuple(each) if configuration.pedestal else each[0]
     restitution = MeasuredRestitution(value, law)  # type: ignore[arg-type]
     system_of(configuration.body, restitution=restitution)
     return replace(configuration, restitution=restitution)

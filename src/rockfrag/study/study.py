@@ -143,8 +143,9 @@ class Study:
 
     @property
     def simulated_in_page(self) -> bool:
-        """Whether its verdicts are those of the simulation in a page, which knows horizontal rocking alone."""
-        return not (self.slides or self.vertical)
+        """Whether the simulation in a page has its outcomes: horizontal rocking alone, of one or two bodies."""
+        few = all(len(one.body.blocks) < 3 for one in self.configurations)
+        return few and not (self.slides or self.vertical)
 
     @property
     def floors(self) -> dict[str, int]:

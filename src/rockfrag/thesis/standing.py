@@ -15,7 +15,7 @@ from rockfrag.rocking.ensemble import Options, prepared
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import always_overturning, first_overturning, step_protocol
 from rockfrag.study.configurations import Configuration
-from rockfrag.system.blocks import Body
+from rockfrag.system.blocks import Body, Column
 from rockfrag.system.perturbation import Written, perturbed
 
 SIZES = (1e-9, 1e-6, 1e-4)
@@ -67,6 +67,7 @@ def standing_readings(
     rng = np.random.default_rng(seed)
     rows = []
     for one in configurations:
+        assert not isinstance(one.body, Column)
         copies = [[_copy(one.body, size, rng) for _ in range(COPIES)] for size in SIZES]
         fell = overturns(
             [one.body],

@@ -88,6 +88,8 @@ class PlanarContact:
         into.flights[place] = flights[other]
         into.paradoxes[place] = left["paradoxes"]
         into.given_way[place] = left["given_way"]
+        into.parted_contact[place] = left["parted"]
+        into.several_modes[place] = left["several"]
         into.unstable_distance[place] = np.nan
         for k in range(count):
             own = (*place, k)

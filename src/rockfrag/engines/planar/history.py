@@ -173,7 +173,7 @@ def _kind_of_change(before: Modes, after: Modes) -> str:
 
 def _pattern(modes: Modes) -> str:
     states = [state for state, _ in modes]
-    return pattern_name(states[0] if len(states) > 1 else 0, states[-1])
+    return pattern_name(states)
 
 
 def _grazings(events: pd.DataFrame) -> int:

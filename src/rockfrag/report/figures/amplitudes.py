@@ -6,6 +6,7 @@ one that overturned at the first step has an arrow down. Neither is in a mean: m
 """
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -85,6 +86,10 @@ def top(rows: pd.DataFrame) -> float:
     return 1.15 * float(rows["a"].max())
 
 
+def _top_of_sides(rows: pd.DataFrame, by: str) -> float:
+    return _highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows)
+
+
 def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     """Amplitudes of each object, without and with a pedestal.
 
@@ -103,7 +108,7 @@ def amplitudes_by_object(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
         axes = figure.subplots()
         rows = drawn_tests(tests)
         _sides_panel(axes, rows, "object", objects, known)
-        axes.set_ylim(0, top(rows))
+        axes.set_ylim(0, _top_of_sides(rows, "object"))
         _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
     return figure
 
@@ -123,7 +128,7 @@ def amplitudes_by_floor(tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
         figure = new_figure(COLUMN_WIDTH, 2.8)
         axes = figure.subplots()
         _sides_panel(axes, rows, "floor", floors, known)
-        axes.set_ylim(0, top(rows))
+        axes.set_ylim(0, _top_of_sides(rows, "floor"))
         _finish_sides(figure, axes, tests, len(known.dropna(subset=["mean_g"])) > 0)
     return figure
 
@@ -136,11 +141,15 @@ def _sides_panel(
     both = set(rows["pedestal"]) == set(SIDES)
     shift = SIDE_SHIFT if both else dict.fromkeys(SIDES, 0.0)
     x = rows[by].map(place) + rows["pedestal"].map(shift)
-    if both:
+    crowded = len(rows) > MOST_MARKS
+    if both and not crowded:
         _join_pairs(axes, rows.assign(x=x))
     for side in SIDES:
         own = rows["pedestal"] == side
-        if own.any():
+        if crowded and own.any():
+            part = rows[own].assign(x=x[own])
+            _box_at(axes, part, "x", sorted(part["x"].unique()), 0.18, SIDE_COLOUR[side])
+        elif own.any():
             where = x[own].to_numpy(dtype=float)
             plot_tests(axes, where, rows[own], SIDE_MARKER[side], SIDE_COLOUR[side])
         known = means[(means["pedestal"] == side) & means["mean_g"].notna()]
@@ -187,7 +196,10 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
         handles.append(
             Line2D([], [], ls="", marker="_", ms=12, mew=2.4, color=GREY, label="geometric mean")
         )
-    handles += bound_handle(tests)
+    if len(tests) > MOST_MARKS:
+        handles.append(Line2D([], [], color=GREY, label="median, 25–75 %, 5–95 %"))
+    else:
+        handles += bound_handle(tests)
     if handles:
         figure.legend(handles=handles, loc="outside upper center", ncols=2)
 
@@ -278,7 +290,7 @@ def slenderness_figure(
             x = own["object"].map(slenderness).to_numpy(dtype=float)
             axes.plot(x, own["mean_g"], color=BLACK, lw=1.0, marker="_", ms=10, mew=1.8)
             axes.set_title(SIDE_NAME[side], loc="left")
-            axes.set_ylim(0, top(rows))
+            axes.set_ylim(0, _highest_box(rows, "x") if crowded else top(rows))
             axes.set_xticks(sorted(rows["x"].unique()))
         figure.supxlabel("Slenderness H/B", fontsize=8)
         letter_panels(grid)
@@ -291,18 +303,28 @@ def slenderness_figure(
 
 def _boxes(axes: Axes, part: pd.DataFrame) -> None:
     """Distribution of many tests at each slenderness: median, quartiles, 5 to 95 %."""
-    levels = sorted(part["x"].unique())
+    _box_at(axes, part, "x", sorted(part["x"].unique()), 0.3, BLUE)
+
+
+def _highest_box(rows: pd.DataFrame, by: str) -> float:
+    """Upper end of an axis of distributions [g]."""
+    return 1.15 * float(rows.groupby([by, "pedestal"])["a"].quantile(0.95).max())
+
+
+def _box_at(
+    axes: Axes, part: pd.DataFrame, by: str, levels: Sequence[Any], width: float, colour: str
+) -> None:
     axes.boxplot(
-        [part.loc[part["x"] == level, "a"].to_numpy(dtype=float) for level in levels],
+        [part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels],
         positions=levels,
-        widths=0.3,
+        widths=width,
         whis=(5, 95),
         showfliers=False,
         manage_ticks=False,
-        boxprops={"color": BLUE},
-        whiskerprops={"color": BLUE},
-        capprops={"color": BLUE},
-        medianprops={"color": BLUE, "linewidth": 1.6},
+        boxprops={"color": colour},
+        whiskerprops={"color": colour},
+        capprops={"color": colour},
+        medianprops={"color": colour, "linewidth": 1.6},
     )
 
 

@@ -1,0 +1,83 @@
+"""A column goes wherever a block goes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockfrag.errors import InputError
+from rockfrag.rocking import find_thresholds, overturns, simulate, stream_overturns
+from rockfrag.study.configurations import read_configurations, read_specimens
+from rockfrag.system import Block, Column, Stack
+
+from .cases import DT
+
+PLINTH, BASE, STATUE = Block(0.8, 0.4, 500.0), Block(0.5, 0.3, 150.0), Block(0.3, 1.0, 100.0)
+COLUMN = Column((PLINTH, BASE, STATUE))
+TIME = np.arange(0, 3, DT)
+MOTION = 5 * np.sin(2 * np.pi * 0.9 * TIME) * np.sin(np.pi * TIME / 3)
+
+
+def test_a_column_of_two_is_the_stack() -> None:
+    pair = Column((BASE, STATUE))
+    found = simulate(pair, MOTION, DT, friction=0.5)
+    stack = simulate(Stack(BASE, STATUE), MOTION, DT, friction=0.5)
+    np.testing.assert_array_equal(found.theta, stack.theta)
+    assert found.overturned == stack.overturned
+
+
+def test_history_and_outcome_of_a_column_agree() -> None:
+    for friction in (None, 0.5, {"ground": 0.6, "interface": [0.5, 0.4]}):
+        response = simulate(COLUMN, MOTION, DT, friction=friction)
+        outcomes = overturns(COLUMN, [MOTION], DT, [1.0], friction=friction and [friction])
+        assert response.theta.shape[1] == 3
+        assert bool(outcomes.overturned[0, 0, 0]) == response.overturned
+        assert len(outcomes.table("bodies")) == len(outcomes.table("contacts")) == 3
+
+
+def test_who_fell_first_and_where_the_column_parted() -> None:
+    outcomes = overturns(COLUMN, [MOTION], DT, [0.2, 1.5])
+    assert outcomes.overturned.ravel().tolist() == [False, True]
+    assert outcomes.overturned_body.ravel().tolist() == [0, 3]
+    assert outcomes.parted_contact.ravel().tolist() == [0, 3]
+
+
+def test_restitution_and_friction_go_together() -> None:
+    held = overturns(COLUMN, [MOTION], DT, [1.0], friction=[0.6])
+    bounced = overturns(
+        COLUMN, [MOTION], DT, [1.0], friction=[0.6], restitution=[(None, 0.9, 0.97)]
+    )
+    assert held.impacts[0, 0, 0] != bounced.impacts[0, 0, 0] or held.overturned[0, 0, 0]
+
+
+def test_thresholds_and_streams_take_columns(tmp_path: Path) -> None:
+    found = find_thresholds(
+        COLUMN, [MOTION], DT, 4.0, tolerance=0.05, smallest_window=0.5, friction=0.6
+    )
+    assert "body" in str(found.windows.columns.tolist())
+    assert stream_overturns([COLUMN], [MOTION], DT, [0.2, 1.5], tmp_path / "o.parquet") == 2
+
+
+def arrangements(folder: Path, row: str) -> list:
+    """Read one arrangement of three blocks."""
+    (folder / "blocks.csv").write_text(
+        "name,width_m,height_m,mass_kg\nplinth,0.8,0.4,500\nbase,0.5,0.3,150\nvenus,0.3,1.0,100\n"
+    )
+    (folder / "arrangements.csv").write_text(f"name,object,pedestal\n{row}\n")
+    return read_configurations(folder / "arrangements.csv", read_specimens(folder / "blocks.csv"))
+
+
+@pytest.mark.parametrize("row", ["all,venus,base|plinth", "all,venus | base | plinth,"])
+def test_an_arrangement_names_its_blocks_from_above(tmp_path: Path, row: str) -> None:
+    (found,) = arrangements(tmp_path, row)
+    assert found.object == "venus" and found.below == ("base", "plinth") and found.label == "P"
+    assert [block.width for block in found.body.blocks] == [0.8, 0.5, 0.3]
+    assert found.fallen_names == ("", "plinth", "base", "venus")
+    assert found.system.count == 3
+
+
+def test_an_arrangement_that_names_what_stands_below_twice_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="named behind it already"):
+        arrangements(tmp_path, "all,venus|base,plinth")
+    with pytest.raises(InputError, match="expected one of the specimens"):
+        arrangements(tmp_path, "all,venus,base|socle")
