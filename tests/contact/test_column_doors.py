@@ -81,3 +81,11 @@ def test_an_arrangement_that_names_what_stands_below_twice_is_refused(tmp_path: 
         arrangements(tmp_path, "all,venus|base,plinth")
     with pytest.raises(InputError, match="expected one of the specimens"):
         arrangements(tmp_path, "all,venus,base|socle")
+
+
+def test_what_may_slide_is_answered_whichever_engine_answers_its_cases() -> None:
+    """The engine of contact lets that of pure rocking answer what does not slide."""
+    t = np.arange(0, 2, 0.01)
+    swing = 5 * np.sin(2 * np.pi * 1.2 * t) * np.sin(np.pi * t / 2)
+    found = overturns(Block(0.3, 1.2, 200.0), [swing], 0.01, friction=[0.6])
+    assert found.overturned.shape == (1, 1, 1)
