@@ -21,7 +21,7 @@ DT = 0.005
 
 
 def drum_column(drums: int = DRUMS) -> Column:
-    """Drums of equal height that taper, each as wide as the column at its middle, and a capital as wide as the top."""
+    """Drums of equal height that taper, and a capital as wide as the top."""
     shaft = HEIGHT - CAPITAL
     height = shaft / drums
     widths = [BASE + (TOP - BASE) * (k + 0.5) / drums for k in range(drums)]

@@ -45,6 +45,9 @@ def test_public_name_is_documented(name):
     value = getattr(importlib.import_module(home), own)
     if inspect.isfunction(value):
         wrong += [f"{code}: {words}" for code, words in found["errors"] if code == PARAMETERS]
+        returned = inspect.signature(value).return_annotation
+        if returned not in (None, "None") and "Returns\n-------" not in inspect.getdoc(value):
+            wrong += ["it does not say what it returns"]
     elif inspect.signature(value).parameters and not re.search(
         r"(Attributes|Parameters)\n", found["docstring"]
     ):

@@ -147,6 +147,10 @@ def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = Fal
     brief
         Leave out directions and remedies, as for one line of an inventory.
 
+    Returns
+    -------
+    The :class:`Assessment`.
+
     Raises
     ------
     InputError

@@ -109,6 +109,10 @@ def read_request(path: str | os.PathLike[str]) -> Request:
     path
         The file; paths in it are relative to it.
 
+    Returns
+    -------
+    The :class:`Request`.
+
     Raises
     ------
     InputError

@@ -48,6 +48,10 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftVer
         Building whose law judges.
     response
         Its response.
+
+    Returns
+    -------
+    The :class:`DriftVerdict`.
     """
     if building.model == "elastic":
         return _judge_elastic(building, response)

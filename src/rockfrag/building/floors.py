@@ -116,6 +116,10 @@ def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
         Building; its model says whether it responds elastically or hysteretically.
     motion
         Ground acceleration.
+
+    Returns
+    -------
+    The :class:`BuildingResponse`.
     """
     if building.model == "elastic":
         return respond_elastically(building, motion)

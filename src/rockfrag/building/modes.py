@@ -50,6 +50,10 @@ def find_modes(building: ShearBuilding) -> Modes:
     ----------
     building
         Building, taken as elastic.
+
+    Returns
+    -------
+    The :class:`Modes`.
     """
     mass = np.asarray(building.masses)
     root = 1 / np.sqrt(mass)

@@ -85,6 +85,10 @@ def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResp
         Building; its masonry law is not used.
     motion
         Ground acceleration of n samples.
+
+    Returns
+    -------
+    The :class:`BuildingResponse`, of n samples.
     """
     modes = find_modes(building)
     displacement = np.zeros((building.storeys, motion.acceleration.size))

@@ -28,6 +28,10 @@ def read_building(path: str | os.PathLike[str]) -> ShearBuilding:
     path
         Path of the YAML file.
 
+    Returns
+    -------
+    The :class:`ShearBuilding`.
+
     Raises
     ------
     InputError
@@ -48,6 +52,10 @@ def make_building(settings: Any, source: str = "building") -> ShearBuilding:
         what each holds.
     source
         Where the mapping comes from, for messages.
+
+    Returns
+    -------
+    The :class:`ShearBuilding`.
 
     Raises
     ------

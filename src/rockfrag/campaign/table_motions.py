@@ -51,6 +51,10 @@ def table_motions(
     done
         Called with the number of motions done after each.
 
+    Returns
+    -------
+    The motions [m/s²], one a test, in the order of the tests.
+
     Raises
     ------
     InputError

@@ -75,6 +75,10 @@ def read_campaign(
     other_codes
         CSV with the column of test names and one column of verdicts per program.
 
+    Returns
+    -------
+    The :class:`Campaign`.
+
     Raises
     ------
     InputError

@@ -18,6 +18,10 @@ def best_threshold(measure: Floats, overturned: Bools) -> float:
     ----------
     measure, overturned
         Shape (tests,).
+
+    Returns
+    -------
+    The threshold, in the unit of the measure.
     """
     order = np.argsort(measure, kind="stable")
     fell = overturned[order]

@@ -68,6 +68,10 @@ def sample_trials(
     seed
         Of the scrambling.
 
+    Returns
+    -------
+    The :class:`Trials`.
+
     Raises
     ------
     InputError

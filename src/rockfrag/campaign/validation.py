@@ -127,6 +127,10 @@ def cross_validate(
         Of the divisions.
     asked
         What the plausible trials vote on, if not the verdicts that they are chosen by, shape (trials, tests).
+
+    Returns
+    -------
+    The :class:`Validated`.
     """
     rng = np.random.default_rng(seed)
     right = verdicts == measured

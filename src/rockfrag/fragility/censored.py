@@ -100,6 +100,10 @@ def brackets_from_table(
     source
         What messages call the table.
 
+    Returns
+    -------
+    The :class:`Brackets`.
+
     Raises
     ------
     InputError
@@ -137,6 +141,10 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     ----------
     brackets
         Bounds of the amplitudes, see :class:`Brackets`.
+
+    Returns
+    -------
+    The :class:`FragilityFit`.
     """
     low, high = _logs(brackets)
     n, fell = low.size, brackets.n_overturned
@@ -234,6 +242,10 @@ def bracket_interval(
         Number of bootstrap replicates.
     seed
         Seed of the bootstrap.
+
+    Returns
+    -------
+    The :class:`Interval`.
     """
     motions, events = (len(pd.unique(pd.Series(of))) for of in (brackets.motion, brackets.event))
     over, notes = population(motions, events, over)

@@ -102,6 +102,10 @@ def fit_step_hazard(
     source
         What messages call the table.
 
+    Returns
+    -------
+    The :class:`StepHazard`.
+
     Raises
     ------
     InputError

@@ -30,6 +30,10 @@ def wilson_interval(
         Numbers of tests, of the same shape.
     level
         Of the confidence limits [-], 0 to 1.
+
+    Returns
+    -------
+    Lower and upper limits [-], each of the shape of the counts.
     """
     from statsmodels.stats.proportion import proportion_confint
 
@@ -132,6 +136,10 @@ def local_share(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = Non
     bandwidth
         Standard deviation of the kernel in ln IM; by default 0.53 s n^(-1/5), half of Silverman's,
         which would flatten a steep rise.
+
+    Returns
+    -------
+    Fractions at the values asked for [-], of their shape.
     """
     if bandwidth is None:
         bandwidth = 0.53 * outcomes.log_spread * outcomes.n ** (-0.2)

@@ -116,6 +116,10 @@ def fragility_of(
         Seed of the bootstrap.
     dependence
         How the goodness of fit is simulated: ``tests`` or ``motions``; see :func:`goodness_of_fit`.
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     fit = fit_lognormal(outcomes, link=link)
     limits = interval_over_motions(
@@ -150,6 +154,10 @@ def fit_cloud(
         Column with the name of the event; None where it is not known.
     level
         Of the confidence limits [-], 0 to 1.
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     outcomes = outcomes_from_table(table, im, overturned=overturned, motion=motion, event=event)
     return fragility_of(outcomes, level=level)
@@ -189,6 +197,10 @@ def fit_stripes(
         Column with the name of the event; None where it is not known.
     level
         Of the confidence limits [-], 0 to 1.
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     outcomes = outcomes_from_table(
         table, im, overturned=overturned, trials=trials, motion=motion, event=event
@@ -216,6 +228,10 @@ def fit_incremental(
         Names of the columns.
     level
         Of the confidence limits [-], 0 to 1.
+
+    Returns
+    -------
+    The :class:`IncrementalFragility`.
     """
     keys = [motion] if event is None else [motion, event]
     windows = survival_windows(sweep, amplitude=amplitude, by=keys)
@@ -292,6 +308,10 @@ def fit_step_tests(
         Column with the name of the event; None where it is not known.
     level
         Of the confidence limits [-], 0 to 1.
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     brackets = brackets_from_table(tests, lower=lower, upper=upper, motion=motion, event=event)
     return fragility_of_brackets(brackets, level)

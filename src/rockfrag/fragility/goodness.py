@@ -81,6 +81,10 @@ def goodness_of_fit(
     seed
         Seed of the simulation.
 
+    Returns
+    -------
+    The :class:`GoodnessOfFit`.
+
     Raises
     ------
     InputError

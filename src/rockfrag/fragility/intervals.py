@@ -191,6 +191,10 @@ def interval_over_motions(
         Of the bootstrap; the jackknife needs neither.
     link
         ``probit`` (lognormal curve) or ``logit``.
+
+    Returns
+    -------
+    The :class:`Interval`, with limits of median and dispersion.
     """
     over, notes = population(outcomes.n_motions, outcomes.n_events, over)
     labels = outcomes.motion if over == "motion" else outcomes.event

@@ -142,6 +142,10 @@ def fit_lognormal(outcomes: Outcomes, *, link: Link = "probit") -> FragilityFit:
         Verdicts with their measure, see :class:`Outcomes`.
     link
         ``probit`` (lognormal curve) or ``logit``.
+
+    Returns
+    -------
+    The :class:`FragilityFit`.
     """
     notes = _notes(outcomes)
     if outcomes.im.size > MOST_ROWS:

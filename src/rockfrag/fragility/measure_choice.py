@@ -68,6 +68,10 @@ def area_under_curve(outcomes: Outcomes) -> float:
     ----------
     outcomes
         Verdicts with their measure, see :class:`Outcomes`.
+
+    Returns
+    -------
+    The area [-], from 0 to 1.
     """
     fell, stood = outcomes.overturned, outcomes.trials - outcomes.overturned
     _, level = np.unique(outcomes.im, return_inverse=True)
@@ -142,6 +146,10 @@ def recommend_measure(
         Of the bootstrap over motions (events where given) for ``chosen_share``.
     source
         What messages call the table.
+
+    Returns
+    -------
+    The :class:`MeasureChoice`.
     """
     if not measures:
         raise InputError("measures: name at least one column with an intensity measure.")

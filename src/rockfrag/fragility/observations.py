@@ -278,6 +278,10 @@ def outcomes_from_table(
     source
         What to call the table in an error message, for example its file name.
 
+    Returns
+    -------
+    The :class:`Outcomes`, of n rows.
+
     Raises
     ------
     InputError

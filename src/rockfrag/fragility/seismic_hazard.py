@@ -59,6 +59,10 @@ def overturning_rate(
     years
         Time for the probability [year].
 
+    Returns
+    -------
+    The :class:`OverturningRate`.
+
     Raises
     ------
     InputError

@@ -121,6 +121,10 @@ def fit_three_states(
     level
         Of the confidence limits [-], 0 to 1.
 
+    Returns
+    -------
+    The :class:`ThreeStates`.
+
     Raises
     ------
     InputError

@@ -76,6 +76,10 @@ def with_measures(
     columns
         Measures to add; ``pga_g`` becomes the amplitude itself.
 
+    Returns
+    -------
+    The table with the columns of the measures.
+
     Raises
     ------
     InputError
@@ -107,6 +111,10 @@ def record_set_hash(motions: Iterable[Motion]) -> str:
     ----------
     motions
         Motions, in any order.
+
+    Returns
+    -------
+    The digest, in hexadecimal digits.
     """
     digest = hashlib.sha256()
     for motion in sorted(motions, key=lambda motion: motion.name):
@@ -124,6 +132,10 @@ def table_hash(table: pd.DataFrame) -> str:
     ----------
     table
         Any table.
+
+    Returns
+    -------
+    The digest, in hexadecimal digits.
     """
     text = table.to_csv(index=False, lineterminator="\n")
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
@@ -144,6 +156,10 @@ def fragility_row(
         Name of the estimator.
     record_set
         Digest of the motions.
+
+    Returns
+    -------
+    The row, values by the names of their columns.
     """
     fit, interval, checks = fragility.fit, fragility.interval, fragility.checks
     shares = checks.shares
@@ -283,6 +299,10 @@ def fragility_tables(
         Digest of the motions.
     level
         Of the confidence limits [-], 0 to 1.
+
+    Returns
+    -------
+    The :class:`FragilityTables`.
     """
     for column in by:
         if column not in sweep:

@@ -78,6 +78,10 @@ def fit_user_table(
     level, replicates, seed
         Of confidence limits and bootstraps.
 
+    Returns
+    -------
+    The :class:`UserFragility`.
+
     Raises
     ------
     InputError

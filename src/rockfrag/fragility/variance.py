@@ -64,6 +64,10 @@ def split_variance(
         are the squared slopes of a linear regression of the samples' means, less the square of
         their standard error.
 
+    Returns
+    -------
+    The :class:`VarianceSplit`.
+
     Raises
     ------
     InputError

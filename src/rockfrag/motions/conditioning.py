@@ -23,6 +23,10 @@ def demean(motion: Motion) -> Motion:
     ----------
     motion
         Motion as it is.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
     """
     mean = float(motion.acceleration.mean())
     return motion.after("demean", motion.acceleration - mean, removed_m_s2=mean)
@@ -76,6 +80,10 @@ def baseline(motion: Motion, order: int = 1) -> Motion:
         Order of the polynomial, 0 (the mean) to 10; 1 is the straight line of "simple baseline
         correction".
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -101,6 +109,10 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
         Motion as it is.
     order
         Order of the polynomial, 2 to 10.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------
@@ -128,6 +140,10 @@ def taper(motion: Motion, duration_s: float) -> Motion:
         Motion as it is.
     duration_s
         Length of the bell at each end [s], at most half of the motion.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------
@@ -160,6 +176,10 @@ def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
         Motion as it is.
     before_s, after_s
         Length of the zeros at either end [s], rounded to whole samples, at most 10 million of them.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------

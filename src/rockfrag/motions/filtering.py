@@ -35,6 +35,10 @@ def highpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = Fa
     causal
         Whether it runs forwards alone.
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -70,6 +74,10 @@ def lowpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = Fal
         Order of the filter, 1 to 10; an acausal one acts twice.
     causal
         Whether it runs forwards alone.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------
@@ -110,6 +118,10 @@ def bandpass(
         Order of the filter, 1 to 10; an acausal one acts twice.
     causal
         Whether it runs forwards alone.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------
@@ -157,6 +169,10 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     dt_s
         New sampling interval [s]; old and new must have a ratio of whole numbers up to 1000.
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -189,6 +205,10 @@ def interpolate(motion: Motion, dt_s: float) -> Motion:
         Motion as it is.
     dt_s
         New sampling interval [s], a whole fraction of the old one.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------

@@ -28,6 +28,10 @@ def pga(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    Peak acceleration [m/s²].
     """
     return motion.pga
 
@@ -39,6 +43,10 @@ def pgv(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    Peak velocity [m/s].
     """
     return peak_velocity(motion.acceleration, motion.dt)
 
@@ -50,6 +58,10 @@ def pgd(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    Peak displacement [m].
     """
     return peak_displacement(motion.acceleration, motion.dt)
 
@@ -61,6 +73,10 @@ def pgv_over_pga(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    The ratio [s].
     """
     return pgv(motion) / pga(motion) if pga(motion) > 0 else math.nan
 
@@ -72,6 +88,10 @@ def cumulative_arias(motion: Motion) -> Floats:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    Arias intensity up to each sample [m/s], shape (n,).
     """
     from scipy.integrate import cumulative_trapezoid
 
@@ -89,6 +109,10 @@ def arias(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    Arias intensity [m/s].
     """
     return float(cumulative_arias(motion)[-1])
 
@@ -100,6 +124,10 @@ def cav(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    Cumulative absolute velocity [m/s].
     """
     return float(np.trapezoid(np.abs(motion.acceleration), dx=motion.dt))
 
@@ -115,6 +143,10 @@ def arias_times(motion: Motion, lower: float, upper: float) -> tuple[float, floa
         Motion to be measured.
     lower, upper
         Fractions, 0 ≤ lower < upper ≤ 1.
+
+    Returns
+    -------
+    The two times [s].
     """
     history = cumulative_arias(motion)
     if history[-1] <= 0:
@@ -137,6 +169,10 @@ def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.9
         Fraction of the Arias intensity at which the duration begins [-].
     upper
         Fraction at which it ends [-].
+
+    Returns
+    -------
+    The duration [s].
     """
     start, end = arias_times(motion, lower, upper)
     return end - start
@@ -153,6 +189,10 @@ def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
         Motion to be measured.
     threshold
         Threshold [m/s²].
+
+    Returns
+    -------
+    The two times [s]; NaN where it never is.
     """
     above = np.flatnonzero(np.abs(motion.acceleration) >= threshold)
     if above.size == 0:
@@ -171,6 +211,10 @@ def mean_period(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    The period [s].
     """
     from rockfrag.motions.spectra import fourier_amplitude
 
@@ -194,6 +238,10 @@ def predominant_period(motion: Motion) -> float:
     ----------
     motion
         Motion to be measured.
+
+    Returns
+    -------
+    The period [s].
     """
     from rockfrag.motions.side_by_side import largest_pseudo_acceleration
 
@@ -215,6 +263,10 @@ def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) 
         Natural period [s], positive.
     damping
         Fraction of critical damping [-].
+
+    Returns
+    -------
+    Spectral acceleration [m/s²].
 
     Raises
     ------
@@ -238,6 +290,10 @@ def spectral_velocity(motion: Motion, period: float, damping: float = 0.05) -> f
     damping
         Fraction of critical damping [-].
 
+    Returns
+    -------
+    Spectral velocity [m/s].
+
     Raises
     ------
     InputError
@@ -259,6 +315,10 @@ def spectral_displacement(motion: Motion, period: float, damping: float = 0.05) 
         Natural period [s], positive.
     damping
         Fraction of critical damping [-].
+
+    Returns
+    -------
+    Spectral displacement [m].
 
     Raises
     ------
@@ -287,6 +347,10 @@ def housner_intensity(motion: Motion, damping: float = 0.05) -> float:
         Motion to be measured.
     damping
         Fraction of critical damping [-].
+
+    Returns
+    -------
+    Housner's intensity [m].
 
     Raises
     ------
@@ -343,6 +407,10 @@ def uplift_ratio(motion: Motion, alpha: float) -> float:
     alpha
         Critical angle of the block, atan(b/h) [rad].
 
+    Returns
+    -------
+    The ratio [-].
+
     Raises
     ------
     InputError
@@ -367,6 +435,10 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
     p
         Frequency parameter of the block [1/s]; thesis eq. 2.16.
 
+    Returns
+    -------
+    The ratio [-].
+
     Raises
     ------
     InputError
@@ -388,6 +460,10 @@ def frequency_ratio(pulse_period: float, p: float) -> float:
         Period of the strongest pulse [s]; NaN gives NaN.
     p
         Frequency parameter of the block [1/s].
+
+    Returns
+    -------
+    The ratio [-].
 
     Raises
     ------

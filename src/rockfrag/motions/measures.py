@@ -97,6 +97,10 @@ def measure_motions(
     processes
         How many processes may measure at once; the table does not depend on it.
 
+    Returns
+    -------
+    A table with a row per motion, a column per measure, the unit in its name.
+
     Raises
     ------
     InputError

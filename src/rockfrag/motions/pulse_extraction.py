@@ -122,6 +122,10 @@ def pulse_motion(pulse: StrongestPulse, dt: float) -> Motion:
         Pulse as :func:`strongest_pulse` returns it.
     dt
         Longest sampling interval [s].
+
+    Returns
+    -------
+    The :class:`Motion` of the pulse alone.
     """
     return mavroeidis_papageorgiou(pulse.velocity, pulse.period, pulse.cycles, pulse.phase_deg, dt)
 

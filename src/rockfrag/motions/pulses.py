@@ -37,6 +37,10 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
     dt
         Longest sampling interval [s].
 
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
+
     Raises
     ------
     InputError
@@ -69,6 +73,10 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     dt
         Longest sampling interval [s].
 
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
+
     Raises
     ------
     InputError
@@ -99,6 +107,10 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
         Period T [s].
     dt
         Longest sampling interval [s].
+
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
 
     Raises
     ------
@@ -173,6 +185,10 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
     dt
         Longest sampling interval [s].
 
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
+
     Raises
     ------
     InputError
@@ -202,6 +218,10 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
         Duration d [s].
     dt
         Longest sampling interval [s].
+
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
 
     Raises
     ------
@@ -235,6 +255,10 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
         Period T [s].
     dt
         Longest sampling interval [s].
+
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
 
     Raises
     ------
@@ -275,6 +299,10 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
         Period T [s].
     dt
         Longest sampling interval [s].
+
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
 
     Raises
     ------
@@ -325,6 +353,10 @@ def mavroeidis_papageorgiou(
     dt
         Longest sampling interval [s].
 
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
+
     Raises
     ------
     InputError
@@ -374,6 +406,10 @@ def sine_sweep(
         Rate r [1/min], positive.
     dt
         Longest sampling interval [s].
+
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
 
     Raises
     ------

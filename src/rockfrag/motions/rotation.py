@@ -61,6 +61,10 @@ def rotd(
     percentile
         From 0 to 100.
 
+    Returns
+    -------
+    The value of the measure, in its unit.
+
     Raises
     ------
     InputError
@@ -85,6 +89,10 @@ def rotd50(first: Motion, second: Motion, measure: Callable[[Motion], float]) ->
     measure
         Any measure of one component.
 
+    Returns
+    -------
+    The median value over all directions, in the unit of the measure.
+
     Raises
     ------
     InputError
@@ -104,6 +112,10 @@ def rotd100(first: Motion, second: Motion, measure: Callable[[Motion], float]) -
         Second component.
     measure
         Any measure of one component.
+
+    Returns
+    -------
+    The largest value over all directions, in the unit of the measure.
 
     Raises
     ------
@@ -163,6 +175,10 @@ def fault_normal(first: Motion, second: Motion, strike_deg: float) -> Motion:
     strike_deg
         Strike of the fault [degrees from north].
 
+    Returns
+    -------
+    The :class:`Motion` in that direction.
+
     Raises
     ------
     InputError
@@ -181,6 +197,10 @@ def radial(first: Motion, second: Motion, back_azimuth_deg: float) -> Motion:
     back_azimuth_deg
         Azimuth from the station towards the source [degrees from north].
 
+    Returns
+    -------
+    The :class:`Motion` in that direction.
+
     Raises
     ------
     InputError
@@ -196,6 +216,10 @@ def stronger_direction(first: Motion, second: Motion) -> Motion:
     ----------
     first, second
         Perpendicular components; they are brought to common times.
+
+    Returns
+    -------
+    The :class:`Motion` in that direction.
 
     Raises
     ------

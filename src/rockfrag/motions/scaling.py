@@ -22,6 +22,10 @@ def scale(motion: Motion, factor: float) -> Motion:
     factor
         Factor on the acceleration [-], positive.
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -54,6 +58,10 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
     pga_g
         Wanted peak acceleration [g], positive.
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -73,6 +81,10 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
         Motion as it is, not zero throughout.
     pgv_cm_s
         Wanted peak velocity [cm/s], positive.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------
@@ -99,6 +111,10 @@ def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0
         Natural period [s], positive.
     damping
         Fraction of critical damping [-].
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------
@@ -130,6 +146,10 @@ def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
     arias_m_s
         Wanted Arias intensity [m/s], positive.
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -155,6 +175,10 @@ def compress_time(motion: Motion, factor: float) -> Motion:
         Motion as it is.
     factor
         Time of the prototype over time of the model [-], positive.
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------

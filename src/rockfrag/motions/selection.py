@@ -24,6 +24,10 @@ def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Mot
     lower, upper
         Fractions [-], 0 ≤ lower < upper ≤ 1.
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -54,6 +58,10 @@ def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
     threshold_g
         Threshold [g], positive.
 
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
+
     Raises
     ------
     InputError
@@ -80,6 +88,10 @@ def trim(motion: Motion, start_s: float, end_s: float) -> Motion:
         First time that is kept [s].
     end_s
         Last time that is kept [s].
+
+    Returns
+    -------
+    The :class:`Motion` so changed, with the step in its provenance.
 
     Raises
     ------

@@ -72,6 +72,10 @@ def evolutionary(
     dt
         Sampling interval [s].
 
+    Returns
+    -------
+    The :class:`Motion` [m/s²].
+
     Raises
     ------
     InputError

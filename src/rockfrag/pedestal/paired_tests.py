@@ -302,6 +302,10 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
     slenderness
         Height over width by object [-]; needed only for slopes on it.
 
+    Returns
+    -------
+    The :class:`Pairs`.
+
     Raises
     ------
     InputError

@@ -364,6 +364,10 @@ def study_pedestal(
     slenderness
         Height over width by object [-]; needed only for slopes on it.
 
+    Returns
+    -------
+    The :class:`PedestalStudy`.
+
     Raises
     ------
     InputError

@@ -77,6 +77,10 @@ def peak_velocity(acceleration: Floats, dt: float) -> float:
         Acceleration [m/s²], shape (n,).
     dt
         Sampling interval [s].
+
+    Returns
+    -------
+    Peak velocity [m/s].
     """
     return float(np.abs(velocity_extremes(acceleration, dt)).max())
 
@@ -90,5 +94,9 @@ def peak_displacement(acceleration: Floats, dt: float) -> float:
         Acceleration [m/s²], shape (n,).
     dt
         Sampling interval [s].
+
+    Returns
+    -------
+    Peak displacement [m].
     """
     return float(np.abs(displacement_extremes(acceleration, dt)).max())

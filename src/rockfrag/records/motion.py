@@ -153,6 +153,10 @@ def read_motion_set(
         Number of the part, from 0, and of parts in all.
     most
         No more motions than the first so many of it.
+
+    Returns
+    -------
+    The motions, in the order in which they were written.
     """
     with pq.ParquetFile(path) as file:
         total, (number, parts) = file.metadata.num_rows, part

@@ -75,6 +75,10 @@ def read_record(
         Whether to read what there is of a file with fewer samples than its header promises, with a
         note in the provenance, instead of refusing it.
 
+    Returns
+    -------
+    The :class:`Record`, with its channels.
+
     Raises
     ------
     InputError

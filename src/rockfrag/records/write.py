@@ -56,6 +56,10 @@ def write_motion(
     unit
         Unit of the numbers in the file; g for AT2 and SeismoSoft and m/s² for the others if None.
 
+    Returns
+    -------
+    The path of the file.
+
     Raises
     ------
     InputError

@@ -137,6 +137,10 @@ def restitution_from_peaks(
     g
         Acceleration of gravity [m/s²].
 
+    Returns
+    -------
+    The :class:`RestitutionFit`.
+
     Raises
     ------
     InputError
@@ -190,6 +194,10 @@ def restitution_from_impacts(
         Corner the block rocks on between the first two.
     linear, confidence, g
         As for :func:`restitution_from_peaks`.
+
+    Returns
+    -------
+    The :class:`RestitutionFit`.
 
     Raises
     ------
@@ -262,6 +270,10 @@ def restitution_from_history(
         Level of the interval.
     g
         Acceleration of gravity [m/s²].
+
+    Returns
+    -------
+    The :class:`RestitutionFit`.
 
     Raises
     ------

@@ -116,6 +116,10 @@ def climb(amplitudes: Sequence[float] | Floats, overturns: Callable[[float], boo
     overturns
         Whether the specimen, at rest first, overturns at an amplitude [g]; not asked again after
         the first yes.
+
+    Returns
+    -------
+    The :class:`Outcome`.
     """
     survived = 0.0
     for amplitude in amplitudes:

@@ -46,6 +46,10 @@ def first_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
         Amplitudes [g], rising, shape (n,).
     overturned
         Whether each overturned, shape (n,).
+
+    Returns
+    -------
+    The :class:`Outcome`: bounds of the amplitude.
     """
     _check_sweep(amplitudes, overturned, "sweep")
     return _climbed(amplitudes, overturned)
@@ -72,6 +76,10 @@ def always_overturning(amplitudes: Floats, overturned: Verdicts) -> Outcome:
         Amplitudes [g], rising, shape (n,).
     overturned
         Whether each overturned, shape (n,).
+
+    Returns
+    -------
+    The :class:`Outcome`: bounds of the amplitude.
     """
     _check_sweep(amplitudes, overturned, "sweep")
     return _always(amplitudes, overturned)
@@ -106,6 +114,10 @@ def step_protocol(
         Limit of the shaker for this motion [g], if it has one; no rung is above it.
     repetition
         Number of the repetition, from 1.
+
+    Returns
+    -------
+    The :class:`Outcome`: bounds of the amplitude.
     """
     _check_sweep(amplitudes, overturned, "sweep")
     climbed = _rungs(amplitudes, protocol, limit_g, repetition)

@@ -28,6 +28,10 @@ def read_shaker(path: str | os.PathLike[str]) -> Shaker:
     path
         Path of the YAML file.
 
+    Returns
+    -------
+    The :class:`Shaker`.
+
     Raises
     ------
     InputError
@@ -47,6 +51,10 @@ def make_shaker(settings: Any, source: str = "shaker") -> Shaker:
         ``velocity_m_s``; the schema ``shaker`` says what each holds.
     source
         Where the mapping comes from, for messages.
+
+    Returns
+    -------
+    The :class:`Shaker`.
 
     Raises
     ------

@@ -177,6 +177,10 @@ def required_corner(
     payload
         Mass on the table [kg].
 
+    Returns
+    -------
+    The frequency [Hz].
+
     Raises
     ------
     InputError
@@ -245,6 +249,10 @@ def limits_g(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) ->
         Motions as they are.
     payload
         Mass on the table [kg].
+
+    Returns
+    -------
+    Largest amplitudes [g], by the names of the motions.
     """
     return {motion.name: shaker.limit(motion, payload)[0] for motion in motions}
 

@@ -245,6 +245,10 @@ def read_shape(
         Take the convex hull of the vertices, which closes a surface with holes and a cloud of points, and fills
         what is hollow or undercut.
 
+    Returns
+    -------
+    The :class:`Shape`.
+
     Raises
     ------
     InputError

