@@ -283,9 +283,9 @@ def run_cases(cases: Cases) -> Outcomes:
         return empty_outcomes(cases.names, cases.scales)
     chosen = [_engine_of(cases, system) for system in cases.systems]
     used = list(dict.fromkeys(engine.name for engine in chosen))
-    result = empty_outcomes(cases.names, cases.scales, used)
     if not cases.scales.size:
-        return result
+        return empty_outcomes(cases.names, cases.scales, used)
+    parts = []
     for name in used:
         rows = [i for i, engine in enumerate(chosen) if engine.name == name]
         some = Cases(
@@ -295,7 +295,12 @@ def run_cases(cases: Cases) -> Outcomes:
             cases.request,
             cases.threads,
         )
-        merge_outcomes(result, rows, chosen[rows[0]].run(some))
+        parts.append((rows, chosen[rows[0]].run(some)))
+    # an engine may hand cases on, so that others than those chosen have answered
+    answered = list(dict.fromkeys(name for _, found in parts for name in found.engines))
+    result = empty_outcomes(cases.names, cases.scales, answered)
+    for rows, found in parts:
+        merge_outcomes(result, rows, found)
     return result
 
 
