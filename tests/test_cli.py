@@ -186,11 +186,13 @@ def test_a_motion_that_looks_as_if_in_another_unit_is_doubted(
         assert word in shown
 
 
-def test_a_motion_in_cm_s2_is_doubted(
+def test_a_motion_in_cm_s2_is_refused_as_m_s2(
     record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     rows = [line.split() for line in record.read_text().splitlines()]
     other = tmp_path / "gal.txt"
     other.write_text("".join(f"{t} {981 * float(a):.3f}\n" for t, a in rows))
-    assert main(["simulate", str(other), "--unit", "m/s2", "--body", "1", "1", "900"]) == 0
-    assert "in cm/s², divide it by 100" in capsys.readouterr().err
+    assert main(["simulate", str(other), "--unit", "m/s2", "--body", "1", "1", "900"]) == 2
+    told = capsys.readouterr().err
+    assert "above 3 g" in told
+    assert "force" not in told

@@ -178,9 +178,7 @@ def _vertical(options: argparse.Namespace, factor: float) -> "Motion | None":
     """Return the vertical component that the options tell, scaled as the record is."""
     if options.vertical is None:
         return None
-    from rockfrag.records.read import read_motion
-
-    up = read_motion(options.vertical, options.unit, None, options.dt)
+    up = _motion(options.vertical, options, None)
     return up.after("scale", factor * up.acceleration, factor=factor)
 
 
@@ -203,12 +201,22 @@ def _contacts(response: "Response", loose: bool) -> list[str]:
 
 def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     """Return the body and the motion that the options tell."""
-    from rockfrag.records.read import read_motion
     from rockfrag.rocking import Stack
 
     statue = _block("--body", options.body)
     body = Stack(_block("--pedestal", options.pedestal), statue) if options.pedestal else statue
-    return body, read_motion(options.record, options.unit, options.channel, options.dt)
+    return body, _motion(options.record, options, options.channel)
+
+
+def _motion(record: str, options: argparse.Namespace, channel: str | None) -> "Motion":
+    """Read a record as the options say, with errors that name them."""
+    from rockfrag.records.read import read_motion
+    from rockfrag.records.wording import for_command_line
+
+    try:
+        return read_motion(record, options.unit, channel, options.dt)
+    except InputError as error:
+        raise InputError(for_command_line(error, force=False)) from None
 
 
 def _play(options: argparse.Namespace) -> int:

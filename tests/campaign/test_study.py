@@ -91,7 +91,7 @@ def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(
     best = tables["trials"].iloc[0]
     assert best["edge_retreat_mm"] < 3
     page = (tmp_path / "report.html").read_text()
-    assert "of the verdicts are right" in page
+    assert "% of the outcomes" in page
     assert not re.search(
         r"\b(nan|inf)\b", re.sub(r"<svg.*?</svg>|data:[^\"]*", "", page, flags=re.S)
     )

@@ -51,6 +51,15 @@ def test_nothing_is_cut_and_no_error_is_written(
     assert browser.console == []
 
 
+def test_a_part_that_is_not_laid_out_writes_no_error(browser: Browser, page: Path):
+    """As while a browser takes a picture of a whole page: canvases have no pixels to copy then."""
+    browser.open(page, 1400, 900)
+    assert browser.run(READY)
+    browser.run("document.querySelector('#live .app').style.display = 'none'")
+    browser.run("dispatchEvent(new Event('resize')); new Promise(done => setTimeout(done, 500))")
+    assert browser.console == []
+
+
 def test_readers_of_every_kind_can_use_it(browser: Browser, page: Path):
     axe = find_spec("axe_core_python")
     if axe is None or axe.origin is None:

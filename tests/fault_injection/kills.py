@@ -4,17 +4,19 @@ import random
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
+from pathlib import Path
 
 import psutil
 
 from .studies import PATIENCE_S, Study, Tally
 
-FORGOTTEN = (("report.html",), ("report.html", "measures.*"), ("tests.*", "pedestal/*"))
-"""Results that a trial makes anew, of which those of a pool's workers are the first and the second."""
+FORGOTTEN = (("report.html",), ("report.html", "measures.*"), ("report.html", "tests.*"))
+"""Results that a trial makes anew, of which the first and the second are made by pools."""
 
 LONGEST_WORDS = 8
 """A run that was disturbed says why in so many lines, beside those of its stages."""
@@ -71,12 +73,13 @@ def killed(study: Study, tally: Tally, rng: random.Random, kind: Kind) -> None:
 
 def compiling(study: Study, tally: Tally, rng: random.Random) -> None:
     """Kill a job, or all processes, while machine code is made, of which there is none at first."""
-    cache = study.folder.parent / "machine code"
+    cache = Path(tempfile.mkdtemp(prefix="machine code "))
     study.more["NUMBA_CACHE_DIR"] = str(cache)
     for number in range(COMPILING):
         shutil.rmtree(cache, ignore_errors=True)
-        study.forget("sweep/*", "tests.*")
+        study.forget("report.html", "sweep/*")
         _disturbed(study, tally, rng, (job, everything)[number % 2], 15.0)
+    shutil.rmtree(cache, ignore_errors=True)
 
 
 def _disturbed(study: Study, tally: Tally, rng: random.Random, kind: Kind, moment_s: float) -> None:

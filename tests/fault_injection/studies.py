@@ -71,7 +71,9 @@ class Study:
         other.more = dict(self.more)
         other.folder = scratch / self.folder.name
         shutil.copytree(self.kept, other.folder, symlinks=True)
-        other.beside = [one.twin(scratch / one.name) for one in self.beside]
+        other.beside = [
+            one.twin(scratch.parent / f"{scratch.name} {one.name}") for one in self.beside
+        ]
         return other
 
     def run(

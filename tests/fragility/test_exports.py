@@ -269,3 +269,14 @@ def test_uncertainties_of_motions_estimate_and_model_add_as_squares():
     assert row.beta_statistical == pytest.approx(half / stats.norm.ppf(0.95))
     squares = row.beta**2 + row.beta_statistical**2 + BETA_MODEL**2
     assert row.beta_total == pytest.approx(np.sqrt(squares))
+
+
+def test_a_small_tail_below_the_threshold_is_no_probability_to_overturn_either(tmp_path):
+    """A lognormal tail of 6e-4 at a level that starts nothing: small, and still impossible."""
+    curves = states_of_one()
+    curves.loc[curves["state"] == "overturned", "theta"] = 0.25 * np.exp(0.4 * 3.24)
+    assert 1e-4 < stats.norm.cdf(-3.24) < 1e-3
+    write_nrml(curves, tmp_path / "model.xml")
+    levels, chance = levels_of(tmp_path / "model.xml")
+    assert (chance["overturned"] <= chance["rocks"]).all()
+    assert (chance["overturned"][levels < 0.24] < 1e-9).all()

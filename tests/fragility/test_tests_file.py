@@ -123,3 +123,13 @@ def test_a_million_rows_of_2000_motions_take_bounded_memory(tmp_path):
     assert found.fits["pgv_cm_s"].fit.theta == pytest.approx(np.exp(3.2), rel=0.02)
     assert found.fits["pgv_cm_s"].interval.groups == motions
     assert grown < 2.0, f"{grown:.1f} GiB"
+
+
+@pytest.mark.parametrize(
+    ("title", "value"), [("pga_g", "0.0001"), ("pgv_cm_s", "0.02"), ("pgv_cm_s", "4000")]
+)
+def test_peaks_in_a_wrong_unit_are_doubted_on_both_sides(tmp_path, title, value):
+    path = tmp_path / "t.csv"
+    path.write_text(f"{title},overturned\n{value},1\n{value},0\n")
+    with pytest.warns(UserWarning, match=f"column '{title}': .*mend the unit"):
+        read_tests(path, [title])

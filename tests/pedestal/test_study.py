@@ -116,3 +116,13 @@ def test_explanation_needs_one_reference_and_positive_ratios():
         explain(table.assign(ratio=0.0))
     with pytest.raises(InputError, match="floor missing"):
         explain(table.drop(columns="floor"))
+
+
+def test_a_method_whose_limits_are_the_steps_says_so(tests_table):
+    """Limits that agree between methods to three digits may all be the width of the steps."""
+    tests = tests_table(1, effect=0, sd_event=0, sd_motion=0, sd_pair=0)
+    tied = study_pedestal(tests.assign(upper_g=1.05 * tests["lower_g"]), **FAST).whole
+    with_limits = tied[tied["lower"].notna()]
+    assert with_limits["remark"].str.contains("width of the steps").all()
+    apart = study_pedestal(tests_table(1, sd_pair=0.3), **FAST).whole
+    assert not apart["remark"].str.contains("width of the steps").any()

@@ -155,7 +155,8 @@ class TestWords:
         "line",
         ["Time Step: 0.005", "#DELTA: 0.005", "# dt = 0.005", "Time Increment (s)  : 0.005",
          "sampling frequency: 200.0 Hz", "Sampling rate = 200", "dt 0.005 s", '"@ DT =",.005',
-         "sampling interval (ms): 5", "data at 200 samples per second", "Δt = 0.005"],
+         "sampling interval (ms): 5", "data at 200 samples per second", "Δt = 0.005",
+         "sampled at 200 Hz", "400 points at 0.005 sec intervals"],
     )  # fmt: skip
     def test_an_interval_in_words_is_used_and_held_against_the_user(self, write, line):
         path = write(f"{line}\n{column()}")

@@ -7,6 +7,7 @@ import pandas as pd
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.path import Path as Outline
+from matplotlib.text import Text
 
 from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.report.figures.amplitudes import (
@@ -15,7 +16,7 @@ from rockfrag.report.figures.amplitudes import (
     pedestal_scatter,
     slenderness_figure,
 )
-from rockfrag.report.figures.effects import forest_figure
+from rockfrag.report.figures.effects import forest_figure, ratio_axis
 from rockfrag.report.figures.fragility import fragility_figure
 from rockfrag.report.figures.shaker import shaker_limits
 from rockfrag.report.figures.sweep import verdict_map
@@ -231,3 +232,47 @@ def test_labels_lie_within_the_figure(tmp_path: Path):
     save_figure(figure, tmp_path / "a.png")
     box = axes.get_yticklabels()[0].get_window_extent()
     assert box.x0 >= 0
+
+
+def many(tests: pd.DataFrame, times: int) -> pd.DataFrame:
+    """The same laboratory under so many times as many records."""
+    parts = [tests.assign(motion=tests["motion"] + f"_{k}") for k in range(times)]
+    return pd.concat(parts, ignore_index=True)
+
+
+def test_a_crowd_of_tests_is_drawn_as_its_distribution():
+    tests = many(laboratory(), 20)
+    means = mean_amplitudes(tests)
+    for figure in (
+        slenderness_figure(tests, means, SLENDERNESS),
+        amplitudes_by_floor(tests, means),
+    ):
+        labels = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert "median, 25–75 %, 5–95 %" in labels
+        assert all(drawn(axes) < 20 for axes in figure.axes)
+
+
+def test_panels_have_letters_and_axes_no_empty_units():
+    tests = laboratory()
+    figure = slenderness_figure(tests, mean_amplitudes(tests), SLENDERNESS)
+    assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(b)"]
+    words = [text.get_text() for text in figure.findobj(Text)]
+    assert not any("[-]" in one for one in words)
+
+
+@pytest.mark.parametrize("span", [(0.55, 1.25), (0.2, 5.0), (0.9, 1.1), (0.7, 1.3)])
+def test_ticks_of_ratios_do_not_print_over_each_other(span):
+    figure = new_figure(3.5, 2)
+    axes = figure.subplots()
+    ratio_axis(axes, span)
+    low, high = axes.get_xlim()
+    ticks = [tick for tick in axes.get_xticks() if low <= tick <= high]
+    assert 1 in ticks
+    assert np.diff(np.log(ticks)).min() / np.log(high / low) > 0.1
+
+
+def test_names_of_records_are_whole_where_a_reader_looks_them_up():
+    name = "RSN825 CAPEMEND CPM_350_ground"
+    amplitudes = [0.1, 0.2]
+    figure = verdict_map(sweep(amplitudes, [False, True]).assign(motion=name), ["vase"])
+    assert name in [tick.get_text() for tick in figure.axes[0].get_yticklabels()]

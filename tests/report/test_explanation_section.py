@@ -2,10 +2,18 @@
 
 import re
 
+import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.report.sections.explanation import FACTORS, departures
+from rockfrag.pedestal.simulated_explanation import REFERENCE
+from rockfrag.report.sections.explanation import (
+    FACTORS,
+    MOST_DRAWN,
+    adjusted_words,
+    departures,
+    explanation_figure,
+)
 
 
 @pytest.mark.parametrize("factor", FACTORS.values(), ids=list(FACTORS))
@@ -37,3 +45,36 @@ def test_departures_are_named_by_factor_and_level_in_the_order_of_the_figure():
         "the object's restitution everywhere × 1",
         "neglecting the mass of a 10 kg table",
     ]
+
+
+def perturbed(ratios: dict[str, float], p: float = 0.04) -> pd.DataFrame:
+    """Effects of perturbations of one parameter on two floors together."""
+    rows = [
+        {"factor": "statue_restitution", "level": level, "floor": floor, "ratio": ratio}
+        for level, ratio in {REFERENCE: 1.0, **ratios}.items()
+        for floor in ("all", "cellar", "attic")
+    ]
+    table = pd.DataFrame(rows)
+    return table.assign(ratio_lower=0.97 * table["ratio"], ratio_upper=1.03 * table["ratio"], p=p)
+
+
+def test_the_rule_for_many_perturbations_is_named_and_counts_all():
+    simulated = departures(perturbed({"0.9": 0.9, "0.95": 0.95, "1.05": 1.0}, p=0.04))
+    words = adjusted_words(simulated)
+    assert words.startswith("2 of 3 simulated perturbations have 95 % intervals that exclude 1")
+    assert "Benjamini–Hochberg adjustment for 3 tests" in words
+    alone = departures(perturbed({"0.9": 0.9}, p=0.04))
+    assert "1 differs from 1" in adjusted_words(alone)
+
+
+def test_the_figure_shows_the_largest_perturbations_and_says_no_row_twice():
+    levels = {f"{0.5 + 0.02 * k:.2f}": float(np.exp(0.01 * (k - 10))) for k in range(40)}
+    figure = explanation_figure(perturbed(levels), ["cellar", "attic"])
+    labels = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
+    assert len(labels) == len(set(labels)) == MOST_DRAWN + 1
+    assert labels[0] == "Ideal model"
+    width, height = figure.get_size_inches()
+    assert height < 1.5 * width
+    # floors stand below the mean that they belong to
+    marks = [line for line in figure.axes[0].lines if line.get_marker() == "D"]
+    assert len(marks) == MOST_DRAWN + 1

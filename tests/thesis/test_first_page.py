@@ -7,13 +7,17 @@ import pytest
 
 from rockfrag.pedestal.explanation import explain
 from rockfrag.pedestal.simulated_explanation import REFERENCE
+from rockfrag.report.page import render
+from rockfrag.report.part import Answer
 from rockfrag.shaketable.readings import READING
 from rockfrag.stages.pedestal import pedestal_tables
+from rockfrag.thesis import pattern
 from rockfrag.thesis.first_page import first_page
 from rockfrag.thesis.pattern import departures_by_floor
 from rockfrag.thesis.specimens import SLENDERNESS
 from rockfrag.thesis.statements import Evidence, ledger
 
+from ..end_to_end.checked_report import open_words
 from .conftest import build
 
 WORDS_WITH_DIGITS = (
@@ -229,3 +233,28 @@ def test_a_study_without_the_floors_says_what_it_has(plain):
     assert "depends on the floor" in found.headline
     assert "does not have the thesis’s floors" in found.numbers
     assert "36 pairs" not in found.numbers
+
+
+MOST_WORDS = 120
+
+
+def test_the_first_page_stands_open_in_few_words(effects, claims):
+    """All that is read without a click but the figure's caption, the links and the advice of some 40 words."""
+    explanation = departing({"GF": 1.2, "F3": 1.0, "F5": 1.0})
+    found = first_page(effects, claims, explanation, inverted(), {"ground": 10.0, "above": -5.0})
+    page = render(
+        title="T",
+        lead="lead",
+        answer=Answer("Does a pedestal help?", found),
+        sections=[],
+        pictures={},
+        provenance={"Seed": "1"},
+    )
+    answer = page[page.index('<section id="answer"') : page.index("</section>")]
+    assert len(open_words(answer)) <= MOST_WORDS - 40
+    assert "[" not in " ".join(open_words(answer))
+
+
+def test_signs_are_given_no_chance_level():
+    """Perturbations that share their tests are no coins to toss."""
+    assert not hasattr(pattern, "expected_by_chance")

@@ -41,7 +41,7 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     assert pd.read_parquet(results / "recommendation.parquet")["im"].iloc[0] == "PGV"
     page = (results / "report.html").read_text()
     assert "PGV predicts overturning best" in page
-    assert "Simulated, not measured" not in page
+    assert 'class="simulated"' not in page
     assert 'src="http' not in page
     assert (results / "figures" / "surface.png").stat().st_size > 1000
 

@@ -79,11 +79,12 @@ def test_another_workflow_takes_the_rules_with_a_prefix(
     write_study(study_folder, {"overturning": content, "mine": 1} if inside else content)
     text = MODULE.format(snakefile=str(ROOT / "workflow" / "Snakefile"), config=config)
     (study_folder / "Snakefile").write_text(text)
-    target = "results/tiny/measures.csv"
-    done = by_snakefile(study_folder, "--cores", "1", target)
-    assert done.returncode == 0, done.stderr[-2000:]
-    assert (study_folder / target).is_file()
     assert "rf_report" in by_snakefile(study_folder, "--dry-run").stdout
+    if inside:
+        target = "results/tiny/measures.csv"
+        done = by_snakefile(study_folder, "--cores", "1", target)
+        assert done.returncode == 0, done.stderr[-2000:]
+        assert (study_folder / target).is_file()
 
 
 def test_without_a_configuration_it_is_an_example():

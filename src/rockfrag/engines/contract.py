@@ -26,7 +26,7 @@
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cache, cached_property
 from importlib import import_module
@@ -203,6 +203,7 @@ BUILT_IN = (
     "rockfrag.engines.two_blocks",
     "rockfrag.engines.single",
     "rockfrag.engines.planar.engine",
+    "rockfrag.engines.spatial.engine",
 )
 """Modules with an ``ENGINE`` each, in the order in which they are asked; loaded when an engine is first wanted."""
 
@@ -281,24 +282,17 @@ def run_cases(cases: Cases) -> Outcomes:
     """
     if not cases.motions or not cases.systems:
         return empty_outcomes(cases.names, cases.scales)
-    chosen = [_engine_of(cases, system) for system in cases.systems]
-    used = list(dict.fromkeys(engine.name for engine in chosen))
     if not cases.scales.size:
-        return empty_outcomes(cases.names, cases.scales, used)
+        return empty_outcomes(cases.names, cases.scales)
+    chosen = [_engine_of(cases, system) for system in cases.systems]
     parts = []
-    for name in used:
-        rows = [i for i, engine in enumerate(chosen) if engine.name == name]
-        some = Cases(
-            tuple(cases.systems[i] for i in rows),
-            cases.motions,
-            cases.scales,
-            cases.request,
-            cases.threads,
-        )
-        parts.append((rows, chosen[rows[0]].run(some)))
-    # an engine may hand cases on, so that others than those chosen have answered
-    answered = list(dict.fromkeys(name for _, found in parts for name in found.engines))
-    result = empty_outcomes(cases.names, cases.scales, answered)
+    for engine in dict.fromkeys(chosen):
+        rows = [i for i, one in enumerate(chosen) if one is engine]
+        some = replace(cases, systems=tuple(cases.systems[i] for i in rows))
+        parts.append((rows, engine.run(some)))
+    # an engine may have asked others
+    used = dict.fromkeys(name for _, found in parts for name in found.engines)
+    result = empty_outcomes(cases.names, cases.scales, tuple(used))
     for rows, found in parts:
         merge_outcomes(result, rows, found)
     return result

@@ -45,6 +45,10 @@ on a warning is given: rocking adds to it (19 of 27 blocks of h/b 0.5 to 1.2 at 
 contact, while slender ones need several g)."""
 
 
+LEAST_LIFTING = 0.8
+"""Acceleration over g below which no uniform block both rocks and is warned of."""
+
+
 class LightBodies(UserWarning):
     """Bodies are nearly weightless at times, and pure rocking holds them on the ground."""
 
@@ -237,6 +241,9 @@ def _warn_of_lifting(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_])
     peaks = np.array([motion.x.pga for motion in cases.motions])[:, np.newaxis] * np.abs(
         cases.scales
     )
+    # a body that rocks at less is too slender or too squat to lift itself
+    if not (peaks > LEAST_LIFTING * cases.request.g).any():
+        return
     least = np.array([lifting_acceleration(system, cases.request.g) for system in cases.systems])
     strong = (peaks > LIFTING * least[:, np.newaxis, np.newaxis]) & stuck[:, np.newaxis, np.newaxis]
     with np.errstate(invalid="ignore"):
@@ -263,6 +270,7 @@ def lifting_acceleration(system: System, g: float) -> float:
     for shape in shapes:
         for pivot in (+1, -1):
             x, y = geometry.arm(shape, pivot)
-            needed = geometry.pole_inertia(shape, pivot) / (shape.mass * abs(x)) - abs(x)
-            found = min(found, g * needed / y)
+            if x:
+                needed = geometry.pole_inertia(shape, pivot) / (shape.mass * abs(x)) - abs(x)
+                found = min(found, g * needed / y)
     return float(found)

@@ -58,8 +58,9 @@ def worst_direction(
 ) -> WorstDirection:
     """Find the direction in which two components overturn a body that rocks in one plane.
 
-    The record is scaled as a whole: its components keep their ratio. A body that may turn about a
-    vertical axis chooses its plane itself, and this is its worst case.
+    The record is scaled as a whole: its components keep their ratio. The answer is of a body in one plane that
+    has the same width in every direction. It is no bound for a body in space, which meets both components at
+    once, rocks on corners, rolls on a round edge and loses other amounts of energy in impacts.
 
     Parameters
     ----------

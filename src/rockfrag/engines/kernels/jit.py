@@ -95,10 +95,10 @@ for _module in (elementary, geometry):
 
 @cache
 def _digest() -> str:
-    """Digest of all kernels' sources: those of every engine, of the arithmetic and of bodies as they stand."""
+    """Digest of all kernels' sources: those of engines, of the arithmetic and of bodies."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[2]
-    sources = sorted((package / "engines").rglob("*.py"))
+    sources = sorted((package / "engines").glob("*/**/*.py"))
     for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
         digest.update(path.read_bytes())
     return digest.hexdigest()

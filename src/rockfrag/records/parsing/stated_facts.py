@@ -17,8 +17,11 @@ _STEP = re.compile(
     rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?",
     re.IGNORECASE,
 )
+_STEP_BEFORE = re.compile(
+    rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b", re.I
+)
 _RATE = re.compile(
-    rf"\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?{_IS}(?P<value>{_VALUE})\s*(?P<unit>k?hz|sps|samples|pts|points)?"
+    rf"\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*(?P<unit>k?hz|sps|samples|pts|points)?"
     r"|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
     r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)",
     re.IGNORECASE,
@@ -134,6 +137,7 @@ def _steps(line: str) -> list[float]:
         factor = next((f for u, f in _SECONDS.items() if (unit or note).startswith(u)), 1.0)
         factor = 60.0 if (unit or note).startswith("min") else factor
         found.append(float(f"{number_in(match['value']) * factor:.12g}"))
+    found += [number_in(match["value"]) for match in _STEP_BEFORE.finditer(line)]
     for match in _RATE.finditer(line):
         words = match["value"] or match["value2"] or match["value3"]
         note = f"{match['note'] or ''}{match['note2'] or ''}{match['unit'] or ''}".lower()

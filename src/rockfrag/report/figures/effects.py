@@ -79,7 +79,7 @@ def ratio_axis(axes: Axes, values: NDArray[np.float64] | Sequence[float]) -> Non
     axes.set_xscale("log")
     axes.set_xlim(low, high)
     ticks = [tick for tick in _TICKS if low <= tick <= high]
-    for crowded in ((0.9, 1.1), (0.7, 1.2), (0.8,), (0.3, 3)):
+    for crowded in ((0.9, 1.1), (0.7, 1.2), (0.8, 1.5), (0.3, 3)):
         if len(ticks) > _MOST_TICKS or _too_near(ticks, low, high):
             ticks = [tick for tick in ticks if tick not in crowded]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])

@@ -1,0 +1,89 @@
+"""A box under three components, 40 s at 0.01 s: the engine in space beside MuJoCo in steps of 1 ms.
+
+Prints cases per second of process time of both, in one run, the fractions overturned, and whether one and two
+threads give the same bits.  ``python benchmarks/space.py [motions]``
+"""
+
+import sys
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import butter, sosfilt
+
+from rockfrag.engines.spatial import run_in_space
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import Motion
+from rockfrag.system.blocks import Block
+
+DT = 0.01
+G = 9.81
+SIZE = (0.35, 0.35, 1.2)
+SCALES = (0.35, 0.45, 0.6)
+SCENE = """
+<mujoco><option timestep="0.001" cone="elliptic" impratio="100" gravity="0 0 -9.81"/>
+<default><geom friction="{friction} 0 0" condim="3" solref="0.002 1" solimp="0.99 0.999 0.0001"/></default>
+<worldbody><geom type="plane" size="50 50 1"/>
+<body pos="0 0 {half}"><freejoint/><geom type="box" size="{x} {y} {half}" mass="300"/></body></worldbody></mujoco>
+"""
+Array = NDArray[np.float64]
+
+
+def motions(count: int) -> list[Array]:
+    """Synthetic motions with three components, largest horizontal accelerations 1 g, shape (4000, 3) each."""
+    rng = np.random.default_rng(3)
+    time_ = np.arange(4000) * DT
+    envelope = np.exp(-(((time_ - 14) / 7.2) ** 2))[:, None]
+    made = []
+    for _ in range(count):
+        sections = butter(2, [0.3, rng.uniform(2, 5)], "band", fs=1 / DT, output="sos")
+        noise = sosfilt(sections, rng.standard_normal((4000, 3)), axis=0) * envelope
+        peaks = np.abs(noise[:, :2]).max(axis=0)
+        made.append(noise * [1, 1, 0.5] * G / np.sqrt(peaks.prod()))
+    return made
+
+
+def mujoco_falls(ground: Array, friction: float = 1.0) -> bool:
+    """Whether the box falls in MuJoCo, which stops as soon as it lies."""
+    import mujoco
+
+    x, y, height = SIZE
+    scene = SCENE.format(friction=friction, x=x / 2, y=y / 2, half=height / 2)
+    model = mujoco.MjModel.from_xml_string(scene)
+    data = mujoco.MjData(model)
+    each = round(DT / model.opt.timestep)
+    for k in range(len(ground) - 1):
+        for part in range(each):
+            share = (part + 0.5) / each
+            pull = -(ground[k] * (1 - share) + ground[k + 1] * share)
+            model.opt.gravity[:] = (pull[0], pull[1], pull[2] - G)
+            mujoco.mj_step(model, data)
+        if data.xmat[1][8] <= 0.2:
+            return True
+    return False
+
+
+def main(count: int) -> None:
+    """Run both and print."""
+    made = motions(count)
+    shaken = [GroundMotion(*(Motion(component, DT) for component in one.T)) for one in made]
+    body = Block(SIZE[0], SIZE[2], 300.0, depth=SIZE[1])
+    run_in_space([body], shaken[:1], [0.1])
+    start = time.process_time()
+    first = run_in_space([body], shaken, SCALES)
+    ours = count * len(SCALES) / (time.process_time() - start)
+    second = run_in_space([body], shaken, SCALES, threads=2)
+    equal = np.array_equal(first.turn, second.turn) and np.array_equal(
+        first.certain_time, second.certain_time, equal_nan=True
+    )
+    print(f"engine in space: {ours:.1f} cases/s, overturned {first.overturned[0].mean(axis=0)}")
+    print(f"one and two threads give the same bits: {equal}")
+    start = time.process_time()
+    fallen = np.array([[mujoco_falls(one * scale) for scale in SCALES] for one in made])
+    theirs = fallen.size / (time.process_time() - start)
+    print(f"MuJoCo, 1 ms: {theirs:.2f} cases/s, overturned {fallen.mean(axis=0)}")
+    print(f"ratio {ours / theirs:.0f}, outcomes equal {(fallen == first.overturned[0]).mean():.2f}")
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 8)

@@ -1,0 +1,141 @@
+"""Vectors of three as tuples, rotations, and small linear systems, allocation-free."""
+
+import math
+
+from numba import njit
+
+
+@njit(cache=True)
+def dot(a, b):
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)
+def cross(a, b):
+    """Vector product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@njit(cache=True)
+def plus(a, b):
+    """Sum."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+@njit(cache=True)
+def minus(a, b):
+    """Difference."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+@njit(cache=True)
+def scaled(s, a):
+    """Multiple."""
+    return (s * a[0], s * a[1], s * a[2])
+
+
+@njit(cache=True)
+def times(matrix, a):
+    """Matrix (3, 3) times vector."""
+    return (
+        matrix[0, 0] * a[0] + matrix[0, 1] * a[1] + matrix[0, 2] * a[2],
+        matrix[1, 0] * a[0] + matrix[1, 1] * a[1] + matrix[1, 2] * a[2],
+        matrix[2, 0] * a[0] + matrix[2, 1] * a[1] + matrix[2, 2] * a[2],
+    )
+
+
+@njit(cache=True)
+def rotation(y):
+    """Rows of R, which are the world's axes as the body sees them, from the quaternion y[3:7]."""
+    w, x, i, z = y[3], y[4], y[5], y[6]
+    return (
+        (1 - 2 * (i * i + z * z), 2 * (x * i - w * z), 2 * (x * z + w * i)),
+        (2 * (x * i + w * z), 1 - 2 * (x * x + z * z), 2 * (i * z - w * x)),
+        (2 * (x * z - w * i), 2 * (i * z + w * x), 1 - 2 * (x * x + i * i)),
+    )
+
+
+@njit(cache=True)
+def to_world(rows, a):
+    """Components in the world of a vector of the body."""
+    return (dot(rows[0], a), dot(rows[1], a), dot(rows[2], a))
+
+
+@njit(cache=True)
+def to_body(rows, a):
+    """Components in the body of a vector of the world."""
+    return (
+        a[0] * rows[0][0] + a[1] * rows[1][0] + a[2] * rows[2][0],
+        a[0] * rows[0][1] + a[1] * rows[1][1] + a[2] * rows[2][1],
+        a[0] * rows[0][2] + a[1] * rows[1][2] + a[2] * rows[2][2],
+    )
+
+
+@njit(cache=True)
+def turn(y, angle):
+    """Turn the quaternion y[3:7] by a small rotation vector of the body, and normalise it."""
+    w, x, i, z = y[3], y[4], y[5], y[6]
+    a, b, c = 0.5 * angle[0], 0.5 * angle[1], 0.5 * angle[2]
+    y[3] = w - (x * a + i * b + z * c)
+    y[4] = x + (w * a + i * c - z * b)
+    y[5] = i + (w * b + z * a - x * c)
+    y[6] = z + (w * c + x * b - i * a)
+    normalise(y)
+
+
+@njit(cache=True)
+def normalise(y):
+    """Give the quaternion y[3:7] the length 1."""
+    length = math.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
+    for i in range(3, 7):
+        y[i] /= length
+
+
+@njit(cache=True)
+def solve_symmetric(a, b, c, d, e, f, r):
+    """Solve [[a, b, c], [b, d, e], [c, e, f]] x = r by Cramer's rule."""
+    p, q, s = d * f - e * e, c * e - b * f, b * e - c * d
+    inverse = 1.0 / (a * p + b * q + c * s)
+    u, v, w = a * f - c * c, b * c - a * e, a * d - b * b
+    return (
+        inverse * (p * r[0] + q * r[1] + s * r[2]),
+        inverse * (q * r[0] + u * r[1] + v * r[2]),
+        inverse * (s * r[0] + v * r[1] + w * r[2]),
+    )
+
+
+@njit(cache=True)
+def factor(matrix, order, n):
+    """Factor matrix[:n, :n] in place into triangles, with rows exchanged as ``order`` says."""
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        order[k] = best
+        if matrix[best, k] == 0.0:
+            return False
+        if best != k:
+            for j in range(n):
+                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+        for i in range(k + 1, n):
+            matrix[i, k] /= matrix[k, k]
+            for j in range(k + 1, n):
+                matrix[i, j] -= matrix[i, k] * matrix[k, j]
+    return True
+
+
+@njit(cache=True)
+def substitute(matrix, order, n, x):
+    """Solve in place with the triangles of :func:`factor`."""
+    for k in range(n):
+        if order[k] != k:
+            x[k], x[order[k]] = x[order[k]], x[k]
+    for i in range(n):
+        for j in range(i):
+            x[i] -= matrix[i, j] * x[j]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            x[i] -= matrix[i, j] * x[j]
+        x[i] /= matrix[i, i]

@@ -1,0 +1,175 @@
+"""What the kernels know of a body, and where and how fast its points are.
+
+A state y holds C (0:3), the centre of mass relative to the ground; the quaternion world ← body (3:7); the
+velocity of C (7:10, world); the angular velocity (10:13, body); the work done by the ground's motion (13) and
+the energy lost by friction (14).  Everything is for a unit of mass: energies in J/kg, forces in N/kg.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from rockfrag.engines.spatial._algebra import cross, dot, minus, plus, times, to_world
+
+SIZE = 15
+WORK, FRICTION = 13, 14
+
+
+MOST_VERTICES = 64
+
+BODY = np.dtype(
+    [
+        ("count", np.int64),  # vertices of the base; of a round one, four points of its rim
+        ("rim", np.float64),  # radius of a round base [m]; 0 for a polygon
+        ("centre", np.float64, (2,)),  # centre of a round base [m]
+        ("height", np.float64),  # of the centre of mass over the base [m]
+        (
+            "furthest",
+            np.float64,
+        ),  # tilt at which the centre of mass is over the furthest point [rad]
+        ("static", np.float64),  # coefficients of friction [-]
+        ("kinetic", np.float64),
+        (
+            "barrier",
+            np.float64,
+        ),  # energy over rest below which nothing falls on ground at rest [J/kg]
+        (
+            "pass_turn",
+            np.float64,
+        ),  # turn of the contact of a round base that passes through flat [rad]
+        ("inertia", np.float64, (3, 3)),  # tensor over the mass, about the centre of mass [m²]
+        ("inverse", np.float64, (3, 3)),
+        ("points", np.float64, (MOST_VERTICES, 3)),  # vertices, anticlockwise [m]
+        ("about", np.float64, (MOST_VERTICES, 3, 3)),  # tensor about each vertex [m²]
+        ("about_inverse", np.float64, (MOST_VERTICES, 3, 3)),
+    ],
+    align=True,
+)
+"""A body on a base, in its own frame with the origin at the centre of mass and z up."""
+
+
+@njit(cache=True)
+def rim_contact(body):
+    """Number of the contact that is the lowest point of a rim; polygons have none."""
+    return body.count if body.rim > 0 else -1
+
+
+@njit(cache=True)
+def rim_direction(body, up):
+    """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt."""
+    sine = math.hypot(up[0], up[1])
+    if sine < 1e-300:
+        return (1.0, 0.0, 0.0), 0.0
+    return (-up[0] / sine, -up[1] / sine, 0.0), sine
+
+
+@njit(cache=True)
+def arm(body, up, i):
+    """Point i from the centre of mass, in the body, where ``up`` is the vertical as the body sees it."""
+    if i == rim_contact(body):
+        u, _ = rim_direction(body, up)
+        return (
+            body.centre[0] + body.rim * u[0],
+            body.centre[1] + body.rim * u[1],
+            -body.height,
+        )
+    return (body.points[i, 0], body.points[i, 1], body.points[i, 2])
+
+
+@njit(cache=True)
+def rim_drift(body, up, omega):
+    """Velocity of the lowest point along the rim, in the body."""
+    u, sine = rim_direction(body, up)
+    turn = cross(up, omega)  # rate of change of ``up`` in the body
+    along = turn[0] * u[0] + turn[1] * u[1]
+    return (
+        -body.rim * (turn[0] - along * u[0]) / sine,
+        -body.rim * (turn[1] - along * u[1]) / sine,
+        0.0,
+    )
+
+
+@njit(cache=True)
+def bias(body, up, omega, p, i):
+    """Acceleration of contact i that does not come from accelerations, ω × dρ/dt, in the body."""
+    moved = cross(omega, p)
+    if i == rim_contact(body):
+        moved = plus(moved, rim_drift(body, up, omega))
+    return cross(omega, moved)
+
+
+@njit(cache=True)
+def gap(body, y, up, i):
+    """Height of point i over the ground."""
+    return y[2] + dot(up, arm(body, up, i))
+
+
+@njit(cache=True)
+def omega_of(y):
+    """Angular velocity in the body."""
+    return (y[10], y[11], y[12])
+
+
+@njit(cache=True)
+def point_velocity(y, rows, p):
+    """Velocity in the world of the body's point p."""
+    turned = to_world(rows, cross(omega_of(y), p))
+    return (y[7] + turned[0], y[8] + turned[1], y[9] + turned[2])
+
+
+@njit(cache=True)
+def energy(body, y, g):
+    """Kinetic energy and the energy of height over rest [J/kg]."""
+    omega = omega_of(y)
+    kinetic = 0.5 * (y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega)))
+    return kinetic + g * (y[2] - body.height)
+
+
+@njit(cache=True)
+def free_spin(body, omega):
+    """Angular acceleration without any moment, in the body."""
+    moment = cross(omega, times(body.inertia, omega))
+    turned = times(body.inverse, moment)
+    return (-turned[0], -turned[1], -turned[2])
+
+
+@njit(cache=True)
+def first_candidate(body):
+    """Number of the first point that may touch when the body is not flat: the rim, or vertex 0."""
+    return body.count if body.rim > 0 else 0
+
+
+@njit(cache=True)
+def last_candidate(body):
+    """One more than the number of the last such point."""
+    return body.count + 1 if body.rim > 0 else body.count
+
+
+@njit(cache=True)
+def position_of_base(y, rows, p):
+    """Where in the plan the body's point p is."""
+    moved = to_world(rows, p)
+    return (y[0] + moved[0], y[1] + moved[1])
+
+
+__all__ = [
+    "BODY",
+    "FRICTION",
+    "SIZE",
+    "WORK",
+    "arm",
+    "bias",
+    "energy",
+    "first_candidate",
+    "free_spin",
+    "gap",
+    "last_candidate",
+    "minus",
+    "omega_of",
+    "point_velocity",
+    "position_of_base",
+    "rim_contact",
+    "rim_direction",
+    "rim_drift",
+]  # fmt: skip

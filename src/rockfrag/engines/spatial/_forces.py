@@ -1,0 +1,360 @@
+"""Accelerations and contact forces of a mode: which points are closed, and which of them slide."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from rockfrag.engines.spatial._algebra import (
+    cross,
+    dot,
+    factor,
+    minus,
+    plus,
+    rotation,
+    scaled,
+    solve_symmetric,
+    substitute,
+    times,
+    to_body,
+    to_world,
+)
+from rockfrag.engines.spatial._body import (
+    SIZE,
+    arm,
+    bias,
+    free_spin,
+    omega_of,
+    point_velocity,
+    rim_contact,
+)
+
+MOST = 4
+"""Most contacts that carry at once."""
+
+STICKS, SLIDES = 0, 1
+FLIGHT, PIVOT, HINGE, GENERAL, REST = 0, 1, 2, 3, 4
+
+SLIP_FLOOR = 1e-5
+"""Slip velocity below which a point does not slip yet, or no longer, and its direction is the one noted [m/s]."""
+
+SOFTNESS = 1e-9
+"""Part of the largest compliance that is added to all, so that redundant forces are the least ones [-]."""
+
+
+STAGES = 7
+
+CASE = np.dtype(
+    [
+        # the mode: number of closed points, their numbers, which of them slide and where to, where they stick
+        ("count", np.int64),
+        ("rests", np.int64),
+        ("closed", np.int64, (MOST,)),
+        ("slides", np.int64, (MOST,)),
+        ("direction", np.float64, (MOST, 2)),
+        ("anchor", np.float64, (MOST, 2)),
+        ("lam", np.float64, (MOST, 3)),  # contact forces or impulses in the world
+        # effective gravity at the beginning of the interval, its rate, and gravity on ground at rest
+        ("field", np.float64, (7,)),
+        # a small system: contacts, whether and which way of slip is given, coefficients, directions between
+        ("which", np.int64, (MOST,)),
+        ("given", np.int64, (MOST,)),
+        ("way", np.float64, (MOST, 2)),
+        ("friction", np.float64, (MOST,)),
+        ("edge", np.float64, (MOST, MOST, 2)),
+        ("delassus", np.float64, (3 * MOST, 3 * MOST)),
+        ("matrix", np.float64, (3 * MOST, 3 * MOST)),
+        ("free", np.float64, (3 * MOST,)),
+        ("vector", np.float64, (3 * MOST,)),
+        ("right", np.float64, (3 * MOST,)),
+        ("unknown", np.float64, (3 * MOST,)),
+        ("impulse", np.float64, (3 * MOST,)),
+        ("after", np.float64, (3 * MOST,)),
+        ("best", np.float64, (3 * MOST,)),
+        ("trial", np.float64, (3 * MOST,)),
+        ("order", np.int64, (3 * MOST,)),
+        # a step: rates at its stages, the state at its end, slip at its beginning
+        ("slopes", np.float64, (STAGES, SIZE)),
+        ("new", np.float64, (SIZE,)),
+        ("slip", np.float64, (MOST, 2)),
+        ("armed", np.int64, (MOST,)),
+        ("counters", np.int64, (8,)),
+        (
+            "close",
+            np.float64,
+        ),  # velocity after an impact below which a point that touches stays closed [m/s]
+    ],
+    align=True,
+)
+"""What an analysis changes in place; its record goes through all kernels."""
+
+
+@njit(cache=True)
+def kind_of(s):
+    """Kind of a mode."""
+    n = s.count
+    if s.rests:
+        return REST
+    if n == 0:
+        return FLIGHT
+    if n == 1 and s.slides[0] == STICKS:
+        return PIVOT
+    if n == 2 and s.slides[0] == STICKS and s.slides[1] == STICKS:
+        return HINGE
+    return GENERAL
+
+
+@njit(cache=True)
+def response(body, rows, p, q, axis):
+    """Velocity in the world of point p after a unit impulse along a world axis at point q."""
+    push = rows[axis]
+    turn = times(body.inverse, cross(q, push))
+    return to_world(rows, plus(push, cross(turn, p)))
+
+
+@njit(cache=True)
+def fill_delassus(body, rows, which, n, delassus):
+    """Fill in what impulses at the contacts do to their velocities, in world components."""
+    up = rows[2]
+    for j in range(n):
+        q = arm(body, up, which[j])
+        for axis in range(3):
+            for i in range(n):
+                u = response(body, rows, arm(body, up, which[i]), q, axis)
+                for k in range(3):
+                    delassus[3 * i + k, 3 * j + axis] = u[k]
+
+
+@njit(cache=True)
+def fill_velocities(body, y, rows, which, n, out):
+    """Fill in the velocities of contacts."""
+    for i in range(n):
+        u = point_velocity(y, rows, arm(body, rows[2], which[i]))
+        for k in range(3):
+            out[3 * i + k] = u[k]
+
+
+@njit(cache=True)
+def fill_accelerations(body, y, rows, weight, which, n, out):
+    """Fill in the accelerations that contacts would have without contact forces.
+
+    ``weight`` is the effective gravity as the body sees it.
+    """
+    omega = omega_of(y)
+    spin = free_spin(body, omega)
+    for i in range(n):
+        p = arm(body, rows[2], which[i])
+        b = bias(body, rows[2], omega, p, which[i])
+        u = to_world(rows, plus(plus(weight, cross(spin, p)), b))
+        for k in range(3):
+            out[3 * i + k] = u[k]
+
+
+@njit(cache=True)
+def slip_direction(s, i, u, v):
+    """Direction of slip of contact i whose velocity in the plan is (u, v)."""
+    speed = math.hypot(u, v)
+    if speed > SLIP_FLOOR:
+        return u / speed, v / speed
+    return s.direction[i, 0], s.direction[i, 1]
+
+
+@njit(cache=True)
+def pivot_acceleration(body, up, omega, weight, i):
+    """Angular acceleration about a sticking point, the force at it, both in the body."""
+    p = arm(body, up, i)
+    b = bias(body, up, omega, p, i)
+    load = plus(b, weight)
+    moment = minus(scaled(-1.0, cross(omega, times(body.inertia, omega))), cross(p, load))
+    if i == rim_contact(body):
+        m = body.inertia
+        square = dot(p, p)
+        alpha = solve_symmetric(
+            m[0, 0] + square - p[0] * p[0], m[0, 1] - p[0] * p[1], m[0, 2] - p[0] * p[2],
+            m[1, 1] + square - p[1] * p[1], m[1, 2] - p[1] * p[2], m[2, 2] + square - p[2] * p[2], moment,
+        )  # fmt: skip
+    else:
+        alpha = times(body.about_inverse[i], moment)
+    force = scaled(-1.0, plus(cross(alpha, p), load))
+    return alpha, force
+
+
+@njit(cache=True)
+def hinge_acceleration(body, rows, omega, weight, i, j):
+    """Angular acceleration about the edge from point i to j, force at i and at j along the edge shared evenly."""
+    p, q = arm(body, rows[2], i), arm(body, rows[2], j)
+    edge = minus(q, p)
+    length = math.sqrt(dot(edge, edge))
+    e = scaled(1.0 / length, edge)
+    b = bias(body, rows[2], omega, p, i)
+    load = plus(b, weight)
+    gyroscopic = cross(omega, times(body.inertia, omega))
+    moment = minus(scaled(-1.0, gyroscopic), cross(p, load))
+    alpha = scaled(dot(e, moment) / dot(e, times(body.about[i], e)), e)
+    whole = scaled(-1.0, plus(cross(alpha, p), load))
+    left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, whole))
+    far = scaled(1.0 / length, cross(left, e))
+    return alpha, whole, far, e
+
+
+@njit(cache=True)
+def share_along(whole, far, edge, friction, s):
+    """Share the force along an edge between its ends so that both hold if they can; world components."""
+    near = minus(whole, far)
+    along = dot(near, edge)
+    across = minus(near, scaled(along, edge))
+    first = max(friction**2 * across[2] ** 2 - across[0] ** 2 - across[1] ** 2, 0.0)
+    second = max(friction**2 * far[2] ** 2 - far[0] ** 2 - far[1] ** 2, 0.0)
+    first, second = math.sqrt(first), math.sqrt(second)
+    part = 0.5 if first + second == 0.0 else first / (first + second)
+    for k in range(3):
+        s.lam[0, k] = across[k] + part * along * edge[k]
+        s.lam[1, k] = far[k] + (1.0 - part) * along * edge[k]
+
+
+@njit(cache=True)
+def fill_general(body, y, rows, n, friction, s):
+    """Fill in the system of a mode's unknown forces; return its size."""
+    fill_delassus(body, rows, s.closed, n, s.delassus)
+    size = 0
+    for j in range(n):
+        u = point_velocity(y, rows, arm(body, rows[2], s.closed[j]))
+        way = slip_direction(s, j, u[0], u[1])
+        for axis in range(2 if s.slides[j] else 0, 3):
+            row = 0
+            for i in range(n):
+                for k in range(2 if s.slides[i] else 0, 3):
+                    value = s.delassus[3 * i + k, 3 * j + axis]
+                    if s.slides[j]:
+                        push = s.delassus[3 * i + k, 3 * j] * way[0]
+                        push += s.delassus[3 * i + k, 3 * j + 1] * way[1]
+                        value -= friction * push
+                    s.matrix[row, size] = value
+                    row += 1
+            size += 1
+    soft = SOFTNESS * largest_compliance(s, n)
+    for i in range(size):
+        s.matrix[i, i] += soft
+    return size
+
+
+@njit(cache=True)
+def solve_general(body, y, rows, n, friction, s):
+    """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
+    size = fill_general(body, y, rows, n, friction, s)
+    row = 0
+    for i in range(n):
+        for k in range(2 if s.slides[i] else 0, 3):
+            s.right[row] = -s.free[3 * i + k]
+            row += 1
+    # the softness shifts forces by a part of 1e-9, which one more pass with it as a reference removes
+    for i in range(size):
+        s.unknown[i] = 0.0
+    soft = SOFTNESS * largest_compliance(s, n)
+    done = factor(s.matrix, s.order, size)
+    for _ in range(3):
+        if not done:
+            break
+        for i in range(size):
+            s.vector[i] = s.right[i] + soft * s.unknown[i]
+        substitute(s.matrix, s.order, size, s.vector)
+        for i in range(size):
+            s.unknown[i] = s.vector[i]
+    row = 0
+    for i in range(n):
+        if s.slides[i]:
+            u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
+            way = slip_direction(s, i, u[0], u[1])
+            normal = s.unknown[row]
+            s.lam[i, 0] = -friction * normal * way[0]
+            s.lam[i, 1] = -friction * normal * way[1]
+            s.lam[i, 2] = normal
+            row += 1
+        else:
+            for k in range(3):
+                s.lam[i, k] = s.unknown[row]
+                row += 1
+    return done
+
+
+@njit(cache=True)
+def largest_compliance(s, n):
+    """Largest diagonal entry of the Delassus matrix of n contacts, as fill_general softens with."""
+    largest = 0.0
+    for i in range(3 * n):
+        largest = max(largest, s.delassus[i, i])
+    return largest
+
+
+@njit(cache=True)
+def rates(body, tau, y, dy, s):
+    """Fill in dy/dt, and the contact forces in world components.
+
+    ``s.field`` holds the effective gravity at the beginning of the interval, its rate, and the gravity of a ground
+    at rest; ``tau`` counts from there.
+    """
+    rows = rotation(y)
+    omega = omega_of(y)
+    pull = (
+        s.field[0] + s.field[3] * tau,
+        s.field[1] + s.field[4] * tau,
+        s.field[2] + s.field[5] * tau,
+    )
+    weight = to_body(rows, pull)
+    kind = kind_of(s)
+    lost = 0.0
+    if kind == PIVOT:
+        alpha, force = pivot_acceleration(body, rows[2], omega, weight, s.closed[0])
+        pushed = to_world(rows, force)
+        for k in range(3):
+            s.lam[0, k] = pushed[k]
+        acceleration = plus(pull, pushed)
+    elif kind == HINGE:
+        alpha, whole, far, e = hinge_acceleration(
+            body, rows, omega, weight, s.closed[0], s.closed[1]
+        )
+        pushed = to_world(rows, whole)
+        share_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
+        acceleration = plus(pull, pushed)
+    else:
+        alpha = free_spin(body, omega)
+        acceleration = pull
+        n = s.count
+        if n > 0:
+            fill_accelerations(body, y, rows, weight, s.closed, n, s.free)
+            solve_general(body, y, rows, n, body.kinetic, s)
+            for i in range(n):
+                push = (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
+                p = arm(body, rows[2], s.closed[i])
+                acceleration = plus(acceleration, push)
+                alpha = plus(alpha, times(body.inverse, cross(p, to_body(rows, push))))
+                if s.slides[i]:
+                    u = point_velocity(y, rows, p)
+                    lost -= push[0] * u[0] + push[1] * u[1]
+    fill_rates(y, omega, alpha, acceleration, dy)
+    dy[13] = pull[0] * y[7] + pull[1] * y[8] + (pull[2] + s.field[6]) * y[9]
+    dy[14] = lost
+
+
+@njit(cache=True)
+def fill_rates(y, omega, alpha, acceleration, dy):
+    """Fill in the rates of position, attitude and velocities."""
+    w, x, i, z = y[3], y[4], y[5], y[6]
+    dy[0], dy[1], dy[2] = y[7], y[8], y[9]
+    dy[3] = -0.5 * (x * omega[0] + i * omega[1] + z * omega[2])
+    dy[4] = 0.5 * (w * omega[0] + i * omega[2] - z * omega[1])
+    dy[5] = 0.5 * (w * omega[1] + z * omega[0] - x * omega[2])
+    dy[6] = 0.5 * (w * omega[2] + x * omega[1] - i * omega[0])
+    for k in range(3):
+        dy[7 + k] = acceleration[k]
+        dy[10 + k] = alpha[k]
+
+
+@njit(cache=True)
+def push_at(body, y, rows, i, impulse):
+    """Change the velocities by an impulse (world) at contact i."""
+    p = arm(body, rows[2], i)
+    turned = times(body.inverse, cross(p, to_body(rows, impulse)))
+    for k in range(3):
+        y[7 + k] += impulse[k]
+        y[10 + k] += turned[k]

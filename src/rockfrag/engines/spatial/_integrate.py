@@ -1,0 +1,601 @@
+"""One analysis: a body, a motion of the ground, event by event."""
+
+import math
+
+from numba import njit
+
+from rockfrag.engines.spatial._algebra import (
+    cross,
+    normalise,
+    rotation,
+    to_body,
+    to_world,
+    turn,
+)
+from rockfrag.engines.spatial._body import (
+    FRICTION,
+    SIZE,
+    WORK,
+    arm,
+    energy,
+    omega_of,
+    position_of_base,
+    rim_contact,
+    rim_direction,
+)
+from rockfrag.engines.spatial._forces import MOST, PIVOT, REST, SLIDES, STICKS, kind_of, rates
+from rockfrag.engines.spatial._modes import (
+    AT_REST,
+    CLOSE,
+    COUNTERS,
+    JAMS,
+    LANDS,
+    LEAVES_CONE,
+    NOTHING,
+    OPENS,
+    PASSES,
+    SLIDINGS,
+    SLIP_ENDS,
+    TOUCH,
+    anchor_all,
+    choose_mode,
+    come_to_rest,
+    count_touching,
+    edge_margin,
+    gap,
+    impact,
+    insist,
+    lay_flat,
+    rest_margin,
+    settle,
+)
+from rockfrag.engines.spatial._step import (
+    attempt,
+    begin_slips,
+    dips,
+    margin,
+)
+
+RIM_START = 1e-6
+"""Tilt with which a round base begins to roll: at none its contact has no direction [rad]."""
+
+FLAT_PASS = 1e-8
+"""Tilt below which a round base passes through flat in closed form [rad]."""
+
+SHORTEST = 1e-11
+"""Shortest step [s]."""
+
+MANY = 40
+"""Events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
+
+HURRY = 1000
+"""Steps in one interval after which errors of COARSE are allowed: slip that hardly begins is stiff [-]."""
+
+COARSE = 1e-6
+"""Error of a step that is allowed then [m, m/s, rad/s]."""
+
+OUTCOME = 20
+(
+    FELL, FALL_TIME, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, PEAK_WALK, WALK_X,
+    WALK_Y, TURN, STEPS, LOST, LEDGER, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, EVENTS,
+) = range(OUTCOME)  # fmt: skip
+
+COLUMNS = 17
+"""Columns of a history: y[0:13], turn about the vertical, number of closed points, and the first two of them."""
+
+
+@njit(cache=True)
+def set_field(field, acceleration, k, scale, dt, g):
+    """Set the effective gravity of interval k; the ground is at rest one sample after the last."""
+    last = acceleration.shape[0] - 1
+    for i in range(3):
+        now = scale * acceleration[k, i] if k <= last else 0.0
+        then = scale * acceleration[k + 1, i] if k < last else 0.0
+        field[i], field[3 + i] = -now, -(then - now) / dt
+    field[2] -= g
+    field[6] = g
+
+
+@njit(cache=True)
+def pull_at(field, tau):
+    """Effective gravity in the world."""
+    return (field[0] + field[3] * tau, field[1] + field[4] * tau, field[2] + field[5] * tau)
+
+
+@njit(cache=True)
+def rest_ends(body, y, field, tau, dt):
+    """When in an interval the ground no longer carries the body at rest; a negative number if it does throughout.
+
+    The margin is the least of concave functions of time, so it is enough to look at the ends.
+    """
+    rows = rotation(y)
+    if rest_margin(body, y, rows, pull_at(field, dt)) >= 0:
+        return -1.0
+    low, high = tau, dt
+    above = rest_margin(body, y, rows, pull_at(field, low))
+    if above <= 0:
+        return low
+    below = rest_margin(body, y, rows, pull_at(field, high))
+    side = 0
+    for _ in range(100):
+        middle = (low * below - high * above) / (below - above)
+        value = rest_margin(body, y, rows, pull_at(field, middle))
+        if value >= 0:
+            low, above = middle, value
+            below *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            high, below = middle, value
+            above *= 0.5 if side < 0 else 1.0
+            side = -1
+        if abs(value) < 1e-14:
+            return middle
+        if high - low < 1e-15:
+            break
+    return high
+
+
+@njit(cache=True)
+def leave_rest(body, y, tau, s):
+    """Choose how the body leaves rest: slides, or tips over an edge, a vertex or the rim."""
+    rows = rotation(y)
+    pull = pull_at(s.field, tau)
+    small = 1e-9 * s.field[6]
+    level = math.hypot(pull[0], pull[1])
+    s.rests = 0
+    whole = rest_margin(body, y, rows, pull)
+    if -body.static * pull[2] - level < small or whole < -small:
+        slide_or_jump(body, y, tau, s, pull, level, whole < -small)
+        return
+    if body.rim > 0:
+        b = to_body(rows, (pull[0], pull[1], 0.0))
+        centre = -pull[2] / body.height
+        start_rolling(body, y, b[0] - centre * body.centre[0], b[1] - centre * body.centre[1], s)
+        return
+    s.count = 0
+    last, first = -1, -1
+    for i in range(body.count):
+        if gap(body, y, rows[2], i) <= TOUCH:
+            if last >= 0:
+                add_edge(body, y, rows, pull, last, i, small, s)
+            else:
+                first = i
+            last = i
+    add_edge(body, y, rows, pull, last, first, small, s)
+    anchor_all(body, y, s)
+
+
+@njit(cache=True)
+def slide_or_jump(body, y, tau, s, pull, level, jumps):
+    """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any way."""
+    if jumps and choose_mode(body, tau, y, s):
+        return
+    n = 0
+    rows = rotation(y)
+    for i in range(body.count):
+        if n < MOST and gap(body, y, rows[2], i) <= TOUCH:
+            s.closed[n], s.slides[n] = i, SLIDES
+            s.direction[n, 0], s.direction[n, 1] = pull[0] / level, pull[1] / level
+            n += 1
+    s.count = n
+    s.counters[SLIDINGS] += 1
+
+
+@njit(cache=True)
+def add_edge(body, y, rows, pull, i, j, small, s):
+    """Close the ends of an edge that the body tips over; a vertex that two such edges share stays alone."""
+    if edge_margin(body, y, rows, pull, i, j) > small:
+        return
+    if s.count == 0:
+        s.closed[0], s.closed[1] = i, j
+        s.slides[0] = s.slides[1] = STICKS
+        s.count = 2
+    else:
+        shared = i if i in (s.closed[0], s.closed[1]) else j
+        s.closed[0] = shared
+        s.count = 1
+
+
+@njit(cache=True)
+def start_rolling(body, y, x, z, s):
+    """Tilt a round body from flat by RIM_START towards a direction of the base, about the point there."""
+    size = max(math.hypot(x, z), 1e-300)
+    u = (x / size, z / size)
+    tilt_about(body, y, u, RIM_START)
+    s.closed[0], s.slides[0] = rim_contact(body), STICKS
+    s.count, s.rests = 1, 0
+    settle(body, y, s)
+
+
+@njit(cache=True)
+def tilt_about(body, y, u, tilt):
+    """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
+    lay_flat(body, y)
+    p = (body.centre[0] + body.rim * u[0], body.centre[1] + body.rim * u[1], -body.height)
+    before = position_of_base(y, rotation(y), p)
+    turn(y, (-tilt * u[1], tilt * u[0], 0.0))
+    after = position_of_base(y, rotation(y), p)
+    y[0] += before[0] - after[0]
+    y[1] += before[1] - after[1]
+
+
+@njit(cache=True)
+def pass_flat(body, y, s):
+    """Let a rolling rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
+    up = rotation(y)[2]
+    u, sine = rim_direction(body, up)
+    omega = omega_of(y)
+    sinking = cross(up, omega)
+    rate = math.hypot(sinking[0], sinking[1])
+    sideways = sinking[0] * u[1] - sinking[1] * u[0]
+    angle = body.pass_turn if sideways <= 0 else -body.pass_turn
+    c, d = math.cos(angle), math.sin(angle)
+    new = (c * u[0] - d * u[1], d * u[0] + c * u[1])
+    tilt_about(body, y, new, max(2 * FLAT_PASS, sine))
+    y[10], y[11] = -rate * new[1], rate * new[0]
+    s.counters[PASSES] += 1
+    settle(body, y, s)
+
+
+@njit(cache=True)
+def locate(body, tau, h, y, s):
+    """Find the first instant in a step at which a margin vanishes; leave the state there in s.new.
+
+    Returns the step up to there, and what happens.
+    """
+    low, high = 0.0, h
+    below, what = margin(body, s.new, s)
+    rates(body, tau, y, s.slopes[0], s)
+    above, at_once = margin(body, y, s)
+    if above <= 0:
+        for i in range(SIZE):
+            s.new[i] = y[i]
+        return 0.0, at_once
+    side = 0
+    for _ in range(80):
+        middle = (low * below - high * above) / (below - above)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+        attempt(body, tau, middle, y, s)
+        value, what = margin(body, s.new, s)
+        if value >= 0:
+            low, above = middle, value
+            below *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            high, below = middle, value
+            above *= 0.5 if side < 0 else 1.0
+            side = -1
+        if abs(value) < 1e-14:
+            return middle, what
+        if high - low < 1e-14:
+            break
+    attempt(body, tau, high, y, s)
+    _, what = margin(body, s.new, s)
+    return high, what
+
+
+@njit(cache=True)
+def stop_slips(body, y, s):
+    """Let points whose slip has ended stick, before the mode is chosen anew."""
+    rows = rotation(y)
+    for i in range(s.count):
+        if s.slides[i] == SLIDES:
+            p = arm(body, rows[2], s.closed[i])
+            turned = to_world(rows, cross(omega_of(y), p))
+            if math.hypot(y[7] + turned[0], y[8] + turned[1]) < 2 * AT_REST:
+                s.slides[i] = STICKS
+    settle(body, y, s)
+
+
+@njit(cache=True)
+def rim_instead_of_feet(body, y, s):
+    """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry."""
+    n = s.count
+    if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == rim_contact(body):
+        return
+    x, z, sliding = 0.0, 0.0, STICKS
+    for i in range(n):
+        x += body.points[s.closed[i], 0] - body.centre[0]
+        z += body.points[s.closed[i], 1] - body.centre[1]
+        sliding = max(sliding, s.slides[i])
+    omega = omega_of(y)
+    velocity = (y[7], y[8], y[9])
+    start_rolling(body, y, x, z, s)
+    if sliding == SLIDES:
+        s.slides[0] = SLIDES
+        y[10], y[11], y[12] = omega
+        y[7], y[8], y[9] = velocity
+
+
+@njit(cache=True)
+def happen(body, what, tau, y, cut, stuck, s):
+    """Let what ended a step change the velocities and the mode."""
+    g = s.field[6]
+    before = energy(body, y, g)
+    if what == LANDS:
+        impact(body, y, 1, s)
+        rows = rotation(y)
+        if body.rim == 0.0 and count_touching(body, y, rows) >= 3:
+            # the points that open begin with no gap, not with one of rounding
+            lay_flat(body, y)
+        carried = rest_margin(body, y, rows, pull_at(s.field, tau)) >= 0
+        if carried and energy(body, y, g) < cut * body.barrier:
+            come_to_rest(body, y, s)
+    elif what == SLIP_ENDS:
+        stop_slips(body, y, s)
+    if stuck > 3 and what in (OPENS, LEAVES_CONE):
+        insist(body, what, y, s)
+    elif kind_of(s) != REST and not choose_mode(body, tau, y, s):
+        # no forces do: the contacts jam, which is an impact without a collision
+        s.counters[JAMS] += 1
+        impact(body, y, 1, s)
+        if not choose_mode(body, tau, y, s):
+            anchor_all(body, y, s)
+    rim_instead_of_feet(body, y, s)
+    return before - energy(body, y, g)
+
+
+@njit(cache=True)
+def critical_tilt(body, up):
+    """Tilt at which the centre of mass is over the base's furthest point in the direction of the tilt."""
+    u, _ = rim_direction(body, up)
+    if body.rim > 0:
+        reach = body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
+    else:
+        reach = 0.0
+        for i in range(body.count):
+            reach = max(reach, body.points[i, 0] * u[0] + body.points[i, 1] * u[1])
+    return math.atan2(reach, body.height)
+
+
+@njit(cache=True)
+def note_peaks(body, y, start, out):
+    """Keep the largest tilt, speed and walk; return the cosine of the tilt."""
+    rows = rotation(y)
+    up = rows[2]
+    sine = math.hypot(up[0], up[1])
+    tilt = math.atan2(sine, up[2])
+    if tilt > 1e-9:
+        out[PEAK_RATIO] = max(out[PEAK_RATIO], tilt / critical_tilt(body, up))
+    out[PEAK_TILT] = max(out[PEAK_TILT], tilt)
+    speed = math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
+    out[PEAK_SPEED] = max(out[PEAK_SPEED], speed)
+    foot = position_of_base(y, rows, (0.0, 0.0, -body.height))
+    out[WALK_X], out[WALK_Y] = foot[0] - start[0], foot[1] - start[1]
+    out[PEAK_WALK] = max(out[PEAK_WALK], math.hypot(out[WALK_X], out[WALK_Y]))
+    return up[2]
+
+
+@njit(cache=True)
+def heading(y):
+    """Turn about the vertical, of the attitude's part about it."""
+    return 2.0 * math.atan2(y[6], y[3])
+
+
+@njit(cache=True)
+def note_turn(y, before, out):
+    """Add what the heading has changed by; return it."""
+    now = heading(y)
+    change = now - before
+    change -= 2 * math.pi * round(change / (2 * math.pi))
+    out[TURN] += change
+    return now
+
+
+@njit(cache=True)
+def fall_is_certain(body, y, s, peaks, scale, g):
+    """Whether the body leans so far and turns on so that no later acceleration of the ground brings it back.
+
+    It does if its centre of mass, over the base's furthest point, leans further than the steepest effective
+    gravity to come.
+    """
+    rows = rotation(y)
+    up = rows[2]
+    sine = math.hypot(up[0], up[1])
+    beyond = math.atan2(sine, up[2]) - body.furthest
+    down = g - scale * peaks[1]
+    if beyond <= 0 or down <= 0 or math.tan(beyond) * down <= scale * peaks[0]:
+        return False
+    turning = cross(up, omega_of(y))
+    return up[0] * turning[0] + up[1] * turning[1] > 0
+
+
+@njit(cache=True)
+def note_fall(y, s, time, lies, out):
+    """Write down how the body fell, and when it lies or, before that, when its fall is certain."""
+    rows = rotation(y)
+    out[FELL], out[CERTAIN_TIME] = 1.0, time
+    if lies:
+        out[FALL_TIME] = time
+    out[FALL_AZIMUTH] = math.atan2(rows[1][2], rows[0][2])
+    out[FALL_FIRST] = s.closed[0] if s.count > 0 else -1
+    out[FALL_SECOND] = s.closed[1] if s.count > 1 else -1
+
+
+@njit(cache=True)
+def record(history, k, y, out, s):
+    """Write a sample of the history, if there is one."""
+    if k >= history.shape[0]:
+        return
+    for i in range(13):
+        history[k, i] = y[i]
+    history[k, 13] = out[TURN]
+    history[k, 14] = 99 if s.rests else s.count
+    history[k, 15] = s.closed[0]
+    history[k, 16] = s.closed[1]
+
+
+@njit(cache=True)
+def cannot_fall(body, y, s, g):
+    """Whether, on a ground at rest, the body stands or has too little energy left to fall."""
+    return s.rests == 1 or energy(body, y, g) < body.barrier
+
+
+@njit(cache=True)
+def small_rim(body, y, tau, cut, s):
+    """Let a round body rest whose energy is below the cut-off while the ground would carry it at rest."""
+    left = energy(body, y, s.field[6])
+    if left >= cut * body.barrier:
+        return 0.0
+    if rest_margin(body, y, rotation(y), pull_at(s.field, tau)) < 0:
+        return 0.0
+    come_to_rest(body, y, s)
+    return left
+
+
+@njit(cache=True)
+def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
+    """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
+    g = s.field[6]
+    rates(body, tau, y, s.slopes[0], s)
+    begin_slips(body, y, s)
+    h = min(next_step, dt - tau)
+    while True:
+        error = attempt(body, tau, h, y, s)
+        out[STEPS] += 1
+        if error <= tolerance or h <= SHORTEST:
+            least, what = margin(body, s.new, s)
+            if least >= 0 and h > 1e-7 and dips(body, y, h, s):
+                h *= 0.5
+                continue
+            break
+        h *= max(0.2, 0.9 * (tolerance / error) ** 0.2)
+    grow = 5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * (tolerance / error) ** 0.2))
+    ahead = h * grow
+    if least < 0:
+        h, what = locate(body, tau, h, y, s)
+    else:
+        what = NOTHING
+    for i in range(SIZE):
+        y[i] = s.new[i]
+    normalise(y)
+    if what != NOTHING:
+        out[EVENTS] += 1
+        out[LOST] += happen(body, what, tau + h, y, cut, stuck, s)
+        return tau + h, dt, h
+    before = energy(body, y, g)
+    settle(body, y, s)
+    out[LOST] += before - energy(body, y, g)
+    if body.rim > 0:
+        ahead = look_after_rim(body, y, tau + h, cut, ahead, s, out)
+    return tau + h, ahead, h
+
+
+@njit(cache=True)
+def look_after_rim(body, y, tau, cut, ahead, s, out):
+    """Pass a rolling rim through flat, or let it rest."""
+    up = rotation(y)[2]
+    if math.hypot(up[0], up[1]) < FLAT_PASS and kind_of(s) == PIVOT:
+        pass_flat(body, y, s)
+        return 1e-9
+    out[LOST] += small_rim(body, y, tau, cut, s)
+    return ahead
+
+
+@njit(cache=True, nogil=True)
+def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s):
+    """Integrate one analysis.
+
+    Parameters
+    ----------
+    body
+        A BODY.
+    acceleration
+        Acceleration of the ground (x, y, up), shape (n, 3) [m/s²], linear between samples; times ``scale``.
+    peaks
+        Largest horizontal and vertical acceleration from each sample on, shape (n, 2) [m/s²].
+    dt
+        Sampling interval [s].
+    g
+        Acceleration of gravity [m/s²].
+    extra
+        Intervals after the motion's end at which, at the latest, the analysis ends.
+    tolerance
+        Largest error of a step in position [m], attitude and velocities [m/s, rad/s].
+    cut
+        Energy over rest, as a part of the barrier, below which a body comes to rest on ground that carries it [-].
+    y
+        State at the start; at the end where the analysis ends.
+    history
+        Room for a sample of the history at the beginning of each interval, shape (m, COLUMNS), m ≥ 0.
+    out
+        Outcome, shape (OUTCOME,).
+    s
+        A CASE for the analysis to work in; afterwards its counters are the numbers of events by kind.
+    """
+    for i in range(OUTCOME):
+        out[i] = 0.0
+    set_field(s.field, acceleration, 0, scale, dt, g)
+    started = energy(body, y, g)
+    start = position_of_base(y, rotation(y), (0.0, 0.0, -body.height))
+    before = heading(y)
+    s.count = s.rests = 0
+    for i in range(COUNTERS):
+        s.counters[i] = 0
+    choose_mode(body, 0.0, y, s)
+    rim_instead_of_feet(body, y, s)
+    anchor_all(body, y, s)
+    out[FIRST_MOTION] = -1.0
+    out[FALL_TIME] = out[CERTAIN_TIME] = math.nan
+    last = acceleration.shape[0] - 1
+    stuck = 0
+    ahead = dt
+    k = 0
+    while k <= last + extra:
+        set_field(s.field, acceleration, k, scale, dt, g)
+        record(history, k, y, out, s)
+        if k > last and cannot_fall(body, y, s, g):
+            break
+        tau = 0.0
+        many, seen = 0, out[EVENTS]
+        s.close = CLOSE
+        while dt - tau > 1e-12 * dt:
+            if kind_of(s) == REST:
+                tau = rest_ends(body, y, s.field, tau, dt)
+                if tau < 0:
+                    break
+                if out[FIRST_MOTION] < 0:
+                    out[FIRST_MOTION] = k * dt + tau
+                leave_rest(body, y, tau, s)
+                ahead = dt
+                if kind_of(s) == REST:
+                    break
+            allowed = tolerance if many < HURRY else max(tolerance, COARSE)
+            tau, ahead, h = advance(body, tau, dt, ahead, y, allowed, cut, stuck, s, out)
+            stuck = stuck + 1 if h < SHORTEST else 0
+            many += 1
+            if out[EVENTS] - seen >= MANY:
+                seen = out[EVENTS]
+                s.close = min(2.0 * s.close, 1e-3)
+            if stuck > 100:
+                # nothing is consistent here: let the motion go on as it is for a moment
+                tau = force_step(body, tau, dt, y, s)
+                stuck = 0
+            up = note_peaks(body, y, start, out)
+            before = note_turn(y, before, out)
+            if up <= 0.0 or fall_is_certain(body, y, s, peaks[min(k, last)], scale, g):
+                note_fall(y, s, (k + 1) * dt, up <= 0.0, out)
+                break
+        if out[FELL] > 0:
+            break
+        k += 1
+    record(history, k, y, out, s)
+    out[END_TIME] = k * dt
+    out[LEDGER] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
+
+
+@njit(cache=True)
+def force_step(body, tau, dt, y, s):
+    """Take a short step whatever the margins say."""
+    h = min(1e-6, dt - tau)
+    rates(body, tau, y, s.slopes[0], s)
+    attempt(body, tau, h, y, s)
+    for i in range(SIZE):
+        y[i] = s.new[i]
+    normalise(y)
+    s.counters[2] += 1
+    return tau + h
+
+
+__all__ = ["COLUMNS", "OUTCOME", "integrate"]

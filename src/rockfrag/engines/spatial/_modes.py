@@ -1,0 +1,438 @@
+"""Impacts, and which mode follows: both from the one problem of contacts with Coulomb's cone."""
+
+import math
+
+from numba import njit
+
+from rockfrag.engines.spatial._algebra import (
+    dot,
+    plus,
+    rotation,
+    scaled,
+    times,
+    to_body,
+    to_world,
+    turn,
+)
+from rockfrag.engines.spatial._body import (
+    arm,
+    first_candidate,
+    gap,
+    last_candidate,
+    omega_of,
+    point_velocity,
+    position_of_base,
+    rim_contact,
+)
+from rockfrag.engines.spatial._cone import in_set, solve_cones
+from rockfrag.engines.spatial._forces import (
+    GENERAL,
+    HINGE,
+    MOST,
+    PIVOT,
+    SLIDES,
+    SLIP_FLOOR,
+    STICKS,
+    fill_accelerations,
+    fill_delassus,
+    fill_velocities,
+    kind_of,
+    push_at,
+    solve_general,
+)
+
+TOUCH = 1e-10
+"""Gap below which a point touches [m]."""
+
+CLOSE = 1e-6
+"""Velocity after an impact below which a point that touches stays closed, unless
+there are too many [m/s]."""
+
+AT_REST = SLIP_FLOOR
+"""Velocity below which points that touch do not slip when the mode is chosen [m/s]."""
+
+LEAVES = 1e-8
+"""Velocity above which points that touch leave when the mode is chosen [m/s]."""
+
+LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, NOTHING = 1, 2, 3, 4, 0
+
+COUNTERS = 8
+IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS, PASSES, CHANGES = range(COUNTERS)
+
+
+@njit(cache=True)
+def touching(body, y, rows, s):
+    """Fill in s.which with the points that touch, at most MOST, the fastest to approach; return their number."""
+    n = 0
+    speed = s.vector
+    flat = body.rim > 0 and math.hypot(rows[2][0], rows[2][1]) < 1e-9
+    low = 0 if flat else first_candidate(body)
+    high = body.count if flat else last_candidate(body)
+    for i in range(low, high):
+        if gap(body, y, rows[2], i) > TOUCH:
+            continue
+        u = point_velocity(y, rows, arm(body, rows[2], i))[2]
+        if n < MOST:
+            s.which[n], speed[n] = i, u
+            n += 1
+            continue
+        last = 0
+        for k in range(1, MOST):
+            if speed[k] > speed[last]:
+                last = k
+        if u < speed[last] - 1e-14:
+            s.which[last], speed[last] = i, u
+    return n
+
+
+@njit(cache=True)
+def fill_edges(body, y, rows, which, n, s):
+    """Fill in the directions between contacts in the plan."""
+    for i in range(n):
+        p = position_of_base(y, rows, arm(body, rows[2], which[i]))
+        for j in range(n):
+            q = position_of_base(y, rows, arm(body, rows[2], which[j]))
+            length = max(math.hypot(q[0] - p[0], q[1] - p[1]), 1e-300)
+            s.edge[i, j, 0] = (q[0] - p[0]) / length
+            s.edge[i, j, 1] = (q[1] - p[1]) / length
+
+
+@njit(cache=True)
+def prepare_impact(body, y, rows, n, s):
+    """Set up the problem of an impact at the contacts s.which; points that slid keep kinetic friction."""
+    fill_delassus(body, rows, s.which, n, s.delassus)
+    fill_velocities(body, y, rows, s.which, n, s.free)
+    for i in range(n):
+        s.given[i] = 0
+        slid = False
+        for k in range(s.count):
+            slid = slid or (s.closed[k] == s.which[i] and s.slides[k] == SLIDES)
+        s.friction[i] = body.kinetic if slid else body.static
+
+
+@njit(cache=True)
+def apply_impulses(body, y, rows, n, s):
+    """Change the velocities by the impulses found."""
+    for i in range(n):
+        push_at(
+            body, y, rows, s.which[i],
+            (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2]),
+        )  # fmt: skip
+
+
+@njit(cache=True)
+def hold(body, y, rows, s):
+    """Take away what velocity is left against the conditions of a mode, by the least kinetic energy."""
+    n = s.count
+    if n == 0:
+        return
+    fill_velocities(body, y, rows, s.closed, n, s.free)
+    solve_general(body, y, rows, n, 0.0, s)
+    for i in range(n):
+        push_at(body, y, rows, s.closed[i], (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2]))
+
+
+@njit(cache=True)
+def impact(body, y, least, s):
+    """Solve an impact of all points that touch, and hold those that hardly leave; return the set that pushed."""
+    rows = rotation(y)
+    n = touching(body, y, rows, s)
+    prepare_impact(body, y, rows, n, s)
+    fill_edges(body, y, rows, s.which, n, s)
+    found, ways = solve_cones(s, n, least)
+    s.counters[IMPACTS] += 1
+    s.counters[AMBIGUOUS] += ways > 1
+    if found < 0:
+        s.counters[UNSOLVED] += 1
+        stop_all(body, y, rows, n, s)
+        return 0
+    apply_impulses(body, y, rows, n, s)
+    keep_slow_contacts(body, y, rows, n, found, s)
+    return found
+
+
+@njit(cache=True)
+def keep_slow_contacts(body, y, rows, n, found, s):
+    """Close, together with those that pushed, the contacts that leave more slowly than CLOSE."""
+    count = 0
+    slow = False
+    for i in range(n):
+        leaving = s.after[3 * i + 2]
+        if in_set(found, i) or leaving < s.close:
+            slow = slow or not in_set(found, i)
+            s.closed[count] = s.which[i]
+            slip = math.hypot(s.after[3 * i], s.after[3 * i + 1])
+            s.slides[count] = SLIDES if slip > max(s.close, AT_REST) else STICKS
+            count += 1
+    s.count, s.rests = count, 0
+    if slow:
+        hold(body, y, rows, s)
+
+
+@njit(cache=True)
+def stop_all(body, y, rows, n, s):
+    """Last resort where no impact was found: no point that touches approaches or slips any more."""
+    for i in range(n):
+        s.closed[i], s.slides[i] = s.which[i], STICKS
+    s.count, s.rests = n, 0
+    hold(body, y, rows, s)
+
+
+@njit(cache=True)
+def still(body, y):
+    """Whether nothing moves."""
+    spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
+    return math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
+
+
+@njit(cache=True)
+def rest_margin(body, y, rows, pull):
+    """Least margin by which the ground carries the body at rest: over its base's edges, and of friction.
+
+    Positive: it rests.  In units of acceleration.
+    """
+    level = math.hypot(pull[0], pull[1])
+    margin = -body.static * pull[2] - level
+    if body.rim > 0:
+        centre = to_world(rows, (body.centre[0], body.centre[1], 0.0))
+        q = math.hypot(
+            body.height * pull[0] + pull[2] * centre[0], body.height * pull[1] + pull[2] * centre[1]
+        )
+        return min(margin, (-body.rim * pull[2] - q) / body.height)
+    last = -1
+    first = -1
+    for i in range(body.count):
+        if gap(body, y, rows[2], i) > TOUCH:
+            continue
+        if last >= 0:
+            margin = min(margin, edge_margin(body, y, rows, pull, last, i))
+        else:
+            first = i
+        last = i
+    if first == last:
+        return -1.0
+    return min(margin, edge_margin(body, y, rows, pull, last, first))
+
+
+@njit(cache=True)
+def edge_margin(body, y, rows, pull, i, j):
+    """Margin of rest against tipping over the edge from point i to the next point j that touches."""
+    normal, reach = edge_normal(body, y, rows, i, j)
+    return -(y[2] * (normal[0] * pull[0] + normal[1] * pull[1]) + reach * pull[2]) / y[2]
+
+
+@njit(cache=True)
+def edge_normal(body, y, rows, i, j):
+    """Outward normal of an edge in the plan, and its distance from the centre of mass."""
+    p = position_of_base(y, rows, arm(body, rows[2], i))
+    q = position_of_base(y, rows, arm(body, rows[2], j))
+    length = math.hypot(q[0] - p[0], q[1] - p[1])
+    normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
+    return normal, normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
+
+
+@njit(cache=True)
+def count_touching(body, y, rows):
+    """Number of points of the base that touch, as if a round base had its four feet."""
+    n = 0
+    for i in range(body.count):
+        n += gap(body, y, rows[2], i) <= TOUCH
+    return n
+
+
+@njit(cache=True)
+def come_to_rest(body, y, s):
+    """Make the body rest where it is."""
+    s.count, s.rests = 0, 1
+    for k in range(7, 13):
+        y[k] = 0.0
+    lay_flat(body, y)
+
+
+@njit(cache=True)
+def lay_flat(body, y):
+    """Turn the base into the ground's plane by the least rotation, and set it down."""
+    for _ in range(3):
+        up = rotation(y)[2]
+        turn(y, (-up[1], up[0], 0.0))
+    y[2] = body.height
+
+
+@njit(cache=True)
+def choose_mode(body, tau, y, s):
+    """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
+    rows = rotation(y)
+    pull = (
+        s.field[0] + s.field[3] * tau,
+        s.field[1] + s.field[4] * tau,
+        s.field[2] + s.field[5] * tau,
+    )
+    lies = still(body, y) and count_touching(body, y, rows) >= 3
+    if lies and rest_margin(body, y, rows, pull) >= 0:
+        come_to_rest(body, y, s)
+        return True
+    n = pick_closed(body, y, rows, s)
+    fill_delassus(body, rows, s.which, n, s.delassus)
+    fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
+    fill_edges(body, y, rows, s.which, n, s)
+    found, ways = solve_cones(s, n, 0)
+    s.counters[CHANGES] += 1
+    s.counters[AMBIGUOUS] += ways > 1
+    if found < 0:
+        return False
+    was_flying = s.count == 0
+    write_mode(body, y, rows, n, found, s)
+    if s.count == 0 and not was_flying:
+        s.counters[FLIGHTS] += 1
+    return True
+
+
+@njit(cache=True)
+def pick_closed(body, y, rows, s):
+    """Fill s.which with points that touch and do not leave, and how each slips; return how many there are."""
+    n = touching(body, y, rows, s)
+    kept = 0
+    for i in range(n):
+        u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
+        if u[2] > LEAVES:
+            continue
+        s.which[kept] = s.which[i]
+        speed = math.hypot(u[0], u[1])
+        s.given[kept] = speed > AT_REST
+        if s.given[kept]:
+            s.way[kept, 0], s.way[kept, 1] = u[0] / speed, u[1] / speed
+        s.friction[kept] = body.kinetic if s.given[kept] else body.static
+        kept += 1
+    return kept
+
+
+@njit(cache=True)
+def write_mode(body, y, rows, n, found, s):
+    """Read the mode off a solution: closed or open, sticks or slides and where to."""
+    count = 0
+    s.rests = 0
+    for i in range(n):
+        if not in_set(found, i):
+            continue
+        s.closed[count] = s.which[i]
+        s.slides[count] = STICKS
+        u, v = s.after[3 * i], s.after[3 * i + 1]
+        if s.given[i]:
+            s.slides[count] = SLIDES
+            s.direction[count, 0], s.direction[count, 1] = s.way[i, 0], s.way[i, 1]
+        else:
+            shear = math.hypot(s.impulse[3 * i], s.impulse[3 * i + 1])
+            limit = s.friction[i] * s.impulse[3 * i + 2]
+            size = math.hypot(u, v)
+            if size > 1e-9 and shear > limit * (1 - 1e-9):
+                s.slides[count] = SLIDES
+                s.direction[count, 0], s.direction[count, 1] = u / size, v / size
+                s.counters[SLIDINGS] += 1
+        p = position_of_base(y, rows, arm(body, rows[2], s.which[i]))
+        s.anchor[count, 0], s.anchor[count, 1] = p[0], p[1]
+        count += 1
+    s.count = count
+
+
+@njit(cache=True)
+def insist(body, what, y, s):
+    """Change one contact where the problem of contacts gives the same mode again and again at one instant.
+
+    The one that pulls most opens, or the one that is furthest out of its cone slides.
+    """
+    worst, value = 0, 1e300
+    for i in range(s.count):
+        shear = math.hypot(s.lam[i, 0], s.lam[i, 1])
+        here = s.lam[i, 2] if what == OPENS else body.static * s.lam[i, 2] - shear
+        if here < value and (what == OPENS or s.slides[i] == STICKS):
+            worst, value = i, here
+    if what == OPENS:
+        for i in range(worst, s.count - 1):
+            s.closed[i], s.slides[i] = s.closed[i + 1], s.slides[i + 1]
+            for k in range(2):
+                s.direction[i, k], s.anchor[i, k] = s.direction[i + 1, k], s.anchor[i + 1, k]
+        s.count -= 1
+    else:
+        shear = math.hypot(s.lam[worst, 0], s.lam[worst, 1])
+        s.slides[worst] = SLIDES
+        for k in range(2):
+            s.direction[worst, k] = -s.lam[worst, k] / shear
+
+
+@njit(cache=True)
+def anchor_all(body, y, s):
+    """Note where the closed points are in the plan."""
+    rows = rotation(y)
+    for k in range(s.count):
+        p = position_of_base(y, rows, arm(body, rows[2], s.closed[k]))
+        s.anchor[k, 0], s.anchor[k, 1] = p[0], p[1]
+
+
+@njit(cache=True)
+def settle(body, y, s):
+    """Put a state back on the conditions of its mode, from which steps drift by their error."""
+    rows = rotation(y)
+    kind = kind_of(s)
+    if kind in (PIVOT, HINGE):
+        i = s.closed[0]
+        p = arm(body, rows[2], i)
+        omega = omega_of(y)
+        if kind == HINGE:
+            q = arm(body, rows[2], s.closed[1])
+            e = (q[0] - p[0], q[1] - p[1], q[2] - p[2])
+            omega = scaled(dot(e, omega) / dot(e, e), e)
+            y[10], y[11], y[12] = omega
+        moved = to_world(rows, p)
+        y[2] = -moved[2]
+        if i != rim_contact(body):
+            y[0], y[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
+        pulled = to_world(rows, (
+            p[1] * omega[2] - p[2] * omega[1],
+            p[2] * omega[0] - p[0] * omega[2],
+            p[0] * omega[1] - p[1] * omega[0],
+        ))  # fmt: skip
+        y[7], y[8], y[9] = pulled
+    elif kind == GENERAL:
+        close_gaps(body, y, rows, s)
+        hold(body, y, rotation(y), s)
+
+
+@njit(cache=True)
+def close_gaps(body, y, rows, s):
+    """Move the body by what its closed points are off the ground."""
+    n = s.count
+    if n >= 3:
+        lay_flat(body, y)
+        return
+    a, b, c = 0.0, 0.0, 0.0
+    fill_delassus(body, rows, s.closed, n, s.delassus)
+    first = gap(body, y, rows[2], s.closed[0])
+    if n == 1:
+        y[2] -= first
+        return
+    second = gap(body, y, rows[2], s.closed[1])
+    a, b, c = s.delassus[2, 2], s.delassus[2, 5], s.delassus[5, 5]
+    whole = a * c - b * b
+    lift_at(body, y, rows, s.closed[0], -(c * first - b * second) / whole)
+    lift_at(body, y, rows, s.closed[1], -(a * second - b * first) / whole)
+
+
+@njit(cache=True)
+def lift_at(body, y, rows, i, size):
+    """Displace the body as a small vertical impulse at point i would."""
+    p = arm(body, rows[2], i)
+    up = rows[2]
+    moment = (
+        p[1] * up[2] - p[2] * up[1],
+        p[2] * up[0] - p[0] * up[2],
+        p[0] * up[1] - p[1] * up[0],
+    )
+    y[2] += size
+    turn(y, scaled(size, times(body.inverse, moment)))
+
+
+__all__ = [
+    "AMBIGUOUS", "AT_REST", "CHANGES", "CLOSE", "COUNTERS", "FLIGHTS", "IMPACTS", "JAMS", "PASSES", "SLIDINGS",
+    "SLIP_FLOOR", "TOUCH", "UNSOLVED", "anchor_all", "choose_mode", "come_to_rest", "count_touching",
+    "edge_margin", "edge_normal", "impact", "plus", "rest_margin", "settle", "still",
+]  # fmt: skip

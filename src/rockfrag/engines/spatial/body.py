@@ -1,0 +1,164 @@
+"""Bodies as the kernels know them, made of a system of one body in space."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.engines.spatial._body import BODY, MOST_VERTICES, SIZE
+from rockfrag.errors import InputError
+from rockfrag.system.body import Circle, Polygon
+from rockfrag.system.system import System
+from rockfrag.units import GRAVITY
+
+Array = NDArray[np.float64]
+
+NEVER_SLIDES = 20.0
+"""Coefficient of friction of a contact without any: a body in space that only sticks is no closed model [-]."""
+
+
+def kernel_body(system: System, g: float = GRAVITY) -> np.void:
+    """Return the one body of a system as the kernels know it.
+
+    Parameters
+    ----------
+    system
+        One body in space and its contact with the ground.
+    g
+        Acceleration of gravity [m/s²].
+
+    Raises
+    ------
+    InputError
+        If the base has too many vertices, or the body cannot stand on it.
+    """
+    body, contact = system.bodies[0], system.contacts[0]
+    static, kinetic = NEVER_SLIDES, NEVER_SLIDES
+    if contact.friction is not None:
+        static, kinetic = (min(value, NEVER_SLIDES) for value in contact.friction)
+    x, y, height = body.centre
+    inertia = body.tensor / body.mass
+    if isinstance(body.base, Circle):
+        centre = np.array(body.base.centre) - (x, y)
+        return round_body(body.base.radius, centre, inertia, height, (static, kinetic), g)
+    assert isinstance(body.base, Polygon)
+    vertices = np.array(body.base.vertices) - (x, y)
+    return polygon_body(vertices, inertia, height, (static, kinetic), g)
+
+
+def polygon_body(
+    vertices: Array,
+    inertia: Array,
+    height: float,
+    friction: tuple[float, float],
+    g: float = GRAVITY,
+) -> np.void:
+    """Return a body on a convex polygon.
+
+    Parameters
+    ----------
+    vertices
+        Corners of the base from below the centre of mass, anticlockwise, shape (n, 2) [m].
+    inertia
+        Tensor of inertia about the centre of mass over the mass, shape (3, 3) [m²].
+    height
+        Height of the centre of mass over the base [m].
+    friction
+        Static and kinetic coefficient.
+    g
+        Acceleration of gravity [m/s²].
+
+    Raises
+    ------
+    InputError
+        If there are too many vertices, or the centre of mass is not above the base.
+    """
+    count = len(vertices)
+    if count > MOST_VERTICES:
+        raise InputError(
+            f"base: {count} vertices are more than the {MOST_VERTICES} that a body in space may have; "
+            "leave out those that hardly turn the outline, or give a circle."
+        )
+    points = np.column_stack([vertices, np.full(count, -height)])
+    edges = np.roll(vertices, -1, axis=0) - vertices
+    reach = (edges[:, 1] * vertices[:, 0] - edges[:, 0] * vertices[:, 1]) / np.hypot(*edges.T)
+    furthest = float(np.hypot(*vertices.T).max())
+    return _filled(points, inertia, height, friction, g, (float(reach.min()), furthest))
+
+
+def round_body(
+    radius: float,
+    centre: Array,
+    inertia: Array,
+    height: float,
+    friction: tuple[float, float],
+    g: float = GRAVITY,
+) -> np.void:
+    """Return a body on a round base.
+
+    Parameters
+    ----------
+    radius
+        Radius of the base [m].
+    centre
+        Its centre, from below the centre of mass, shape (2,) [m].
+    inertia, height, friction, g
+        As of :func:`polygon_body`.
+
+    Raises
+    ------
+    InputError
+        If the centre of mass is not above the base.
+    """
+    turns = math.pi / 4 + np.arange(4) * math.pi / 2
+    feet = np.asarray(centre) + radius * np.column_stack([np.cos(turns), np.sin(turns)])
+    points = np.column_stack([feet, np.full(4, -height)])
+    off = float(np.hypot(*centre))
+    body = _filled(points, inertia, height, friction, g, (radius - off, radius + off))
+    across = (inertia[0, 0] + inertia[1, 1]) / 2
+    body["rim"], body["centre"] = radius, centre
+    body["pass_turn"] = math.pi * math.sqrt(1 + radius**2 / (across + height**2))
+    return body
+
+
+def _filled(
+    points: Array,
+    inertia: Array,
+    height: float,
+    friction: tuple[float, float],
+    g: float,
+    reach: tuple[float, float],
+) -> np.void:
+    """Return the record of a body whose base reaches so far at least and at most from below its centre of mass."""
+    if not reach[0] > 0:
+        raise InputError(
+            "base: the centre of mass is not above the base, so the body cannot stand."
+        )
+    count = len(points)
+    squares = np.einsum("ni,ni->n", points, points)
+    about = inertia + squares[:, None, None] * np.eye(3) - np.einsum("ni,nj->nij", points, points)
+    body = np.zeros(1, BODY)
+    body["count"], body["height"] = count, height
+    body["static"], body["kinetic"] = friction
+    body["barrier"] = g * (math.hypot(reach[0], height) - height)
+    body["furthest"] = math.atan2(reach[1], height)
+    body["inertia"], body["inverse"] = inertia, np.linalg.inv(inertia)
+    body["points"][0, :count], body["about"][0, :count] = points, about
+    body["about_inverse"][0, :count] = np.linalg.inv(about)
+    made: np.void = body[0]
+    return made
+
+
+def standing(body: np.void, turned: float = 0.0) -> Array:
+    """Return the state of a body that stands at rest over the origin, turned about the vertical [rad]."""
+    y = np.zeros(SIZE)
+    y[2] = body["height"]
+    y[3], y[6] = math.cos(turned / 2), math.sin(turned / 2)
+    return y
+
+
+def later_peaks(acceleration: Array) -> Array:
+    """Return the largest horizontal and vertical acceleration from each sample on, shape (n, 2) [m/s²]."""
+    level = np.hypot(acceleration[:, 0], acceleration[:, 1])
+    both = np.stack([level, np.abs(acceleration[:, 2])], axis=1)
+    return np.ascontiguousarray(np.maximum.accumulate(both[::-1], axis=0)[::-1])

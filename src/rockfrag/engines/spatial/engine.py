@@ -1,0 +1,193 @@
+"""The engine in space behind the contract of engines."""
+
+import math
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike, NDArray
+
+from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.engines.spatial.body import kernel_body, later_peaks
+from rockfrag.engines.spatial.outcome import AFTER, SpatialOutcome, history_table, run_case
+from rockfrag.errors import InputError
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.system.blocks import Block, as_system
+from rockfrag.system.system import System
+from rockfrag.units import GRAVITY
+
+
+@dataclass(frozen=True)
+class SpatialResponse:
+    """Outcome and history of one analysis in space.
+
+    Attributes
+    ----------
+    outcome
+        What became of the body.
+    history
+        Table of :func:`rockfrag.engines.spatial.outcome.history_table`.
+    """
+
+    outcome: SpatialOutcome
+    history: pd.DataFrame
+
+
+class SpatialEngine:
+    """One rigid body on a polygon or a circle, event by event (``docs/space.md``).
+
+    Attributes
+    ----------
+    name
+        Name that stands in outcomes.
+    meets
+        Wishes that it can meet, in any combination.
+    """
+
+    name = "space"
+    meets = frozenset({Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.HISTORY})
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        found = by_wishes(self, system, motion, request)
+        if found and system.planar:
+            return Support(reason="a planar body moves in its own plane only; give its depth")
+        return found
+
+    def run(self, cases: Cases) -> Outcomes:
+        """Return the outcomes of cases whose systems and motions it supports."""
+        result = empty_outcomes(cases.names, cases.scales, [self.name])
+        g = cases.request.g
+        bodies = [kernel_body(system, g) for system in cases.systems]
+        tasks = [(i, j) for i in range(len(bodies)) for j in range(len(cases.motions))]
+
+        def run_pair(task: tuple[int, int]) -> None:
+            i, j = task
+            motion = cases.motions[j]
+            ground = motion.accelerations
+            later = later_peaks(ground)
+            for k, scale in enumerate(cases.scales[j]):
+                found, _ = run_case(bodies[i], ground, motion.dt, float(scale), g=g, peaks=later)
+                _write(result, (i, j, k), found, _lightest(ground, float(scale), g))
+
+        with ThreadPoolExecutor(cases.threads) as pool:
+            list(pool.map(run_pair, tasks))
+        return result
+
+    def history(self, case: Case) -> SpatialResponse:
+        """Return outcome and history of a case that it supports."""
+        g = case.request.g
+        body = kernel_body(case.system, g)
+        ground = case.motion.accelerations
+        samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
+        found, history = run_case(body, ground, case.motion.dt, case.scale, g=g, samples=samples)
+        return SpatialResponse(found, history_table(history, case.motion.dt, float(body["height"])))
+
+
+ENGINE = SpatialEngine()
+
+
+def _lightest(ground: NDArray[np.float64], scale: float, g: float) -> float:
+    """Least effective gravity over gravity."""
+    return 1.0 + scale * float(ground[:, 2].min()) / g
+
+
+def _write(
+    result: Outcomes, case: tuple[int, int, int], found: SpatialOutcome, lightest: float
+) -> None:
+    """Write one outcome into those of all."""
+    result.overturned[case] = found.overturned
+    result.overturned_body[case] = 1 if found.overturned else 0
+    result.certain_time[case] = found.certain_time
+    result.impacts[case] = found.impacts
+    result.flights[case] = found.flights
+    result.several_modes[case] = found.ambiguous
+    result.paradoxes[case] = found.paradoxes
+    result.unstable_distance[case] = math.nan
+    result.minimum_gravity_ratio[case] = lightest
+    body = (*case, 0)
+    result.peak_rotation[body] = found.peak_rotation
+    result.peak_velocity[body] = found.peak_velocity
+    result.turn[body] = found.turn
+    result.walk[body] = math.hypot(*found.walk)
+    result.fall_direction[body] = found.fall_direction
+
+
+def _check(found: Support) -> None:
+    if not found:
+        missing = " and ".join(sorted(wish.value for wish in found.missing))
+        raise InputError(f"in space: {found.reason or missing + ' cannot be had'}.")
+
+
+def run_in_space(
+    bodies: Sequence[System | Block],
+    motions: Sequence[GroundMotion],
+    scales: ArrayLike = (1.0,),
+    *,
+    threads: int = 1,
+    g: float = GRAVITY,
+) -> Outcomes:
+    """Say for every body × motion × scale what becomes of it in space.
+
+    Parameters
+    ----------
+    bodies
+        Blocks with a depth or round ones, or systems of one body in space.
+    motions
+        Motions of the ground with one to three components.
+    scales
+        Factors on all components, shape (scales,) or (motions, scales).
+    threads
+        Threads to use; outcomes do not depend on it.
+    g
+        Acceleration of gravity [m/s²].
+
+    Returns
+    -------
+    Outcomes of shape (systems, motions, scales).
+
+    Raises
+    ------
+    InputError
+        If a system is more than one body, or planar, or asks for what this engine does not know.
+    """
+    engine, request = SpatialEngine(), Request(g=g)
+    systems = tuple(as_system(body) for body in bodies)
+    for system in systems:
+        for motion in motions:
+            _check(engine.supports(system, motion, request))
+    factors = np.broadcast_to(
+        np.atleast_2d(np.asarray(scales, dtype=np.float64)), (len(motions), np.shape(scales)[-1])
+    )
+    return engine.run(Cases(systems, tuple(motions), factors, request, threads))
+
+
+def simulate_in_space(
+    body: System | Block, motion: GroundMotion, scale: float = 1.0, *, g: float = GRAVITY
+) -> SpatialResponse:
+    """Return outcome and history of one body in space under one motion.
+
+    Parameters
+    ----------
+    motion
+        Motion of the ground with one to three components.
+    scale
+        Factor on all components.
+    g
+        Acceleration of gravity [m/s²].
+
+    Returns
+    -------
+    The outcome, and a table with a row per sample.
+
+    Raises
+    ------
+    InputError
+        As :func:`run_in_space`.
+    """
+    system, request = as_system(body), Request(history=True, g=g)
+    _check(SpatialEngine().supports(system, motion, request))
+    return SpatialEngine().history(Case(system, motion, scale, request))

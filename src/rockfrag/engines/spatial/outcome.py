@@ -1,0 +1,218 @@
+"""What one analysis in space ends with, and its history."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.engines.spatial import _integrate as kernel
+from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial._forces import CASE
+from rockfrag.engines.spatial.body import later_peaks, standing
+from rockfrag.units import GRAVITY
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-9
+"""Largest error of a step, in position [m], attitude [-] and velocities [m/s, rad/s]."""
+
+CUT_OFF = 1e-7
+"""Energy over rest, as a part of what an overturning takes, below which a body comes to rest [-]."""
+
+AFTER = 30.0
+"""Time after the motion at which an analysis ends at the latest [s]."""
+
+RESTS = 99
+
+
+@dataclass(frozen=True)
+class SpatialOutcome:
+    """What became of a body in space.
+
+    Attributes
+    ----------
+    overturned
+        Whether it fell.
+    certain_time
+        Instant from which the fall was certain [s]; NaN without one.
+    fall_direction
+        Direction in which it fell, from x towards y [rad]; NaN without a fall.
+    fell_over
+        What it fell over: ``"edge 1-2"``, ``"vertex 2"``, ``"rim"``, ``"flight"``; empty without a fall.
+    peak_rotation
+        Largest tilt over that at which the centre of mass is above the base's outline in the tilt's direction [-];
+        infinite if it fell.
+    peak_tilt
+        Largest tilt until the outcome was known [rad].
+    peak_velocity
+        Largest angular velocity until then [rad/s].
+    walk, peak_walk
+        Displacement of the base's point below the centre of mass, (x, y) at the end and largest distance [m].
+    turn
+        Rotation about the vertical at the end [rad], several turns counted.
+    impacts, slidings, flights
+        Numbers of impacts, of contacts that began to slide, and of flights.
+    ambiguous
+        Impacts and changes of mode with more than one admissible outcome.
+    paradoxes
+        Impacts and changes without one, and jams: contacts that no finite force holds.
+    dissipated
+        Energy lost in impacts, and by friction [J/kg].
+    residual
+        What the balance of energy does not close by [J/kg].
+    """
+
+    overturned: bool
+    certain_time: float
+    fall_direction: float
+    fell_over: str
+    peak_rotation: float
+    peak_tilt: float
+    peak_velocity: float
+    walk: tuple[float, float]
+    peak_walk: float
+    turn: float
+    impacts: int
+    slidings: int
+    flights: int
+    ambiguous: int
+    paradoxes: int
+    dissipated: tuple[float, float]
+    residual: float
+
+
+def run_case(
+    body: np.void,
+    acceleration: Array,
+    dt: float,
+    scale: float = 1.0,
+    *,
+    g: float = GRAVITY,
+    turned: float = 0.0,
+    peaks: Array | None = None,
+    samples: int = 0,
+    tolerance: float = TOLERANCE,
+    cut_off: float = CUT_OFF,
+    start: Array | None = None,
+) -> tuple[SpatialOutcome, Array]:
+    """Integrate one analysis.
+
+    Parameters
+    ----------
+    body
+        Body as the kernels know it.
+    acceleration
+        Acceleration of the ground (x, y, up), shape (n, 3) [m/s²].
+    dt
+        Sampling interval [s].
+    scale
+        Factor on the acceleration.
+    g
+        Acceleration of gravity [m/s²].
+    turned
+        Turn about the vertical in which the body stands [rad].
+    peaks
+        As of :func:`later_peaks`; computed if None.
+    samples
+        Samples of the history to keep.
+    tolerance, cut_off
+        As TOLERANCE and CUT_OFF.
+    start
+        State to begin with instead of standing at rest, shape (SIZE,).
+
+    Returns
+    -------
+    The outcome, and the history, shape (m, COLUMNS), m ≤ samples.
+    """
+    y = standing(body, turned) if start is None else start.copy()
+    history = np.full((samples, kernel.COLUMNS), math.nan)
+    out = np.zeros(kernel.OUTCOME)
+    case: Any = np.zeros(1, CASE)[0]
+    later = later_peaks(acceleration) if peaks is None else peaks
+    extra = math.ceil(AFTER / dt)
+    kernel.integrate(
+        body, acceleration, later, scale, dt, g, extra, tolerance, cut_off, y, history, out, case
+    )
+    kept = ~np.isnan(history[:, 0])
+    return _outcome(body, out, case["counters"], y), history[kept]
+
+
+def _outcome(body: np.void, out: Array, counters: NDArray[np.int64], y: Array) -> SpatialOutcome:
+    fell = bool(out[kernel.FELL])
+    return SpatialOutcome(
+        overturned=fell,
+        certain_time=float(out[kernel.CERTAIN_TIME]),
+        fall_direction=float(out[kernel.FALL_AZIMUTH]) if fell else math.nan,
+        fell_over=_named(body, out) if fell else "",
+        peak_rotation=math.inf if fell else float(out[kernel.PEAK_RATIO]),
+        peak_tilt=float(out[kernel.PEAK_TILT]),
+        peak_velocity=float(out[kernel.PEAK_SPEED]),
+        walk=(float(out[kernel.WALK_X]), float(out[kernel.WALK_Y])),
+        peak_walk=float(out[kernel.PEAK_WALK]),
+        turn=float(out[kernel.TURN]),
+        impacts=int(counters[modes.IMPACTS]),
+        slidings=int(counters[modes.SLIDINGS]),
+        flights=int(counters[modes.FLIGHTS]),
+        ambiguous=int(counters[modes.AMBIGUOUS]),
+        paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
+        dissipated=(float(out[kernel.LOST]), float(y[14])),
+        residual=float(out[kernel.LEDGER]),
+    )
+
+
+def _named(body: np.void, out: Array) -> str:
+    """Say over what a body fell."""
+    first, second = int(out[kernel.FALL_FIRST]), int(out[kernel.FALL_SECOND])
+    if first < 0:
+        return "flight"
+    if body["rim"] > 0:
+        return "rim"
+    if second < 0:
+        return f"vertex {first + 1}"
+    low, high = sorted((first, second))
+    return f"edge {low + 1}-{high + 1}"
+
+
+def history_table(history: Array, dt: float, height: float) -> pd.DataFrame:
+    """Return a history as a table.
+
+    Parameters
+    ----------
+    history
+        As of :func:`run_case`.
+    dt
+        Sampling interval [s].
+    height
+        Height of the centre of mass over the base [m].
+
+    Returns
+    -------
+    A row per sample: ``time_s``; ``x_m``, ``y_m``, ``z_m`` of the centre of mass relative to the ground;
+    ``tilt_rad`` of the body's axis and ``axis_x``, ``axis_y``, its horizontal components; ``turn_rad`` about the
+    vertical; ``base_x_m``, ``base_y_m``, the base's point below the centre of mass; ``omega_x_rad_s`` to
+    ``omega_z_rad_s`` in the body; ``contacts``, the number of closed points, NaN at rest.
+    """
+    w, x, y, z = history[:, 3:7].T
+    axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
+    closed = np.where(history[:, 14] == RESTS, math.nan, history[:, 14])
+    return pd.DataFrame(
+        {
+            "time_s": np.arange(len(history)) * dt,
+            "x_m": history[:, 0],
+            "y_m": history[:, 1],
+            "z_m": history[:, 2],
+            "tilt_rad": np.arctan2(np.hypot(axis[0], axis[1]), axis[2]),
+            "axis_x": axis[0],
+            "axis_y": axis[1],
+            "turn_rad": history[:, 13],
+            "base_x_m": history[:, 0] - height * axis[0],
+            "base_y_m": history[:, 1] - height * axis[1],
+            "omega_x_rad_s": history[:, 10],
+            "omega_y_rad_s": history[:, 11],
+            "omega_z_rad_s": history[:, 12],
+            "contacts": closed,
+        }
+    )

@@ -1,0 +1,65 @@
+"""Bodies and synthetic motions for the tests of bodies in space."""
+
+import math
+
+import numpy as np
+from scipy.signal import butter, sosfilt
+
+from rockfrag.engines.spatial.body import polygon_body, round_body
+from rockfrag.units import GRAVITY
+
+DT = 0.01
+
+
+def box_inertia(width, depth, height):
+    """Tensor of a uniform box over its mass."""
+    return np.diag(
+        [(depth**2 + height**2) / 12, (width**2 + height**2) / 12, (width**2 + depth**2) / 12]
+    )
+
+
+def turned(vectors, angle):
+    """Turn plane vectors anticlockwise."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.asarray(vectors) @ np.array([[c, s], [-s, c]])
+
+
+def box(width, depth, height, friction=20.0):
+    """A uniform box."""
+    x, y = width / 2, depth / 2
+    corners = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
+    return polygon_body(
+        corners, box_inertia(width, depth, height), height / 2, (friction, friction)
+    )
+
+
+def cylinder_inertia(radius, height):
+    """Tensor of a uniform cylinder over its mass."""
+    across = (3 * radius**2 + height**2) / 12
+    return np.diag([across, across, radius**2 / 2])
+
+
+def cylinder(radius, height, friction=20.0, sides=0):
+    """A uniform cylinder, on its rim or on a regular polygon in it."""
+    inertia = cylinder_inertia(radius, height)
+    if not sides:
+        return round_body(radius, np.zeros(2), inertia, height / 2, (friction, friction))
+    angle = 2 * math.pi * np.arange(sides) / sides
+    corners = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    return polygon_body(corners, inertia, height / 2, (friction, friction))
+
+
+def synthetic_motion(rng, components=2, seconds=20.0, dt=DT):
+    """Filtered noise under an envelope (synthetic), largest horizontal acceleration 1 g, shape (n, 3) [m/s²]."""
+    n = round(seconds / dt)
+    noise = rng.standard_normal((n, 3))
+    low = rng.uniform(0.2, 0.5)
+    sections = butter(2, [low, rng.uniform(2.0, 5.0)], "band", fs=1 / dt, output="sos")
+    time = np.arange(n) * dt
+    envelope = np.exp(-(((time - 0.35 * seconds) / (0.18 * seconds)) ** 2))
+    motion = sosfilt(sections, noise, axis=0) * envelope[:, None]
+    motion[:, components:] = 0.0
+    if components == 3:
+        motion[:, 2] *= 0.5
+    peaks = np.abs(motion[:, : min(components, 2)]).max(axis=0)
+    return motion * (GRAVITY / np.exp(np.log(peaks).mean()))

@@ -1,0 +1,73 @@
+"""What a user asks of the engine in space."""
+
+import numpy as np
+import pytest
+
+from rockfrag.engines.spatial import (
+    flip_rate,
+    run_in_space,
+    simulate_in_space,
+    spread_vertices,
+)
+from rockfrag.errors import InputError
+from rockfrag.records.ground_motion import GroundMotion
+from rockfrag.records.motion import Motion
+from rockfrag.system import Block, Contact, System, as_system
+from rockfrag.system.system import box, cylinder
+
+from .samples import DT, synthetic_motion
+
+
+def ground_motion(seed, peak_g):
+    x, y, z = (synthetic_motion(np.random.default_rng(seed), 3) * peak_g).T
+    return GroundMotion(Motion(x, DT), Motion(y, DT), Motion(z, DT))
+
+
+def lone(body, friction=None):
+    return System((body,), (Contact(friction=friction),))
+
+
+BOX = lone(box(0.35, 0.35, 1.2, 300.0, None, (0, 0, 0.6)))
+ROUND = lone(cylinder(0.3, 1.0, 100.0, None, (0, 0, 0.5)))
+
+
+def test_outcomes_do_not_depend_on_threads_or_on_what_else_is_asked():
+    motions = [ground_motion(seed, 1.0) for seed in range(3)]
+    scales = [0.1, 0.35, 0.6]
+    first = run_in_space([BOX, ROUND], motions, scales)
+    second = run_in_space([ROUND, BOX], motions[::-1], scales[::-1], threads=2)
+    for name in ("overturned", "peak_rotation", "turn", "walk", "impacts"):
+        other = np.flip(getattr(second, name), axis=(0, 1, 2))
+        np.testing.assert_array_equal(getattr(first, name), other)
+    assert 0 < first.overturned.sum() < first.overturned.size
+    assert set(first.table("bodies").columns) >= {"turn_rad", "walk_m", "fall_direction_rad"}
+
+
+def test_a_round_body_falls_before_a_box_of_its_slenderness():
+    motions = [ground_motion(seed, 1.0) for seed in range(10, 16)]
+    scales = [0.3, 0.4, 0.5]
+    box_as_wide = lone(box(0.3, 0.3, 1.0, 100.0, None, (0, 0, 0.5)))
+    fallen = run_in_space([ROUND, box_as_wide], motions, scales, threads=2).overturned
+    assert fallen[0].sum() > fallen[1].sum()
+
+
+def test_history_ends_as_the_outcome_says():
+    response = simulate_in_space(BOX, ground_motion(2, 0.5))
+    table = response.history
+    assert table.tilt_rad.max() <= response.outcome.peak_tilt + 1e-9
+    assert abs(response.outcome.residual) < 1e-6
+
+
+def test_flip_rate_counts_cases_that_end_otherwise():
+    falls, rate = flip_rate(BOX, ground_motion(1, 0.05), repeats=3)
+    assert (falls, rate) == (False, 0.0)
+    other = spread_vertices(BOX, 0.01, np.random.default_rng(0))
+    moved = np.array(other.bodies[0].base.vertices) - np.array(BOX.bodies[0].base.vertices)
+    assert 0 < np.abs(moved).max() <= 0.0035
+
+
+def test_planar_bodies_and_stacks_are_refused_in_one_sentence():
+    with pytest.raises(InputError, match="give its depth"):
+        run_in_space([as_system(Block(0.3, 1.0, 100.0))], [ground_motion(0, 0.3)])
+    with pytest.raises(InputError, match="expected one body"):
+        flip_rate(as_system(Block(0.3, 1.0, 100.0)), ground_motion(0, 0.3))

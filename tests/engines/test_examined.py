@@ -1,0 +1,111 @@
+"""What an examination of the mechanics found, each as the case in which it was seen."""
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Stack, overturns, simulate
+from rockfrag.errors import InputError
+from rockfrag.rocking.ensemble import LightBodies
+from rockfrag.rocking.inputs import UnitDoubt
+
+T = np.arange(0, 4, 0.01)
+SHAKE = 4 * np.sin(2 * np.pi * 1.5 * T) * np.sin(np.pi * T / 4)
+UP = -1.5 * 9.81 * np.sin(np.pi * T / 4)
+B = Block(0.2, 0.8, 50.0)
+PAIR = Stack(Block(0.4, 0.3, 50.0), Block(0.15, 0.6, 20.0))
+WIDER = Stack(Block(0.5, 0.3, 50.0), Block(0.15, 0.6, 20.0))
+
+
+def test_vertical_motion_that_throws_a_body_off_the_ground_is_warned_of():
+    with pytest.warns(LightBodies, match="at 0.9.* s the body would have left the ground"):
+        response = simulate(B, SHAKE, 0.01, vertical=UP)
+    assert response.lost_contact == pytest.approx(0.93, abs=0.01)
+    assert simulate(B, SHAKE, 0.01, vertical=UP, friction=0.5).overturned
+
+
+def test_a_fall_keeps_to_the_friction_that_was_given():
+    t = np.arange(0, 6, 0.01)
+    a = 4 * np.sin(2 * np.pi * 0.7 * t) * np.sin(np.pi * t / 6)
+    r = simulate(B, a, 0.01, friction=0.4)
+    k = (r.time < r.overturning_time) & (r.normal_force[:, 0] > 0)
+    assert (np.abs(r.friction_force[k, 0]) / r.normal_force[k, 0]).max() <= 0.4 * (1 + 1e-6)
+    # the history and the outcome are of one response
+    found = overturns(B, [a], 0.01, friction=[0.4])
+    assert found.overturned.item() == r.overturned
+    assert found.peak_slip.item() == pytest.approx(np.abs(r.slip).max(), rel=0.05)
+
+
+def ambiguous_stack():
+    """A stack of which one impact has two outcomes that satisfy the laws."""
+    rng = np.random.default_rng(606)
+    first = None
+    for i in range(24):
+        b = rng.uniform(0.05, 0.4)
+        h = b * rng.uniform(1.5, 8)
+        if i % 2 == 0:
+            size = 2 * b * rng.uniform(1.2, 3), rng.uniform(0.1, 1.0), rng.uniform(5, 200)
+            first = first or Stack(Block(*size), Block(2 * b, 2 * h, 1000 * b * h))
+    t = np.arange(0, 6, 0.01)
+    waves = zip(rng.uniform(0.3, 4, 3), rng.uniform(0, 6, 3), strict=True)
+    a = sum(np.sin(2 * np.pi * f * t + y) for f, y in waves) * np.sin(np.pi * t / 6) ** 2
+    return first, a * (9.81 / np.abs(a).max() * 0.9)
+
+
+@pytest.mark.parametrize("friction", [2.0, 5.0, np.inf])
+def test_histories_and_outcomes_choose_alike_where_two_outcomes_satisfy_the_laws(friction):
+    stack, a = ambiguous_stack()
+    one = simulate(stack, a, 0.01, friction=friction).overturned
+    assert one == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
+
+
+def test_a_motion_in_g_is_doubted():
+    with pytest.warns(UnitDoubt, match="multiply it by"):
+        assert not simulate(B, SHAKE / 9.81, 0.01).overturned
+    with pytest.warns(UnitDoubt, match="multiply it by"):
+        overturns(B, SHAKE / 9.81, 0.01)
+
+
+def test_a_pair_of_friction_has_one_meaning_or_none():
+    t = np.arange(0, 6, 0.01)
+    a = 5 * np.sin(2 * np.pi * 1.2 * t) * np.sin(np.pi * t / 6)
+    with pytest.raises(InputError, match="could be one coefficient per body"):
+        overturns([PAIR, WIDER], a, 0.01, friction=(0.6, 0.2))
+    named = overturns([PAIR, WIDER], a, 0.01, friction={"ground": 0.6, "interface": 0.2})
+    listed = overturns([PAIR, WIDER], a, 0.01, friction=[(0.6, 0.2), (0.6, 0.2)])
+    assert named.overturned.tolist() == listed.overturned.tolist() == [[[False]], [[False]]]
+
+
+def test_squat_bodies_that_lift_themselves_are_warned_of():
+    t = np.arange(0, 3, 0.005)
+    strong = 3 * 9.81 * np.sin(2 * np.pi * 2 * t)
+    with pytest.warns(LightBodies, match="a squat body rocks so fast"):
+        overturns(Block(0.49, 0.49, 280.0), strong, 0.005)
+
+
+def test_what_looks_like_components_or_other_units_is_not_taken_in_silence():
+    with pytest.raises(InputError, match="looks like 2 components in columns"):
+        overturns(B, np.zeros((400, 2)), 0.01)
+    with pytest.warns(UnitDoubt, match="of no planet"):
+        simulate(B, SHAKE, 0.01, g=981.0)
+    with pytest.warns(UnitDoubt, match="too long for strong motion"):
+        simulate(B, SHAKE[:20], 5.0)
+    # a number in an array without axes is a number
+    assert not simulate(B, SHAKE, 0.01, friction=np.array(0.2)).overturned
+
+
+def test_the_instant_of_a_fall_has_one_meaning():
+    t = np.arange(0, 6, 0.01)
+    a = 4 * np.sin(2 * np.pi * 0.7 * t) * np.sin(np.pi * t / 6)
+    certain = overturns(B, a, 0.01)
+    lying = overturns(B, a, 0.01, forces=True)
+    assert certain.overturned.item() and lying.overturned.item()
+    # lanes stop when the fall is certain, and do not say when the body lies down
+    assert np.isnan(certain.overturning_time.item())
+    assert np.isnan(lying.certain_time.item())
+    assert certain.certain_time.item() < lying.overturning_time.item()
+    assert simulate(B, a, 0.01).overturning_time == lying.overturning_time.item()
+
+
+def test_forces_with_friction_are_refused_and_not_left_out():
+    with pytest.raises(InputError, match="forces cannot be had together with friction"):
+        overturns(B, SHAKE, 0.01, friction=0.4, forces=True)
