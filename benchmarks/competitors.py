@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from rockfrag.system.blocks import Block, Body
+from rockfrag.system.blocks import Block, Body, Column
 
 G = 9.81
 Array = NDArray[np.float64]
@@ -95,12 +95,12 @@ def _box(name: str, block: Block, z: float) -> str:
     </body>"""
 
 
-def mujoco_model(body: Body, timestep: float, stiff: bool, friction: float) -> object:
+def mujoco_model(body: Body | Column, timestep: float, stiff: bool, friction: float) -> object:
     """Bodies in a vertical plane on a floor, with the same friction at every interface."""
     import mujoco
 
-    blocks = [body] if isinstance(body, Block) else [body.pedestal, body.statue]
-    under = [0.0, blocks[0].height]
+    blocks = body.blocks
+    under = np.cumsum([0.0, *(block.height for block in blocks)])
     boxes = "".join(_box(f"b{i}", block, under[i]) for i, block in enumerate(blocks))
     contact = f'solref="{2 * timestep} 1"' if stiff else ""
     return mujoco.MjModel.from_xml_string(f"""
@@ -112,7 +112,7 @@ def mujoco_model(body: Body, timestep: float, stiff: bool, friction: float) -> o
 
 
 def mujoco_verdict(
-    body: Body,
+    body: Body | Column,
     acceleration: Array,
     dt: float,
     timestep: float = 1e-3,
@@ -131,7 +131,7 @@ def mujoco_verdict(
     data = mujoco.MjData(model)
     spec = mujoco.mjtState.mjSTATE_QFRC_APPLIED
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
-    blocks = [body] if isinstance(body, Block) else [body.pedestal, body.statue]
+    blocks = body.blocks
     time = np.arange(round(len(acceleration) * dt / timestep)) * timestep
     a = np.interp(time, np.arange(len(acceleration) + 1) * dt, np.append(acceleration, 0.0))
     force = np.zeros((1, time.size, model.nv))

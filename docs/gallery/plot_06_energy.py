@@ -24,8 +24,8 @@ axes.stackplot(
     energy["time"],
     energy["kinetic"],
     energy["potential"] - energy["potential"].iloc[0],
-    energy["lost_ground"],
-    energy["lost_interface"],
+    energy["lost_contact_1"],
+    energy["lost_contact_2"],
     labels=("kinetic", "potential", "lost at the ground", "lost under the statue"),
     colors=("#56B4E9", "#0072B2", "#E69F00", "#D55E00"),
 )

@@ -18,8 +18,8 @@ motion = one_sine(amplitude=9.81, period=0.6)
 bodies = [Block(1.0 / h, 1.0, 200.0) for h in slenderness for _ in frictions]
 found = overturns(bodies, motion, friction=[float(mu) for _ in slenderness for mu in frictions])
 shape = (slenderness.size, frictions.size)
-rocked = (found.peak_rotation[:, 0, 0] > 1e-4).reshape(shape)
-slid = (found.peak_slip_ground[:, 0, 0] > 1e-4).reshape(shape)
+rocked = (found.peak_rotation[:, 0, 0, 0] > 1e-4).reshape(shape)
+slid = (found.peak_slip[:, 0, 0, 0] > 1e-4).reshape(shape)
 fell = found.overturned[:, 0, 0].reshape(shape)
 
 # %%

@@ -92,6 +92,21 @@ def test_where_nothing_topples_there_is_a_bound_and_no_zero():
     assert 0 < found.upper <= probability_in(0.11 * float(BENT.rate(LEVELS[0])), 50) * 1.9
 
 
+def test_one_earthquake_that_topples_leaves_more_open_than_none():
+    limits = []
+    for toppling in range(4):
+        capacities = np.where(np.arange(20) < toppling, 0.3, 100.0)
+        fell = verdicts_from(capacities, range(20))
+        verdicts = Verdicts(fell.ladder, fell.overturned, fell.overturned | True, fell.events)
+        found = estimate(share_target(0.5), verdicts, {}, {}, {"model": 0.2})
+        assert found.lower <= found.value <= found.upper
+        # the exact binomial limit of 5 % on that side (Clopper and Pearson 1934)
+        exact = stats.beta.ppf(0.95, toppling + 1, 20 - toppling)
+        assert found.upper > 0.75 * exact
+        limits.append(found.upper)
+    assert limits[0] < min(limits[1:])
+
+
 def test_share_at_a_level_and_level_of_a_share_are_inverse():
     verdicts = verdicts_from(np.geomspace(0.1, 1.5, 40), range(40))
     level = estimate(amplitude_target(0.5), verdicts, {}, {}, {}).value

@@ -81,3 +81,10 @@ def test_an_arrangement_that_names_what_stands_below_twice_is_refused(tmp_path: 
         arrangements(tmp_path, "all,venus|base,plinth")
     with pytest.raises(InputError, match="expected one of the specimens"):
         arrangements(tmp_path, "all,venus,base|socle")
+
+
+def test_a_stack_with_friction_that_holds_is_answered_by_pure_rocking() -> None:
+    outcomes = overturns(
+        [Stack(BASE, STATUE), COLUMN], [MOTION], DT, [0.2, 1.0], friction=[5.0, 0.4]
+    )
+    assert set(outcomes.engines) >= {"planar contact"} and len(outcomes.engines) > 1

@@ -127,7 +127,7 @@ def survey(number: int, seed: int) -> dict[str, int]:
         laws = drawn_laws(impact.system, law, factor)
         v, gain, w = impact.outcome(mus, laws)
         plastic, _, _ = impact.outcome(mus, [ImpactLaw()] * impact.system.count)
-        counts["gains"] += gain > 1e-12
+        counts["gains"] += gain > 1e-11  # rounding: what gives way ends within 1e-12
         counts["gives way"] += int(w["given_way"])
         counts["several"] += w["several"] > 0
         moving = np.abs(impact.omega).max()

@@ -6,9 +6,8 @@ import numpy as np
 
 from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
-from rockfrag.assess.verdicts import Ladder, believable_scales
+from rockfrag.assess.verdicts import Ladder, believable_scales, simulated
 from rockfrag.motions.rotation import rotate
-from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Body, Stack
 
 STEP_DEG = 15
@@ -71,13 +70,13 @@ def find_directions(
         for angle in angles:
             shaking.append(rotate(one, other, angle))
             scales.append(ladder.levels / middle)
-    fallen = overturns(
-        body,
-        [motion.acceleration for motion in shaking],
-        [motion.dt for motion in shaking],
+    found, _ = simulated(
+        [body],
+        shaking,
         np.minimum(np.array(scales), believable_scales(shaking)),
-        restitution=[objects.restitution_of(body)],
-    ).overturned[0]
+        [objects.restitution_of(body)],
+    )
+    fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
     x = np.log(ladder.levels)

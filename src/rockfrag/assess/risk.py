@@ -298,9 +298,9 @@ def estimate(
     sources |= fixed
     total = math.sqrt(sum(value**2 for value in sources.values()))
     half = _quantile(sources["motions"], total, len(left_out)) * total
-    return Estimate(
-        target.back(middle), target.back(middle - half), target.back(middle + half), sources
-    )
+    # what was added must not make an interval narrower than that of motions which all agree
+    low, high = sorted((middle, near(verdicts)))
+    return Estimate(target.back(middle), target.back(low - half), target.back(high + half), sources)
 
 
 def _jackknife(left_out: Floats, middle: float) -> float:

@@ -1,5 +1,6 @@
 """Which motions topple a body at which level of shaking: shares of motions, no curve assumed."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -12,9 +13,10 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.fragility.observations import Outcomes
 from rockfrag.outcomes.limit_states import limit_state_named
+from rockfrag.outcomes.outcomes import Outcomes as Simulated
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.system.blocks import Body
 
@@ -103,12 +105,15 @@ class Verdicts:
         Verdicts, shape (motions, levels).
     events
         Earthquake of each motion, shape (motions,).
+    light
+        Whether a body that was simulated with it may have left the ground, which the model holds shut.
     """
 
     ladder: Ladder
     overturned: NDArray[np.bool_]
     rocked: NDArray[np.bool_]
     events: NDArray[np.object_]
+    light: bool = False
 
     def shares(self, weights: Floats | None = None, *, rocks: bool = False) -> Floats:
         """Share of the motions that topple the body at each level, shape (levels,).
@@ -222,19 +227,49 @@ def _shaken(
         return []
     if motions.worst:
         return _shaken_from_all_sides(bodies, restitution, motions, ladder)
-    result = overturns(
-        bodies,
-        [motion.acceleration for motion in motions.base],
-        [motion.dt for motion in motions.base],
-        # what is beyond is not counted, and need not be simulated as it is
-        np.minimum(ladder.scales, believable_scales(motions.base)),
-        restitution=restitution,
-    )
+    # what is beyond is not counted, and need not be simulated as it is
+    scales = np.minimum(ladder.scales, believable_scales(motions.base))
+    result, light = simulated(bodies, motions.base, scales, restitution)
     rocked = limit_state_named("rocks").reached(result)
     return [
-        Verdicts(ladder, result.overturned[i], rocked[i], motions.events)
+        Verdicts(ladder, result.overturned[i], rocked[i], motions.events, light)
         for i in range(len(bodies))
     ]
+
+
+def simulated(
+    bodies: Sequence[Body],
+    shaking: Sequence[Motion],
+    scales: Floats,
+    restitution: Sequence[Restitution],
+) -> tuple[Simulated, bool]:
+    """What happened, and whether a body may have left the ground, which an assessment says in its own words.
+
+    Parameters
+    ----------
+    bodies
+        What is shaken.
+    shaking
+        Motions of what it stands on.
+    scales
+        Factors on them, shape (motions, levels).
+    restitution
+        Of each body.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", LightBodies)
+        result = overturns(
+            bodies,
+            [motion.acceleration for motion in shaking],
+            [motion.dt for motion in shaking],
+            scales,
+            restitution=restitution,
+        )
+    light = [issubclass(one.category, LightBodies) for one in caught]
+    for one, known in zip(caught, light, strict=True):
+        if not known:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+    return result, any(light)
 
 
 def _shaken_from_all_sides(
@@ -244,13 +279,8 @@ def _shaken_from_all_sides(
     records = motions.turned(WORST_STEP_DEG)
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
-    result = overturns(
-        bodies,
-        [motion.acceleration for motion in shaking],
-        [motion.dt for motion in shaking],
-        np.minimum(ladder.scales[of_row], believable_scales(shaking)),
-        restitution=restitution,
-    )
+    scales = np.minimum(ladder.scales[of_row], believable_scales(shaking))
+    result, light = simulated(bodies, shaking, scales, restitution)
     # the place of the record that stands for each motion
     place = np.arange(len(motions.base))
     for first, second in motions.pairs:
@@ -261,7 +291,7 @@ def _shaken_from_all_sides(
         fell, rocked = (np.zeros(ladder.scales.shape, dtype=bool) for _ in range(2))
         np.logical_or.at(fell, of_row, result.overturned[i])
         np.logical_or.at(rocked, of_row, moves[i])
-        found.append(Verdicts(ladder, fell[place], rocked[place], motions.events))
+        found.append(Verdicts(ladder, fell[place], rocked[place], motions.events, light))
     return found
 
 

@@ -472,6 +472,11 @@ def doubts(found: Assessment) -> list[str]:
         lines.append(
             "No record has two components, so that the worst direction of a round base could not be tried."
         )
+    if found.verdicts.light:
+        lines.append(
+            "Under the strongest shaking that was tried a squat body may leave the ground, which this model "
+            "does not let it."
+        )
     for event, share in _influential(found):
         lines.append(f"{share:.0%} of the motions that topple it at that level are of {event}.")
     return lines
