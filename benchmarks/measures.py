@@ -16,10 +16,9 @@ from cases import Cases
 from numpy.typing import NDArray
 
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.kernels.lanes import block, stack_one, stack_two
+from rockfrag.engines.kernels.lanes import block, scheduler, stack_one, stack_two
 from rockfrag.engines.kernels.lanes.case import LANES
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.rocking import ensemble
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block, Body, Stack
@@ -165,7 +164,7 @@ def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
 # where the ensembles find their entry kernels
 _ENTRY: dict[str, tuple[Any, str]] = {
     "lone": (block, "march_blocks"),
-    "stack": (ensemble, "march_stacks"),
+    "stack": (scheduler, "march_stacks"),
 }
 
 # the kernels of the lanes, and what a lane steps on with for ever: no event, no division by zero

@@ -34,7 +34,7 @@ def test_a_response_shows_rotations_over_the_critical_angle_and_every_impact() -
     response = simulate(STACK, MOTION.acceleration, MOTION.dt)
     ground, rotation, _ = response.plot().axes
     lines = {line.get_label(): line for line in rotation.lines}
-    statue = np.asarray(lines["statue"].get_ydata())
+    statue = np.asarray(lines["upper body"].get_ydata())
     assert statue == pytest.approx(response.theta[:, 1] / STATUE.alpha)
     assert len(lines["impact"].get_xdata()) == (response.events["kind"] == "impact").sum() > 0
     assert ground.get_ylabel() == "Ground [g]"

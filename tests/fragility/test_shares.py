@@ -99,8 +99,8 @@ def test_rejected_curve_says_the_median_and_dispersion_to_use_with_their_limits(
     data = swept(np.append(low, high), np.arange(42), np.geomspace(0.05, 2, 80))
     found = fragility_of(data)
     assert found.checks.rejected
-    (said,) = [note for note in found.warnings if "does not describe" in note]
-    assert "whose median is" in said and said.count("90% limits") == 2
+    (said,) = [note for note in found.warnings if "is rejected" in note]
+    assert "whose median is" in said and said.count("90 % limits") == 2
     assert found.checks.shares.theta == pytest.approx(1.0, rel=0.15)
 
 

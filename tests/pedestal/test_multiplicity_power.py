@@ -50,7 +50,7 @@ def test_units_needed_are_the_fewest_with_the_power():
     assert (
         power_of_t(effect.ratio, effect.sd, n) >= 0.8 > power_of_t(effect.ratio, effect.sd, n - 1)
     )
-    assert f"{n} events" in power_note(effect)
+    assert f"{n} earthquakes" in power_note(effect)
 
 
 def test_power_of_degenerate_data_is_stated():

@@ -89,7 +89,7 @@ def test_no_effect_of_a_study_has_an_interval_without_width(tests_table):
 
 
 def test_notes_say_that_intervals_are_cautious_where_most_pairs_agree(tests_table):
-    cautious = "more cautious than their level"
+    cautious = "wider than their level says"
     assert any(cautious in note for note in study_pedestal(tied(tests_table), seed=1).notes)
     assert not any(cautious in note for note in study_pedestal(tests_table(1), seed=1).notes)
 

@@ -126,6 +126,7 @@ def some_restitution(rng, body: Body):
     return [(ground, interface), (None, interface), (ground, None)][rng.integers(0, 3)]
 
 
+@pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
 @needs_node
 def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
     rng = np.random.default_rng(11)

@@ -22,6 +22,7 @@ BODIES = [BLOCK, Stack(Block(width=0.4, height=0.3, mass=100.0), BLOCK)]
 SCALES = np.array([0.2, 0.5, 0.9])
 
 
+@pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
 def test_the_file_holds_the_history_of_every_case_in_order(tmp_path):
     path = tmp_path / "histories.parquet"
     seen = []

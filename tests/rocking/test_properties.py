@@ -12,7 +12,11 @@ from rockfrag.engines.kernels.chatter import HISTORY
 from rockfrag.rocking import Block, Body, Response, Stack, overturns, simulate
 
 # random bodies may lose contact, and pure rocking is what these tests are about
-pytestmark = pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies"),
+    # similarity wants bodies of any size and weight
+    pytest.mark.filterwarnings("ignore::rockfrag.system.blocks.UnlikelyBlock"),
+]
 
 G = 9.81
 DT = 0.01

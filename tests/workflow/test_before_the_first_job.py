@@ -154,17 +154,16 @@ def test_a_record_that_is_not_the_one_of_its_digest_is_named(
     assert "SHA-256" in said(capsys, study_folder / "study.yaml")
 
 
-def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_doubted(
+def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(
     study_folder: Path, capsys: pytest.CaptureFixture[str]
 ):
     record = study_folder / "record3.txt"
     rows = [line.split() for line in record.read_text().splitlines()]
     record.write_text("\n".join(f"{t} {981 * float(a):.4f}" for t, a in rows) + "\n")
-    assert main(["check-config", "--quiet", str(study_folder / "study.yaml")]) == 0
-    doubt = capsys.readouterr().err
-    assert doubt.startswith("warning: ")
-    assert "m/s²" in doubt
-    assert "motion 3" in doubt
+    assert main(["check-config", "--quiet", str(study_folder / "study.yaml")]) == 2
+    refusal = capsys.readouterr().err
+    assert "m/s" in refusal and "motion 3" in refusal
+    assert refusal.count("\n") == 1
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions.directions import motion_and_vertical
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
+from rockfrag.rocking import overturns
 from rockfrag.study.loading import load_study, study_from
 from rockfrag.yaml_file import read_yaml
 
@@ -29,11 +30,11 @@ def smoke(**keys: object):
 @pytest.mark.parametrize(
     ("friction", "alone", "stacked"),
     [
-        (0.3, 0.3, (0.3, 0.3)),
+        (0.3, {"ground": 0.3}, {"ground": 0.3, "interface": 0.3}),
         (
             {"ground": 0.4, "interface": {"static": 0.6, "kinetic": 0.5}},
-            0.4,
-            (0.4, (0.6, 0.5)),
+            {"ground": 0.4},
+            {"ground": 0.4, "interface": (0.6, 0.5)},
         ),
     ],
 )
@@ -71,10 +72,16 @@ def test_what_cannot_be_is_refused_when_the_study_is_read(keys, message):
     assert len(str(caught.value)) <= 500
 
 
-def test_measured_impacts_and_friction_are_refused_together():
+def test_measured_impacts_and_friction_may_be_given_together():
     bodies = {**read_yaml(SMOKE)["bodies"], "restitution": {"blocks": {"T1": 0.9}}}
-    with pytest.raises(InputError, match="key friction: restitution: with friction the impacts"):
-        smoke(friction=0.3, bodies=bodies)
+    tower = smoke(friction=0.3, bodies=bodies).configurations[0]
+    assert tower.name == "T1"
+    assert tower.friction == {"ground": 0.3} and tower.restitution is not None
+    result = overturns(
+        [tower.body], [np.zeros(10)], 0.01,
+        restitution=[tower.restitution], friction=[tower.friction],
+    )  # fmt: skip
+    assert not result.overturned.any()
 
 
 @pytest.mark.parametrize("key", ["friction", "vertical"])

@@ -2,7 +2,6 @@
 
 import os
 import tempfile
-import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import version
@@ -42,7 +41,6 @@ from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.page import Column, Picture, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.report.study_report import draw
-from rockfrag.rocking.ensemble import LightBodies
 
 MOTIONS_SHOWN = 15
 """Rows of the table of motions that topple the object first."""
@@ -106,10 +104,7 @@ def _live(found: Assessment) -> Markup:
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
         return Markup("")
-    with warnings.catch_warnings():
-        # said as a doubt about the answer, in its own words
-        warnings.simplefilter("ignore", LightBodies)
-        return live_kernel(found.request.objects.arrangements, motions)
+    return live_kernel(found.request.objects.arrangements, motions)
 
 
 def _name_of(found: Assessment, i: int) -> str:

@@ -29,13 +29,13 @@ TERMS: Mapping[str, str] = {
     "undecided": "of a statement: the data neither confirm nor refute it.",
     "survival window": "range of stronger motions that the object survives although a weaker one overturned it.",
     "robust": "of an outcome: the same for the motion scaled by anything within ±10 %.",
-    "p value": "probability of data at least this far from the hypothesis if it were true; small values speak "
-    "against it.",
+    "p value": "probability of data at least this far off if there were no effect; small values speak "
+    "against that.",
     "Holm": "adjustment of p values that limits the chance of any false finding in a family of tests (Holm 1979).",
     "Benjamini–Hochberg": "adjustment of p values that limits the expected fraction of false findings among all "
     "findings (Benjamini and Hochberg 1995).",
     "Bonferroni": "adjustment of p values: each is multiplied by the number of tests.",
-    "95 % interval": "range of values that the data do not contradict; 95 % of such ranges contain the true "
+    "95 % interval": "range of values with which the data are compatible; 95 % of such ranges contain the true "
     "value.",
     "AUC": "probability that an overturned test had the larger intensity than a survived one; 0.5 is guessing.",
     "AIC": "Akaike’s information criterion; of two models the one with the smaller value predicts better.",
