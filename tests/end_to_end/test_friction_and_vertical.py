@@ -74,7 +74,7 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(
     assert (validity["friction_demand"] <= 0.3 * (1 + 1e-9)).all()
     assert {"peak_slip_m", "flights"} <= set(validity.columns)
     words = " ".join(page.words)
-    assert "What friction did" in words and "Bodies slide in" in words
+    assert "What friction does" in words and "Bodies slide in" in words
     assert "neither slide nor jump" not in words
     states = table(results, "fragility_floors")
     assert set(states["state"]) == {"slides", "overturned"}

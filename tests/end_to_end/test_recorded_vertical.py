@@ -85,7 +85,8 @@ def test_the_report_says_in_how_many_cases_bodies_may_fly(results: Path) -> None
     words = (results.parents[1] / "words.txt").read_text()
     assert "The vertical components of the records act too" in words
     assert (
-        f"in {light} of {len(cases)} cases the ground takes more than half of all weight" in words
+        f"in {light} of {len(cases)} analyses the ground takes away more than half of all weight"
+        in words
     )
 
 

@@ -162,7 +162,7 @@ def test_a_record_in_cm_s2_that_is_taken_for_m_s2_is_refused(
     record.write_text("\n".join(f"{t} {981 * float(a):.4f}" for t, a in rows) + "\n")
     assert main(["check-config", "--quiet", str(study_folder / "study.yaml")]) == 2
     refusal = capsys.readouterr().err
-    assert "m/s" in refusal and "motion 3" in refusal
+    assert "above 3 g; give the unit" in refusal and "motion 3" in refusal
     assert refusal.count("\n") == 1
 
 

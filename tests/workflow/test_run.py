@@ -79,7 +79,7 @@ def test_a_study_runs_from_records_to_report(ran: Path):
     assert pd.read_parquet(results / "tests.parquet").shape == tests.shape
     report = (results / "report.html").read_text()
     assert 'src="http' not in report
-    assert "Simulated, not measured" in report
+    assert "<strong>Simulated,</strong> unless labelled" in report
     assert "thesis" not in report
     assert {path.name for path in ran.iterdir() if path.is_dir()} <= {
         ".snakemake",

@@ -5,6 +5,7 @@ One source: the module is made of the kernel that `rockfrag.simulate` runs, see 
 
 import base64
 import json
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -19,6 +20,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.report.live.frames import frames_svg
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import driver_text, module_bytes
+from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.units import GRAVITY
 
@@ -62,7 +64,18 @@ def live_kernel(
     Markup
         Needs the style of :func:`rockfrag.report.page.render`, and loads nothing.
     """
-    motions = carried(motions)
+    with warnings.catch_warnings():
+        # the page shows pure rocking; where that may be wrong is said in the report's own words
+        warnings.simplefilter("ignore", LightBodies)
+        return _element(bodies, carried(motions), verdicts, start)
+
+
+def _element(
+    bodies: Mapping[str, Body],
+    motions: Sequence[Motion],
+    verdicts: pd.DataFrame | None,
+    start: Start | None,
+) -> Markup:
     of_study = verdicts is not None
     if verdicts is None:
         verdicts = swept(bodies, motions)

@@ -1,7 +1,6 @@
 """Still frames of a body at three amplitudes, drawn to scale, for pages without scripts and for print."""
 
 import math
-import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,7 +11,6 @@ from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
-from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.system.blocks import Block, Body, Vector
 
 _WIDTH, _HEIGHT, _GROUND = 200, 190, 150
@@ -62,13 +60,6 @@ def _turned_about(point: Vector, angle: float, pole: Vector) -> Vector:
     return Vector(pole.x + arm.x, pole.y + arm.y)
 
 
-def _rocking(body: Body, motion: Motion) -> Response:
-    """Response in pure rocking, which the page's live part shows and whose limits the report counts elsewhere."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LightBodies)
-        return simulate(body, motion)
-
-
 def frames_svg(body: Body, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
     """Draw a body at its largest rotation at each amplitude, and say what becomes of it.
 
@@ -89,7 +80,7 @@ def frames_svg(body: Body, motion: Motion, amplitudes_g: Sequence[float]) -> tup
     scale = min(120 / tall, 170 / (1.6 * tall))
     parts, words = [], []
     for place, peak in enumerate(amplitudes_g):
-        response = _rocking(body, scale_to_pga(motion, peak))
+        response = simulate(body, scale_to_pga(motion, peak))
         theta, verdict = _moment(response)
         shift = (place + 0.5) * _WIDTH
         for block, colour in zip(
