@@ -12,7 +12,7 @@ from rockfrag.units import GRAVITY
 After = tuple[int, float]
 """Law and number of the impacts that end on one pivot, as the kernels have them (``kernels.equations.AFTER``)."""
 
-BY_MOMENTUM: After = (0, 1.0)
+BY_MOMENTUM: After = (geometry.MOMENTUM, 1.0)
 FIELDS = ("after1r", "after1l", "after2r", "after2l")
 
 

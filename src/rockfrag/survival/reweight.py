@@ -18,7 +18,6 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.hazard.measure import Measure
 from rockfrag.errors import InputError
 from rockfrag.survival.branches import Branch
@@ -251,12 +250,3 @@ def scaled(
         )
         found.append(replace(body, coefficients=moved, age=ages))
     return found
-
-
-def mean_hazard(
-    branches: Sequence[Branch], measure: Measure, weights: Floats, source: str
-) -> HazardCurve:
-    """Mean hazard curve of branches under weights."""
-    levels = common_levels(branches, measure)
-    rates = weights @ np.array([branch.curves[measure].rate(levels) for branch in branches])
-    return HazardCurve(measure, levels, np.asarray(rates), source)

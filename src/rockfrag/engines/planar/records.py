@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.elementary import atan2, sin_cos
+from rockfrag.engines.records import after_impact
 from rockfrag.system import geometry
 from rockfrag.system.body import Interval
-from rockfrag.system.contact import ROUGHEST, ImpactLaw
+from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
 
 F, INT = np.float64, np.int64
@@ -257,20 +258,8 @@ def system_record(system: System, g: float) -> np.void:
     for k, (contact, shape) in enumerate(zip(system.contacts, system.carried, strict=True)):
         p["static"][k], p["kinetic"][k] = contact.friction or (ROUGHEST, ROUGHEST)
         for end, pivot in enumerate((-1, 1)):
-            p["law"][k, end], p["number"][k, end] = impact_of(contact.law, shape, pivot)
+            p["law"][k, end], p["number"][k, end] = after_impact(contact.law, shape, pivot)
     return p
-
-
-def impact_of(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> tuple[int, float]:
-    """Law, as kernels number it, and number of the impacts of a contact that end on a pivot."""
-    measured = law.right if pivot > 0 else law.left
-    if law.name == "momentum":
-        return geometry.MOMENTUM, 1.0
-    if law.name == "ratio":
-        return geometry.RATIO, measured
-    if law.name == "position":
-        return geometry.by_position(shape, measured, pivot)
-    return geometry.COUPLE, measured / geometry.momentum_restitution(shape, pivot)
 
 
 def working_memory() -> np.void:
