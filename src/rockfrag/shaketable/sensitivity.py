@@ -24,7 +24,7 @@ from rockfrag.rocking.options import FrictionInput
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
 from rockfrag.shaketable.swept import FALLEN
-from rockfrag.system.blocks import Body, Column, as_system
+from rockfrag.system.blocks import Body, as_system
 
 Floats = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ class Specimen:
     configuration: str
     object: str
     pedestal: str
-    body: Body | Column
+    body: Body
     restitution: Restitution = None
     friction: FrictionInput | None = None
 
@@ -222,7 +222,7 @@ class _Ground:
         )
 
 
-def fallen_names(body: Body | Column) -> NDArray[np.object_]:
+def fallen_names(body: Body) -> NDArray[np.object_]:
     """What tables call the body that fell, by its number in outcomes."""
     if len(body.blocks) >= len(FALLEN):
         return np.array(["", *as_system(body).names], dtype=object)

@@ -10,7 +10,7 @@ from rockfrag.system.blocks import Block, Body, Column
 from rockfrag.units import GRAVITY
 
 
-def uplift_accelerations(body: Body | Column, g: float = GRAVITY) -> tuple[float, float]:
+def uplift_accelerations(body: Body, g: float = GRAVITY) -> tuple[float, float]:
     """Least accelerations [m/s²] at which a body starts to rock in pattern 3 and in pattern 4.
 
     A body at rest opens about the pole whose overturning moment first exceeds the weight's (thesis

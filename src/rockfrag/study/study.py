@@ -144,7 +144,7 @@ class Study:
     @property
     def simulated_in_page(self) -> bool:
         """Whether the simulation in a page has its outcomes: horizontal rocking alone, of one or two bodies."""
-        few = all(len(one.body.blocks) < 3 for one in self.configurations)
+        few = any(len(one.body.blocks) < 3 for one in self.configurations)
         return few and not (self.slides or self.vertical)
 
     @property
