@@ -179,11 +179,14 @@ def _fallen(tests: pd.DataFrame) -> list[str]:
     on_pedestal = tests[(tests["pedestal"] == "P") & (tests["overturned_body"] != "")]
     if on_pedestal.empty:
         return []
-    pedestals = int((on_pedestal["overturned_body"] == "pedestal").sum())
-    if pedestals == 0:
-        return ["The object always fell, never the pedestal."]
-    falls = of_all(pedestals, len(on_pedestal), "test on a pedestal", "tests on a pedestal")
-    return [f"The pedestal itself fell in {falls} that overturned."]
+    itself = on_pedestal["overturned_body"].isin(["statue"]) | (
+        on_pedestal["overturned_body"] == on_pedestal["object"]
+    )
+    below = int((~itself).sum())
+    if below == 0:
+        return ["The object always fell, never what it stood on."]
+    falls = of_all(below, len(on_pedestal), "test on a pedestal", "tests on a pedestal")
+    return [f"What the object stood on fell first in {falls} that overturned."]
 
 
 def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> list[Finding]:

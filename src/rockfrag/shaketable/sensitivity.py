@@ -23,7 +23,6 @@ from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
-from rockfrag.shaketable.swept import FALLEN
 from rockfrag.system.blocks import Body, as_system
 
 Floats = NDArray[np.float64]
@@ -224,9 +223,9 @@ class _Ground:
 
 def fallen_names(body: Body) -> NDArray[np.object_]:
     """What tables call the body that fell, by its number in outcomes."""
-    if len(body.blocks) >= len(FALLEN):
-        return np.array(["", *as_system(body).names], dtype=object)
-    return np.array(["", *FALLEN[-len(body.blocks) :]], dtype=object)
+    count = len(body.blocks)
+    names = as_system(body).names if count > 2 else ("pedestal", "statue")[-count:]
+    return np.array(["", *names], dtype=object)
 
 
 def _frictions(specimens: Sequence[Specimen]) -> list[FrictionInput] | None:
