@@ -117,6 +117,10 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     elif len(by_name) == 1:
         headline = f"At recorded strength {_overturn(fallen, motions)} {by_name.index[0]}"
         numbers = ""
+    elif motions == 1:
+        fell = by_name["sum"] > 0
+        here, not_here = (listed([str(one) for one in by_name.index[it]]) for it in (fell, ~fell))
+        headline = f"At recorded strength {subject} overturns {here}, and not {not_here}"
     else:
         counts = {str(name): int(n) for name, n in by_name["sum"].items()}
         low, high = min(counts, key=counts.__getitem__), max(counts, key=counts.__getitem__)

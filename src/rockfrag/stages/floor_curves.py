@@ -23,7 +23,7 @@ FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
 
 
 def uplift_amplitude(body: Body) -> float:
-    """Peak acceleration above which something rocks, the smallest b/h of any pole [g]; thesis eq. 2.1."""
+    """Peak acceleration above which something rocks, the smallest b/h of any pole [g] (Kirkpatrick, 1927)."""
     if isinstance(body, Block):
         arms = [(pole, body.arm(pole)) for pole in (+1, -1)]
     elif isinstance(body, Column):
