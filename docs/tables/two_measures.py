@@ -83,7 +83,8 @@ def table(records: Path) -> str:
     lines += [
         "",
         "Probability of toppling in 50 years with its 90 % interval, for the ten objects of "
-        f"`config/rules-of-thumb.yaml` on the ground of three made sites ({sites} every 475 years). Over these the intervals with PGV "
+        f"`config/rules-of-thumb.yaml` on the ground of three made sites ({sites} every 475 years). "
+        "Over these the intervals with PGV "
         f"have {narrowing(pairs):.2f} of the width (ln upper over lower, median) of those without.",
     ]
     return "\n".join(lines)

@@ -17,6 +17,7 @@ from jsonschema import Draft202012Validator, ValidationError
 from jsonschema.validators import extend
 
 from rockfrag.errors import InputError
+from rockfrag.plugins import plugins
 from rockfrag.units import other_names, quantity, split_name
 
 LARGEST_WHOLE = 2**53
@@ -27,9 +28,12 @@ _Schema = Mapping[str, Any]
 
 @cache
 def read_schema(name: str) -> dict[str, Any]:
-    """Read the schema of one kind of file: ``study``, ``measured_table``, ``building`` or ``shaker``."""
+    """Read the schema of one kind of file, such as ``building``; of a ``study`` with the keys of plugins."""
     text = files("rockfrag").joinpath("schema.json").read_text(encoding="utf-8")
     schema: dict[str, Any] = json.loads(text)["$defs"][name]
+    if name == "study":
+        for plugin in plugins().values():
+            schema["properties"] |= plugin.schema
     return schema
 
 
@@ -95,6 +99,9 @@ def _with_text_keys(value: Any, key: str) -> Any:
 
 def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
     """Express every quantity in the unit of its usual key, whatever key it was given under."""
+    if isinstance(value, list):
+        items = schema.get("items", {})
+        return [_in_usual_units(one, items, f"{key}[{i}]") for i, one in enumerate(value)]
     if not isinstance(value, Mapping):
         return value
     properties = schema.get("properties", {})

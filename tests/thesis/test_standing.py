@@ -5,7 +5,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.steps import GeometricSteps
 from rockfrag.study.configurations import Configuration
-from rockfrag.thesis.standing import SIZES, standing_readings
+from rockfrag_thesis.standing import SIZES, standing_readings
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)

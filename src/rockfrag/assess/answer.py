@@ -184,8 +184,9 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    ladder = make_ladder(motions, measure, asked, FEW_LEVELS if brief else LEVELS)
     objects = request.objects
+    few = brief or objects.many
+    ladder = make_ladder(motions, measure, asked, FEW_LEVELS if few else LEVELS)
     bodies = objects.arrangements
     if brief:
         bodies = dict(list(bodies.items())[:1])
@@ -198,9 +199,8 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         conversion = find_conversion(
             counted, motions, request.records, level=level, curves=curves, by_statics=exact
         )
-    fewer = motions.thinned() if brief else motions
+    fewer = motions.thinned() if few else motions
     moved = _moved(request, fewer, measure, asked)
-    both_sides = {one.name: one.sides for one in moved}
     shifts = {"model": BETA_MODEL}
     if not request.objects.round:
         shifts["space"] = SPACE
@@ -208,9 +208,9 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         shifts["conversion"] = conversion.shift
         arrangements = {k: conversion.at_site(one) for k, one in arrangements.items()}
         moved = [one.turned(conversion.of(fewer).at_site) for one in moved]
-        both_sides = {one.name: one.sides for one in moved}
-        if together := conversion.sides(counted):
-            both_sides["together"] = together
+    both_sides = {one.name: one.sides for one in moved}
+    if conversion and (together := conversion.sides(counted)):
+        both_sides["together"] = together
     now = next(iter(arrangements.values()))
 
     def estimated(one: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
@@ -244,7 +244,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         curve=None if brief or now is not counted else fragility_of(now.outcomes()),
         conversion=conversion,
         directions=None
-        if brief or objects.round
+        if brief or objects.round or objects.many
         else find_directions(
             objects, motions, make_ladder(motions, measure, asked, FEW_LEVELS), at
         ),

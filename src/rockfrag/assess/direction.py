@@ -8,7 +8,7 @@ from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.verdicts import Ladder, believable_scales, simulated
 from rockfrag.motions.rotation import rotate
-from rockfrag.system.blocks import Body, Stack
+from rockfrag.system.blocks import Body
 
 STEP_DEG = 15
 """Angle between directions that are tried [degrees]."""
@@ -99,6 +99,6 @@ def _half(x: np.ndarray, share: np.ndarray) -> float:
 
 def _is_symmetric(body: Body) -> bool:
     """Whether opposite directions are alike to a body."""
-    blocks = (body.pedestal, body.statue) if isinstance(body, Stack) else (body,)
-    offset = body.offset if isinstance(body, Stack) else 0.0
-    return offset == 0 and all(block.cg_offset == 0 and block.lean == 0 for block in blocks)
+    return all(block.cg_offset == block.lean == 0 for block in body.blocks) and not any(
+        contact.offset[0] for contact in body.system().contacts
+    )

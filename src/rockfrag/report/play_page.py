@@ -12,7 +12,7 @@ from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding
 from rockfrag.report.wording import counted, number, sentence
 from rockfrag.rocking import simulate
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.blocks import Block, Body, Column, Stack
 from rockfrag.units import GRAVITY
 
 _STEP = 100 * (AMPLITUDES_G[1] / AMPLITUDES_G[0] - 1)
@@ -36,8 +36,12 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
     Raises
     ------
     InputError
-        If the record is too long, or zero throughout.
+        If the record is too long, or zero throughout, or there are more than two blocks.
     """
+    if isinstance(body, Column):
+        raise InputError(
+            "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
+        )
     samples = motion.acceleration.size
     if samples > MOST_SAMPLES:
         raise InputError(
@@ -68,7 +72,7 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
     write_text(page, path)
 
 
-def _name(body: Body) -> str:
+def _name(body: Block | Stack) -> str:
     if isinstance(body, Stack):
         return f"{_size(body.statue)} on {_size(body.pedestal)}"
     return _size(body)

@@ -24,7 +24,7 @@ from rockfrag.plausibility import (
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.system.blocks import Block, Column, Stack, as_system
-from rockfrag.system.system import System, contact_ends, standing_centres
+from rockfrag.system.system import System, arms_above
 
 MOST_CASES = 50_000_000
 """Cases of an ensemble whose results are held in memory."""
@@ -381,16 +381,5 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
 
 def least_uplift(system: System, g: float) -> float:
     """Least horizontal acceleration that opens a contact at rest [m/s²]; eq. 2.1, 2.21 to 2.25."""
-    found = math.inf
-    centres, mass = standing_centres(system), 0.0
-    x = y = 0.0
-    for k in reversed(range(system.count)):
-        own = system.bodies[k].mass
-        x, y = (
-            (x * mass + own * centres[k][0]) / (mass + own),
-            (y * mass + own * centres[k][1]) / (mass + own),
-        )
-        mass += own
-        for end in contact_ends(system, k):
-            found = min(found, abs(x - end[0]) / (y - end[1]) * g if y > end[1] else math.inf)
-    return found
+    arms = (arm for k in range(system.count) for arm in arms_above(system, k))
+    return min((abs(x) / z * g for x, z in arms if z > 0), default=math.inf)

@@ -10,11 +10,11 @@ from rockfrag.system.blocks import Block, Body, Column
 from rockfrag.units import GRAVITY
 
 
-def uplift_accelerations(body: Body | Column, g: float = GRAVITY) -> tuple[float, float]:
+def uplift_accelerations(body: Body, g: float = GRAVITY) -> tuple[float, float]:
     """Least accelerations [m/s²] at which a body starts to rock in pattern 3 and in pattern 4.
 
-    A body at rest opens about the pole whose overturning moment first exceeds the weight's (thesis
-    eq. 2.1, 2.21-2.25). A lone block rocks like a statue on a pedestal that cannot move: its own
+    A body at rest opens about the pole whose overturning moment first exceeds the weight's
+    (Psycharis, 1990). A lone block rocks like a statue on a pedestal that cannot move: its own
     value is that of pattern 4, and its pattern 3 is NaN. Of three and more blocks the first is the least at
     which any contact opens.
     """

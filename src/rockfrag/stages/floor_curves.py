@@ -22,8 +22,8 @@ FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
 """What peaks are called where the motion is that of a floor above the ground."""
 
 
-def uplift_amplitude(body: Body | Column) -> float:
-    """Peak acceleration above which something rocks, the smallest b/h of any pole [g]; thesis eq. 2.1."""
+def uplift_amplitude(body: Body) -> float:
+    """Peak acceleration above which something rocks, the smallest b/h of any pole [g] (Kirkpatrick, 1927)."""
     if isinstance(body, Block):
         arms = [(pole, body.arm(pole)) for pole in (+1, -1)]
     elif isinstance(body, Column):
@@ -44,7 +44,7 @@ def floor_curves(
     slid: Mapping[tuple[str, str], "SweepData"],
     measures: pd.DataFrame,
     floors: Mapping[str, int],
-    bodies: Mapping[str, Body | Column],
+    bodies: Mapping[str, Body],
     record_set: str,
     level: float,
     rocks_at_once: bool = True,

@@ -228,12 +228,11 @@ def _shaken(
         warnings.simplefilter("ignore", LightBodies)
         return overturns(
             [configuration.body],
-            [motion.acceleration for motion in motions],
-            [motion.dt for motion in motions],
-            scales,
+            motions,
+            scales=scales,
             restitution=[configuration.restitution],
             friction=None if configuration.friction is None else [configuration.friction],
-            vertical=None if vertical is None else [motion.acceleration for motion in vertical],
+            vertical=vertical,
             threads=threads,
         )
 

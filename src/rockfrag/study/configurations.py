@@ -15,7 +15,7 @@ from rockfrag.rocking.measured_restitution import (
     Restitution,
 )
 from rockfrag.rocking.options import FrictionInput, system_of
-from rockfrag.system.blocks import Block, Body, Column, Stack
+from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
 
@@ -42,7 +42,7 @@ class Configuration:
     name: str
     object: str
     pedestal: str
-    body: Body | Column
+    body: Body
     restitution: Restitution = None
     friction: FrictionInput | None = None
 
@@ -160,7 +160,7 @@ def read_configurations(
         if name in found:
             raise row.error("name", f"{name} is given twice")
         try:
-            body = arranged([blocks[one] for one in (object_name, *below)])
+            body = stacked([blocks[one] for one in (*reversed(below), object_name)])
             distinct_file_names([name], checked)
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
@@ -171,15 +171,6 @@ def read_configurations(
 def names_from_above(text: str) -> tuple[str, ...]:
     """Names in a cell that are separated by upright bars."""
     return tuple(name.strip() for name in text.split("|")) if text.strip() else ()
-
-
-def arranged(from_above: list[Block]) -> Body | Column:
-    """Return blocks that stand on each other, the uppermost first, as a block, a stack or a column."""
-    if len(from_above) == 1:
-        return from_above[0]
-    if len(from_above) == 2:
-        return Stack(from_above[1], from_above[0])
-    return Column(tuple(reversed(from_above)))
 
 
 def each_alone(blocks: dict[str, Block]) -> list[Configuration]:

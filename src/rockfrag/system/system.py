@@ -265,19 +265,27 @@ def diagonal(*moments: float) -> Any:
 
 def stands(system: System) -> bool:
     """Whether the bodies above each contact of a planar system have their common centre between its ends."""
-    positions = standing_centres(system)
-    for k in range(system.count):
-        (low, _), (high, _) = contact_ends(system, k)
-        mass = sum(body.mass for body in system.bodies[k:])
-        x = (
-            sum(
-                body.mass * at[0] for body, at in zip(system.bodies[k:], positions[k:], strict=True)
-            )
-            / mass
-        )
-        if not low < x < high or not math.isfinite(x):
-            return False
-    return True
+    return all(
+        math.isfinite(x) and side * x < 0
+        for k in range(system.count)
+        for side, (x, _) in zip((-1, 1), arms_above(system, k), strict=True)
+    )
+
+
+def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
+    """From the left and the right end of contact k to the common centre of what stands on it (x, z) [m]."""
+    x, z = common_centre(system, k)
+    return tuple((x - at[0], z - at[1]) for at in contact_ends(system, k))
+
+
+def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
+    """Common centre of gravity of a planar body and all above it as they stand (x, z) [m]."""
+    masses = [body.mass for body in system.bodies[lowest:]]
+    x, z = (
+        sum(mass * at for mass, at in zip(masses, axis, strict=True)) / sum(masses)
+        for axis in zip(*standing_centres(system)[lowest:], strict=True)
+    )
+    return x, z
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:

@@ -21,7 +21,7 @@ from rockfrag.report.live.frames import frames_svg
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.blocks import Block, Body, Column, Stack
 from rockfrag.units import GRAVITY
 
 MOST_SAMPLES = 70_000
@@ -50,7 +50,7 @@ def live_kernel(
     Parameters
     ----------
     bodies
-        What may be chosen, by the name that a reader sees.
+        What may be chosen, by the name that a reader sees; of more than two blocks only the name is shown.
     motions
         Motions that may be chosen; no more than carry ``MOST_SAMPLES`` samples are taken, the first ones.
     verdicts
@@ -62,16 +62,20 @@ def live_kernel(
     Returns
     -------
     Markup
-        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing.
+        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing; empty if no body is left.
     """
+    known = {name: one for name, one in bodies.items() if not isinstance(one, Column)}
+    if not known:
+        return Markup()
     with warnings.catch_warnings():
         # the page shows pure rocking; where that may be wrong is said in the report's own words
         warnings.simplefilter("ignore", LightBodies)
-        return _element(bodies, carried(motions), verdicts, start)
+        return _element(known, bodies, carried(motions), verdicts, start)
 
 
 def _element(
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, Block | Stack],
+    asked: Mapping[str, Body],
     motions: Sequence[Motion],
     verdicts: pd.DataFrame | None,
     start: Start | None,
@@ -107,6 +111,7 @@ def _element(
     )
     return Markup(
         environment.get_template("live.html.j2").render(
+            left_out=[name for name in asked if name not in bodies],
             frames=frames,
             words=f"{list(bodies)[body]} under {motions[motion].name}: {words}",
             # a name may hold anything, but never the end of the script
@@ -181,7 +186,7 @@ def _motion(motion: Motion) -> dict[str, Any]:
     }
 
 
-def _body(name: str, body: Body) -> dict[str, Any]:
+def _body(name: str, body: Block | Stack) -> dict[str, Any]:
     if isinstance(body, Stack):
         parts = {
             "statue": _block(body.statue),

@@ -11,7 +11,7 @@ from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
-from rockfrag.system.blocks import Block, Body, Vector
+from rockfrag.system.blocks import Block, Stack, Vector
 
 _WIDTH, _HEIGHT, _GROUND = 200, 190, 150
 
@@ -19,7 +19,7 @@ _FALLING = 0.7
 """Rotation at which a falling body is drawn [rad]."""
 
 
-def outlines(body: Body, theta: Sequence[float]) -> list[list[Vector]]:
+def outlines(body: Block | Stack, theta: Sequence[float]) -> list[list[Vector]]:
     """Corners of each block at rotations [rad], from the middle of the base [m]; a pedestal's first."""
     if isinstance(body, Block):
         (angle,) = theta
@@ -60,7 +60,9 @@ def _turned_about(point: Vector, angle: float, pole: Vector) -> Vector:
     return Vector(pole.x + arm.x, pole.y + arm.y)
 
 
-def frames_svg(body: Body, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
+def frames_svg(
+    body: Block | Stack, motion: Motion, amplitudes_g: Sequence[float]
+) -> tuple[Markup, str]:
     """Draw a body at its largest rotation at each amplitude, and say what becomes of it.
 
     Parameters

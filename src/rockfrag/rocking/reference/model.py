@@ -23,7 +23,7 @@ from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import MeasuredRestitution
-from rockfrag.system.blocks import Block, Body, Vector
+from rockfrag.system.blocks import Block, Stack, Vector
 
 State = tuple[int, int]
 Pair = tuple[float, float]
@@ -89,7 +89,7 @@ class Model:
         :func:`rockfrag.rocking.reference.simulate_reference`.
     """
 
-    def __init__(self, body: Body, g: float, restitution: object = None) -> None:
+    def __init__(self, body: Block | Stack, g: float, restitution: object = None) -> None:
         self.g = g
         self.alone = isinstance(body, Block)
         if isinstance(body, Block):
@@ -121,7 +121,7 @@ class Model:
     def terms(
         self, poles: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
-        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (thesis eq. 2.43, 2.51, 2.55, 2.58).
+        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (Spanos, Roussis and Politis, 2001).
 
         ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].
         """
@@ -276,7 +276,7 @@ class Model:
     def impact(
         self, old: State, closing: State, theta: Pair, before: Pair
     ) -> tuple[State, Pair, bool]:
-        """Contact state and angular velocities after an impact (thesis eq. 2.76 to 2.86, mended).
+        """Contact state and angular velocities after an impact (Spanos, Roussis and Politis, 2001).
 
         ``closing`` holds the old pole of each contact that closes, 0 for the others.  Last comes
         whether a measured restitution gave way to the largest with which energy does not grow.
@@ -380,7 +380,7 @@ class Model:
     def _together(
         self, old: State, closing: State, theta: Pair, before: Pair
     ) -> tuple[State, Pair]:
-        """Keep together what met, where no other outcome is possible (thesis, after eq. 2.78)."""
+        """Keep together what met, where no other outcome is possible."""
         new = (0 if closing[0] else old[0], 0 if closing[1] else old[1])
         poles = (float(new[0] or 1), float(new[1] or 1))
         return new, self.projected(poles, new, old, theta, before)
@@ -436,7 +436,7 @@ class LinearModel(Model):
     angles and velocities are dropped.
     """
 
-    def __init__(self, body: Body, g: float, restitution: object = None) -> None:
+    def __init__(self, body: Block | Stack, g: float, restitution: object = None) -> None:
         super().__init__(body, g, restitution)
         self._lone = body if isinstance(body, Block) else None
 
@@ -494,7 +494,7 @@ class Law:
 Laws = dict[int, Law | None]
 
 
-def _checked_laws(body: Body, restitution: object) -> tuple[Laws, Laws]:
+def _checked_laws(body: Block | Stack, restitution: object) -> tuple[Laws, Laws]:
     """Laws of ground and interface by the corner that comes down."""
     name = "position"
     if isinstance(restitution, MeasuredRestitution):
