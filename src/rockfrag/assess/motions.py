@@ -60,7 +60,7 @@ class MotionSet:
     library
         Motions of the set among which these were chosen; empty where all were taken.
     measured
-        Numbers of the library that were needed before.
+        ln (PGV over a measure) of the library that were needed before.
     """
 
     ground: tuple[Motion, ...]
@@ -72,7 +72,7 @@ class MotionSet:
     halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
     worst: bool = False
     library: tuple[Motion, ...] = ()
-    measured: dict[object, Floats] = field(default_factory=dict)
+    measured: dict[Measure, Floats] = field(default_factory=dict)
 
     @property
     def about(self) -> list[Mapping[str, object]]:
@@ -89,15 +89,12 @@ class MotionSet:
         of_all
             Of all motions among which these were chosen.
         """
-        if not of_all:
-            ratios = self.values(PGV) / self.values(measure)
-        elif (key := ("ratios", measure)) in self.measured:
-            ratios = self.measured[key]
-        else:
-            every = self.library or self.ground
-            ratios = np.array([PGV.of(motion) / measure.of(motion) for motion in every])
-            self.measured[key] = ratios
-        return np.log(ratios / VELOCITY_PER_G)
+        if not (of_all and self.library):
+            return np.log(self.values(PGV) / self.values(measure) / VELOCITY_PER_G)
+        if measure not in self.measured:
+            ratios = np.array([PGV.of(motion) / measure.of(motion) for motion in self.library])
+            self.measured[measure] = np.log(ratios / VELOCITY_PER_G)
+        return self.measured[measure]
 
     @cached_property
     def events(self) -> NDArray[np.object_]:
