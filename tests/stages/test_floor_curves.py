@@ -7,10 +7,10 @@ import pytest
 from rockfrag.fragility import with_measures
 from rockfrag.fragility.sweep_data import TableSweep
 from rockfrag.shaketable.swept import displaced
-from rockfrag.stages.floor_curves import export_curves, floor_curves, uplift_amplitude
-from rockfrag.system.blocks import Block, Stack
+from rockfrag.stages.floor_curves import export_curves, floor_curves
+from rockfrag.system.blocks import Block
 
-STATUE, PEDESTAL = Block(0.2, 0.8, 50.0), Block(0.4, 0.4, 60.0)
+STATUE = Block(0.2, 0.8, 50.0)
 FLOORS = {"hall": 0, "loft": 2}
 
 
@@ -51,7 +51,7 @@ def curves():
         ("statue", str(floor)): TableSweep(with_measures(part, measures, columns))
         for floor, part in sweep.groupby("floor", sort=False)
     }
-    return floor_curves(sweeps, {}, measures, FLOORS, {"statue": STATUE}, "abc", 0.90)[0]
+    return floor_curves(sweeps, {}, measures, FLOORS, {"statue": STATUE.system()}, "abc", 0.90)[0]
 
 
 def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves):
@@ -97,7 +97,7 @@ def test_what_slides_is_a_state_of_its_own_between_standing_and_falling(tmp_path
         {("statue", "hall"): TableSweep(sweep.assign(overturned=displaced(sweep)))},
         measures,
         FLOORS,
-        {"statue": STATUE},
+        {"statue": STATUE.system()},
         "abc",
         0.90,
         rocks_at_once=False,
@@ -121,13 +121,3 @@ def test_files_are_one_per_floor_and_measure(curves, tmp_path):
     assert not [name for name in written if name.endswith(".xml") and "loft" in name]
     assert all((tmp_path / name).exists() for name in written)
     assert "Peak Floor Acceleration" in (tmp_path / "fragility_pfa_loft.csv").read_text()
-
-
-def test_stack_rocks_where_its_weaker_part_does():
-    assert uplift_amplitude(STATUE) == pytest.approx(0.25)
-    assert uplift_amplitude(Stack(PEDESTAL, STATUE)) == pytest.approx(0.25)
-    # a slender pedestal goes before its statue, at the b/h of the two together
-    slender = Stack(Block(0.2, 1.2, 60.0), STATUE)
-    both = slender.rigidly_joined()
-    assert uplift_amplitude(slender) == pytest.approx(both.b / both.h)
-    assert both.b / both.h < 0.25

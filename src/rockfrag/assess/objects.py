@@ -1,7 +1,7 @@
 """The object and its pedestal as blocks, what was assumed of them, and what is not known to the digit."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -11,9 +11,11 @@ from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
-from rockfrag.rocking.measured_restitution import Measured, largest_restitution
+from rockfrag.rocking.options import system_of
+from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, Stack
 from rockfrag.system.mesh import Shape, read_shape
+from rockfrag.system.system import System, uplift_ratios
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
@@ -97,36 +99,33 @@ class Objects:
     @property
     def least_uplift(self) -> float:
         """Least peak acceleration of what it stands on at which any contact opens [g]: b/h of a uniform block."""
-        body = self.body
-        arms = [body.common_arm, body.statue_arm] if isinstance(body, Stack) else [body.arm]
-        return min(abs(arm(pole).x) / arm(pole).y for arm in arms for pole in (1, -1))
+        return min(uplift_ratios(self.body.system()))
 
-    def restitution_of(self, body: Body) -> Sequence[Measured] | None:
-        """Restitution of a body as the simulations take it: of a block (right, left), of a stack a pair of them.
+    def system_of(self, body: Body) -> System:
+        """Return what is shaken: a body whose impacts lose what was measured or assumed, and gain no energy.
 
         Parameters
         ----------
         body
-            An arrangement of the object, with or without changes; no impact of it gains energy.
+            An arrangement of the object, with or without changes.
         """
+        system = body.system()
         if self.restitution is None and self.livelier == 1 and not self.round:
-            return None
-        if isinstance(body, Stack):
-            return [
-                self._ratios(body.pedestal, rolls=False),
-                self._ratios(body.contact_statue, self.round),
-            ]
+            return system
         # on the floor it stands on its own base, fixed to its pedestal on that of the pedestal
-        return self._ratios(body, self.round and body.height == self.statue.height)
+        rolls = self.round and body.blocks[-1].height == self.statue.height
+        *below, top = system.carried
+        each = [*(self._ratios(shape, rolls=False) for shape in below), self._ratios(top, rolls)]
+        return system_of(system, restitution=each if below else each[0])
 
-    def _ratios(self, block: Block, rolls: bool) -> tuple[float, float]:
-        right, left = (self._ratio(block, pole, rolls) for pole in (1, -1))
+    def _ratios(self, shape: geometry.Shape, rolls: bool) -> tuple[float, float]:
+        right, left = (self._ratio(shape, pole, rolls) for pole in (1, -1))
         return right, left
 
-    def _ratio(self, block: Block, pole: int, rolls: bool) -> float:
+    def _ratio(self, shape: geometry.Shape, pole: int, rolls: bool) -> float:
         measured = ROLLING if rolls else self.restitution
-        e = block.momentum_restitution(pole) if measured is None else measured
-        return min(max(e, 0.0) * self.livelier, largest_restitution(block, pole))
+        e = geometry.momentum_restitution(shape, pole) if measured is None else measured
+        return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pole))
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
@@ -339,9 +338,11 @@ def _check_restitution(objects: Objects) -> None:
         raise InputError(
             "key restitution: a round base rolls on its rim and is taken to lose nothing; leave it out."
         )
-    body = objects.body
-    blocks = [body.pedestal, body.contact_statue] if isinstance(body, Stack) else [body]
-    most = min(largest_restitution(block) for block in blocks)
+    most = min(
+        geometry.largest_restitution(shape, pole)
+        for shape in objects.body.system().carried
+        for pole in (1, -1)
+    )
     if e > most:
         raise InputError(
             f"key restitution: with {e:g} an impact of this object would gain energy, as its centre of gravity "

@@ -136,8 +136,7 @@ def fixed_to_floor(objects: Objects, peak: float) -> float:
     peak
         Peak acceleration of the floor [m/s²].
     """
-    body = objects.body
-    whole = body if not isinstance(body, Stack) else body.rigidly_joined()
+    whole = objects.body.rigidly_joined()
     arm = min(abs(whole.arm(pole).x) for pole in (1, -1))
     moment = whole.mass * (peak * whole.h - GRAVITY * arm)
     return float(max(moment, 0.0) / whole.width)

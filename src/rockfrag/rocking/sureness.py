@@ -17,9 +17,10 @@ from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, whole_number
 from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import Options, prepared, shaken
-from rockfrag.rocking.inputs import MotionLike, Standing, listed_bodies
+from rockfrag.rocking.inputs import MotionLike, listed_bodies
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput, systems_of
+from rockfrag.system.blocks import SystemLike
 from rockfrag.system.perturbation import perturbed
 from rockfrag.units import GRAVITY
 
@@ -29,7 +30,7 @@ LARGEST_PERTURBATION = 0.1
 
 @named_keywords
 def verdict_sureness(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
@@ -97,7 +98,7 @@ def verdict_sureness(
     rng = np.random.default_rng(seed)
     written = listed_bodies(bodies)
 
-    def outcomes(of: Sequence[Standing], scale: float) -> NDArray[np.bool_]:
+    def outcomes(of: Sequence[SystemLike], scale: float) -> NDArray[np.bool_]:
         own = systems_of(of, friction, restitution, theta0, omega0)
         return shaken(replace(cases, systems=own, scales=scale * cases.scales)).overturned
 

@@ -15,6 +15,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.system.system import System
 
 FALLEN = ("", "pedestal", "statue")
 """Which body overturned, by its number in a matrix of verdicts."""
@@ -49,6 +50,17 @@ class Swept:
     amplitude_g: NDArray[np.float64]
     overturned: NDArray[np.bool_]
     fallen: NDArray[np.uint8]
+
+
+def labels_of(system: System) -> dict[str, str]:
+    """Return what tables of a study call a system: its configuration, its object, with or without a pedestal."""
+    side = "P" if system.count > 1 else "NP"
+    return {"configuration": system.name, "object": system.names[-1], "pedestal": side}
+
+
+def fallen_names(system: System) -> tuple[str, ...]:
+    """Return what tables of a study call the body that fell, by its number in outcomes."""
+    return ("", *system.names) if system.count >= len(FALLEN) else ("", *FALLEN[-system.count :])
 
 
 def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:

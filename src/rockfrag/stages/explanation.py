@@ -78,9 +78,9 @@ def explanation_tables(
     from rockfrag.pedestal.explanation import explain, where_laws_agree
     from rockfrag.pedestal.simulated_explanation import (
         LAW_OF,
-        Case,
         case_ratios,
         factor_cases,
+        ideal_case,
         mass_error_rows,
         perturbed_cases,
         with_references,
@@ -90,9 +90,7 @@ def explanation_tables(
     if settings is None:
         raise ValueError("the study asks for no explanation")
     stacks = tested_stacks(study)
-    ideal_cases = [
-        Case("ideal", 0.0, object_name, s.statue, s) for object_name, s in stacks.items()
-    ]
+    ideal_cases = [ideal_case(object_name, stack) for object_name, stack in stacks.items()]
     rng = np.random.default_rng(study.seed)
     cases = list(ideal_cases)
     for object_name, stack in stacks.items():
@@ -246,11 +244,11 @@ def _set_simulated(
 
 def tested_stacks(study: Study) -> dict[str, Stack]:
     """Stack of each object that is tested with and without a pedestal; of several the first."""
-    lone = {one.object for one in study.configurations if one.label == "NP"}
+    lone = {one.names[-1] for one in study.configurations if one.count == 1}
     stacks: dict[str, Stack] = {}
     for one in study.configurations:
-        if isinstance(one.body, Stack) and one.object in lone:
-            stacks.setdefault(one.object, one.body)
+        if one.count == 2 and one.names[-1] in lone:
+            stacks.setdefault(one.names[-1], study.stacks[one.name])
     return stacks
 
 

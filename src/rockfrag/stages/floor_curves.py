@@ -9,8 +9,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.rocking.inputs import least_uplift
-from rockfrag.system.blocks import Block, Body, Column
+from rockfrag.system.system import System, uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
@@ -20,18 +19,6 @@ GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
 FLOOR_MEASURES = ("pga_g", "pgv_cm_s")
 FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
 """What peaks are called where the motion is that of a floor above the ground."""
-
-
-def uplift_amplitude(body: Body | Column) -> float:
-    """Peak acceleration above which something rocks, the smallest b/h of any pole [g]; thesis eq. 2.1."""
-    if isinstance(body, Block):
-        arms = [(pole, body.arm(pole)) for pole in (+1, -1)]
-    elif isinstance(body, Column):
-        return least_uplift(body.system(), 1.0)
-    else:
-        arms = [(pole, body.statue_arm(pole)) for pole in (+1, -1)]
-        arms += [(pole, body.common_arm(pole)) for pole in (+1, -1)]
-    return min(-pole * arm.x / arm.y for pole, arm in arms)
 
 
 def floor_measures(level: int) -> tuple[str, ...]:
@@ -44,7 +31,7 @@ def floor_curves(
     slid: Mapping[tuple[str, str], "SweepData"],
     measures: pd.DataFrame,
     floors: Mapping[str, int],
-    bodies: Mapping[str, Body | Column],
+    systems: Mapping[str, System],
     record_set: str,
     level: float,
     rocks_at_once: bool = True,
@@ -61,8 +48,8 @@ def floor_curves(
         Intensity measures of the motions as recorded.
     floors
         Level of each floor by its label; level 0 moves as the ground does.
-    bodies
-        Body of each configuration.
+    systems
+        Systems by the name of their configuration.
     record_set
         Digest of the motions, which goes into the table.
     level
@@ -94,7 +81,7 @@ def floor_curves(
         height = floors[floor]
         columns = floor_measures(height)
         motions = sweep.motions()
-        threshold = uplift_amplitude(bodies[name])
+        threshold = min(uplift_ratios(systems[name]))
         at_uplift = with_measures(motions.assign(amplitude_g=threshold), measures, [*columns])
         for column in columns:
             labels = {"configuration": name, "floor": floor, "floor_level": height}

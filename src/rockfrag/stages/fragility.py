@@ -46,7 +46,7 @@ def run(job: Job[Study]) -> Results:
         data.slid,
         measures,
         job.study.floors,
-        {one.name: one.body for one in job.study.configurations},
+        {one.name: one for one in job.study.configurations},
         record_set,
         settings.confidence,
         rocks_at_once=not (job.study.slides or job.study.vertical),

@@ -7,13 +7,11 @@ import pandas as pd
 
 from rockfrag.shaketable.swept import Swept, read_swept
 from rockfrag.stages.job import Job
-from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
+from rockfrag.system.system import System
 
 
-def sweeps_of(
-    job: Job[Study], configuration: Configuration, *, slid: bool = False
-) -> Iterator[Swept]:
+def sweeps_of(job: Job[Study], configuration: System, *, slid: bool = False) -> Iterator[Swept]:
     """Yield the verdicts of a configuration, see :func:`rockfrag.shaketable.swept.read_swept`."""
     study = job.study
     jobs = range(study.sweep_jobs)

@@ -105,9 +105,20 @@ class System:
         return sum(body.mass for body in self.bodies)
 
     @property
+    def height(self) -> float:
+        """Height of all bodies on each other [m]."""
+        return sum(body.height for body in self.bodies)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Name of each body from below: its own, or its number."""
         return tuple(body.name or f"body {k + 1}" for k, body in enumerate(self.bodies))
+
+    def held(self) -> "System":
+        """Return the system with contacts that never slide."""
+        return replace(
+            self, contacts=tuple(replace(contact, friction=None) for contact in self.contacts)
+        )
 
     def in_plane(self, direction_deg: float = 0.0) -> "System":
         """Return the planar system that moves in the vertical plane of a direction [degrees]."""
@@ -173,6 +184,36 @@ def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
     assert isinstance(body.inertia, float | int)
     x, y = geometry.turned(body.centre[0] - (base.left + base.right) / 2, body.centre[2], tilt)
     return geometry.Shape((base.right - base.left) / 2, body.mass, body.inertia, x, y)
+
+
+def uplift_ratios(system: System) -> tuple[float, ...]:
+    """Least horizontal acceleration over g that opens each contact of a planar system at rest, from below.
+
+    A full contact opens about the pivot whose overturning moment first exceeds the weight's (thesis eq. 2.1,
+    2.21-2.25).
+    """
+    if system.count == 1:
+        arms = [[geometry.arm(system.shapes[0], pivot) for pivot in (+1, -1)]]
+    elif system.count == 2:
+        arms = [
+            [arm(system.pile, pivot) for pivot in (+1, -1)]
+            for arm in (geometry.common_arm, geometry.statue_arm)
+        ]
+    else:
+        arms = [_arms_above(system, k) for k in range(system.count)]
+    # a body with its centre below its pivots never opens
+    return tuple(min(abs(x) / y if y > 0 else math.inf for x, y in pair) for pair in arms)
+
+
+def _arms_above(system: System, k: int) -> list[tuple[float, float]]:
+    """From the ends of contact k to the common centre of gravity of the bodies above it [m]."""
+    masses = [body.mass for body in system.bodies[k:]]
+    centres = standing_centres(system)[k:]
+    x, y = (
+        sum(mass * centre[axis] for mass, centre in zip(masses, centres, strict=True)) / sum(masses)
+        for axis in (0, 1)
+    )
+    return [(x - end[0], y - end[1]) for end in contact_ends(system, k)]
 
 
 def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
@@ -265,19 +306,8 @@ def diagonal(*moments: float) -> Any:
 
 def stands(system: System) -> bool:
     """Whether the bodies above each contact of a planar system have their common centre between its ends."""
-    positions = standing_centres(system)
-    for k in range(system.count):
-        (low, _), (high, _) = contact_ends(system, k)
-        mass = sum(body.mass for body in system.bodies[k:])
-        x = (
-            sum(
-                body.mass * at[0] for body, at in zip(system.bodies[k:], positions[k:], strict=True)
-            )
-            / mass
-        )
-        if not low < x < high or not math.isfinite(x):
-            return False
-    return True
+    each = (_arms_above(system, k) for k in range(system.count))
+    return all(left > 0 > right for (left, _), (right, _) in each)
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:
