@@ -40,7 +40,7 @@ def test_without_the_key_momentum_is_conserved():
     [
         ({"blocks": {"X": 0.9}}, "blocks: expected names of the specimens T1, .*, found X"),
         ({"blocks": {"T1": 1.1}}, "1.1 would gain energy"),
-        ({"law": "newton", "blocks": {"T1": 0.9}}, "expected position, couple or ratio"),
+        ({"law": "newton", "blocks": {"T1": 0.9}}, "expected one of position, couple, ratio"),
         ({"blocks": {"T1": "a"}}, "blocks.T1: expected a ratio"),
         ({}, "restitution"),
     ],

@@ -14,11 +14,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.laws import BUILT_IN
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.mass_bias import ratio_bias
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.measured_restitution import LAWS, Law, MeasuredRestitution
+from rockfrag.rocking.measured_restitution import MeasuredRestitution
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
@@ -30,6 +31,9 @@ BATCH = 64
 
 RUNGS = 8
 """Rungs of a ladder that are climbed at a time: whatever has fallen climbs no further."""
+
+LAWS = BUILT_IN[1:]
+"""Laws that are tried, the usual one first."""
 
 REFERENCE = "ideal"
 LARGEST_RESTITUTION = 0.995
@@ -180,7 +184,7 @@ _RESTITUTIONS: Mapping[str, tuple[int, tuple[str, ...]]] = {
 }
 """Block from below whose restitution a factor multiplies, and the contacts that have it."""
 
-LAW_OF: Mapping[str, tuple[str, Law]] = {
+LAW_OF: Mapping[str, tuple[str, str]] = {
     name if law == LAWS[0] else f"{name}_{law}": (name, law)
     for name in _RESTITUTIONS
     for law in LAWS

@@ -182,6 +182,7 @@ def inversion_table(
     the ratios when the two departures act together in one simulation, for the closest pairs and for friction of
     both interfaces; the others have none.
     """
+    from rockfrag.laws import law_names
     from rockfrag.pedestal.inversion import FRICTION, NEUTRAL, friction_departures, invert
     from rockfrag.pedestal.simulated_explanation import (
         DEPARTURES,
@@ -189,7 +190,6 @@ def inversion_table(
         case_ratios,
         departed_case,
     )
-    from rockfrag.rocking.measured_restitution import LAWS
 
     settings = study.more.explanation
     if settings is None or not settings.wanted_percent:
@@ -202,7 +202,7 @@ def inversion_table(
         neutral["pedestal_width_cm"] = 100 * widths.pop()
     step = float(np.log1p(study.protocol_step_percent / 100))
     # restitution by the first law; what it finds is judged beside the others
-    other_laws = [factor for factor, (_, law) in LAW_OF.items() if law != LAWS[0]]
+    other_laws = [factor for factor, (_, law) in LAW_OF.items() if law != law_names()[0]]
     ratios = ratios[~ratios["factor"].isin(other_laws)]
     if friction is not None:
         ratios = pd.concat([ratios, friction_departures(friction)], ignore_index=True)

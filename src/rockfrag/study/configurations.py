@@ -8,7 +8,7 @@ from typing import Any
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names
 from rockfrag.plausibility import check_density
-from rockfrag.rocking.measured_restitution import Law, Measured, MeasuredRestitution
+from rockfrag.rocking.measured_restitution import Measured, MeasuredRestitution
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Block, Body, Column, Stack
 from rockfrag.system.system import System
@@ -125,7 +125,7 @@ def each_alone(blocks: Mapping[str, Block]) -> list[System]:
     return [_named(name, [name], blocks) for name in blocks]
 
 
-def with_restitution(system: System, measured: Mapping[str, Measured], law: Law) -> System:
+def with_restitution(system: System, measured: Mapping[str, Measured], law: str) -> System:
     """Return a system whose bodies come off impacts as was measured of each alone.
 
     Parameters

@@ -14,8 +14,8 @@ import pandas as pd
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name, is_file
+from rockfrag.laws import law_names
 from rockfrag.records.catalogue import read_catalogue
-from rockfrag.rocking.measured_restitution import LAWS
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
@@ -200,7 +200,7 @@ def _measured(
                 f"{key}.blocks: expected names of the specimens {', '.join(specimens)}, found {name}."
             )
         measured[name] = tuple(value) if isinstance(value, list) else value
-    law = content.get("law", LAWS[0])
+    law = content.get("law", law_names()[0])
     try:
         return tuple(with_restitution(one, measured, law) for one in chosen)
     except InputError as error:
