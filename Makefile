@@ -55,12 +55,12 @@ lint: .venv/installed
 	@$(RUN) ruff format --check .
 	@$(RUN) mypy
 	@$(RUN) codespell_lib
-	@.venv/bin/python .venv/bin/snakefmt --check workflow
+	@.venv/bin/python .venv/bin/snakefmt --check workflow thesis/src
 	@$(RUN) snakemake --lint
 
 format: .venv/installed
 	@$(RUN) ruff format .
-	@.venv/bin/python .venv/bin/snakefmt workflow
+	@.venv/bin/python .venv/bin/snakefmt workflow thesis/src
 
 fuzz: .venv/installed
 	@$(RUN) tests.fuzz --inputs $(INPUTS)
@@ -80,11 +80,11 @@ bench: .venv/installed
 	@.venv/bin/python benchmarks/run.py
 	@.venv/bin/python benchmarks/waits.py
 
-.venv/installed: pyproject.toml constraints.txt $(wildcard hashes/*.txt)
+.venv/installed: pyproject.toml thesis/pyproject.toml constraints.txt $(wildcard hashes/*.txt)
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; name another with make PYTHON=…")'
 	@test -x .venv/bin/python || "$(PYTHON)" -m venv .venv
 	@echo "Installing into .venv (once)"
 	@if test -f "$(HASHES)"; then $(PIP) --require-hashes --no-deps --requirement "$(HASHES)" && \
-		$(PIP) --no-deps --no-build-isolation --editable .; \
-		else $(PIP) --constraint constraints.txt --editable ".[workflow,test,lint]"; fi
+		$(PIP) --no-deps --no-build-isolation --editable . --editable thesis; \
+		else $(PIP) --constraint constraints.txt --editable ".[workflow,test,lint]" --editable thesis; fi
 	@touch .venv/installed

@@ -2,9 +2,11 @@
 
 import importlib
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -30,6 +32,23 @@ def test_version_is_one():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "rockfrag.__version__"}
     assert rockfrag.__version__ == citation["version"]
+    thesis = tomllib.loads((ROOT / "thesis" / "pyproject.toml").read_text(encoding="utf-8"))
+    assert thesis["project"]["version"] == rockfrag.__version__
+
+
+@pytest.mark.slow
+def test_the_wheel_of_the_library_has_no_word_of_the_thesis(tmp_path):
+    # what is built leaves files beside the source, which later wheels would hold
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, tmp_path)
+    shutil.copytree(ROOT / "src", tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
+    subprocess.run([*command, "."], check=True, cwd=tmp_path)
+    with zipfile.ZipFile(next(tmp_path.glob("rockfrag-*.whl"))) as wheel:
+        assert len(wheel.namelist()) > 400
+        for name in wheel.namelist():
+            words = set(re.findall(rb"[a-z]*thesis", name.encode() + wheel.read(name).lower()))
+            assert words <= {b"hypothesis", b"parenthesis"}, name
 
 
 def test_every_dependency_is_pinned():
@@ -60,7 +79,7 @@ SUBPACKAGES = (
 @pytest.mark.parametrize("package", SUBPACKAGES)
 def test_every_public_name_is_listed_and_loads(package):
     module = importlib.import_module(f"rockfrag{package}")
-    assert len(module.__all__) >= 7
+    assert len(module.__all__) >= 6
     assert set(module.__all__) <= set(dir(module))
     for name in module.__all__:
         # functions, classes and subpackages; a few are constants, which have no name of their own

@@ -89,7 +89,7 @@ def make_parser() -> argparse.ArgumentParser:
     play.set_defaults(run=_play)
 
     check = commands.add_parser("check-config", help="check the configuration of a study")
-    check.add_argument("file", metavar="FILE", help="configuration, such as config/thesis.yaml")
+    check.add_argument("file", metavar="FILE", help="configuration, such as config/config.yaml")
     check.add_argument("--quiet", action="store_true", help="say only what is wrong or doubtful")
     check.set_defaults(run=_check_config)
     return parser

@@ -18,6 +18,7 @@ from jsonschema import Draft202012Validator, ValidationError
 from jsonschema.validators import extend
 
 from rockfrag.errors import InputError
+from rockfrag.plugins import plugins
 from rockfrag.units import other_names, quantity, split_name
 
 LARGEST_WHOLE = 2**53
@@ -28,9 +29,12 @@ _Schema = Mapping[str, Any]
 
 @cache
 def read_schema(name: str) -> dict[str, Any]:
-    """Read the schema of one kind of file: ``study``, ``measured_table``, ``building`` or ``shaker``."""
+    """Read the schema of one kind of file, such as ``building``; of a ``study`` with the keys of plugins."""
     text = files("rockfrag").joinpath("schema.json").read_text(encoding="utf-8")
     schema: dict[str, Any] = json.loads(text)["$defs"][name]
+    if name == "study":
+        for plugin in plugins().values():
+            schema["properties"] |= plugin.schema
     return schema
 
 

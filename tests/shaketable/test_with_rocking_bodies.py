@@ -12,10 +12,10 @@ from rockfrag.rocking import overturns
 from rockfrag.shaketable.high_pass import filter_effect
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep as read_sweep
-from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants
 from rockfrag.shaketable.shaker import Shaker, limits_g
 from rockfrag.shaketable.steps import GeometricSteps
 from rockfrag.system.blocks import Block, Stack
+from rockfrag_thesis.building_sensitivity import Specimen, building_sensitivity, building_variants
 
 BUILDING = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
 TOWERS = {

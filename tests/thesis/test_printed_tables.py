@@ -11,7 +11,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.study.loading import load_study
 from rockfrag.system.blocks import Block, Stack
-from rockfrag.thesis.printed_tables import (
+from rockfrag_thesis.printed_tables import (
     FOLDER,
     TABLE_3_1,
     TABLE_3_3,

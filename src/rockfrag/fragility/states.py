@@ -55,7 +55,7 @@ class ThreeStates:
     Attributes
     ----------
     threshold_g
-        Peak acceleration above which the body rocks [g], exact (thesis eq. 2.1: a > (b/h) g).
+        Peak acceleration above which the body rocks [g], exact (Kirkpatrick, 1927: a > (b/h) g).
     rock
         Curve of P(rock | IM); None where the measure is the peak acceleration itself, for which
         P(rock) steps from 0 to 1 at the threshold.

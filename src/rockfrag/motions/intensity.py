@@ -37,7 +37,7 @@ def pga(motion: Motion) -> float:
 
 
 def pgv(motion: Motion) -> float:
-    """Peak absolute velocity from rest [m/s], between samples too; thesis Table 3.3.
+    """Peak absolute velocity from rest [m/s], between samples too.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def pgv(motion: Motion) -> float:
 
 
 def pgd(motion: Motion) -> float:
-    """Peak absolute displacement from rest [m], between samples too; thesis Table 3.3.
+    """Peak absolute displacement from rest [m], between samples too.
 
     Parameters
     ----------
@@ -398,7 +398,7 @@ def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, f
 
 
 def uplift_ratio(motion: Motion, alpha: float) -> float:
-    """Peak acceleration over that which starts rocking, a/(g tan α) [-]; thesis eq. 2.1.
+    """Peak acceleration over that which starts rocking, a/(g tan α) [-] (Kirkpatrick, 1927).
 
     Parameters
     ----------
@@ -433,7 +433,7 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
     alpha
         Critical angle of the block [rad].
     p
-        Frequency parameter of the block [1/s]; thesis eq. 2.16.
+        Frequency parameter of the block [1/s] (Housner, 1963).
 
     Returns
     -------

@@ -105,7 +105,7 @@ def overturns(
     restitution
         A list with one entry per body, each as in :func:`simulate`; None conserves momentum in all.
     linear
-        Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
+        Use the linearised equations of motion (Housner, 1963; Psycharis, 1990).
     friction
         A list with one entry per body, each as in :func:`simulate`; or one number, one ``Friction`` or one mapping
         ``{"ground": …, "interface": …}`` for all; None: nothing slides.

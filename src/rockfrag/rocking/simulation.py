@@ -57,9 +57,9 @@ def simulate(
     restitution
         Measured ratio of angular velocities of an impact: a number, or for several bodies
         ``{"ground": …, "interface": …}`` or (ground, interface), or a :class:`MeasuredRestitution` with its law;
-        None, the default, conserves momentum (thesis eq. 2.14, 2.76-2.86).
+        None, the default, conserves momentum (Housner, 1963; Spanos, Roussis and Politis, 2001).
     linear
-        Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
+        Use the linearised equations of motion (Housner, 1963; Psycharis, 1990).
     friction
         Coefficient of friction of all contacts, or ``{"ground": …, "interface": …}``, or (ground, interface) of a
         stack; ``Friction(static, kinetic)`` or a pair may stand in place of each number, and numbers may be

@@ -1,4 +1,4 @@
-"""Rocking spectra: peak rotation and velocity of geometrically similar blocks (thesis section 2.3).
+"""Rocking spectra: peak rotation and velocity of geometrically similar blocks (Makris and Konstantinidis, 2003).
 
 As a response spectrum shows oscillators of one damping over their period, a rocking spectrum shows blocks
 of one slenderness over 2π/p (Makris and Konstantinidis 2003, Earthquake Eng. Struct. Dyn. 32, 265-289).
@@ -63,7 +63,7 @@ class RockingSpectrum:
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
     """Return the uniform block of critical angle α [rad] and apparent period 2π/p [s].
 
-    Its size follows from p = √(3g/4R) (thesis eq. 2.17); its density is 1000 kg/m³ for a depth of
+    Its size follows from p = √(3g/4R) (Housner, 1963); its density is 1000 kg/m³ for a depth of
     1 m, which matters to nothing.
 
     Parameters
@@ -117,7 +117,7 @@ def rocking_spectrum(
     alpha
         Critical angles [rad], one or several, shape (j,).
     restitution
-        The same measured restitution for all; None conserves momentum (thesis eq. 2.14).
+        The same measured restitution for all; None conserves momentum (Housner, 1963).
     friction
         The same friction for all, as in :func:`rockfrag.rocking.simulate`; None: nothing slides.
     vertical

@@ -6,6 +6,7 @@ use. Only what is in the user's records is left to :mod:`rockfrag.study.records`
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name, is_file
 from rockfrag.laws import law_names
+from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
@@ -136,17 +138,21 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
             ),
             confidence=content["fragility"]["confidence"],
         ),
-        compare_with=content.get("compare_with"),
         keep_going=content.get("keep_going", False),
         slides="friction" in content,
         vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
     )
+    asked = plugins_asked(content)
+    study = replace(
+        study, added={name: one.settings(content, study) for name, one in asked.items()}
+    )
     _check_names(study)
     _check_records_exist(study)
-    _check_optional_parts(study)
-    _check_mechanics(study)
+    if study.more.measured_tests is not None:
+        _check_measured_tests(study, study.more.measured_tests)
+    _check_vertical(study)
     return study
 
 
@@ -248,38 +254,10 @@ def _check_records_exist(study: Study) -> None:
         check_file(path, f"{study.catalogue_file}: column file")
 
 
-def _check_optional_parts(study: Study) -> None:
-    if study.more.explanation is not None and not study.has_pairs:
-        raise InputError(
-            f"{study.source}: key explanation: expected an object tested with and without a pedestal "
-            "among the configurations."
-        )
-    if study.more.sensitivity is not None:
-        _check_varied_building(study)
-    if study.more.measured_tests is not None:
-        _check_measured_tests(study, study.more.measured_tests)
-
-
-def _check_mechanics(study: Study) -> None:
-    """Refuse what is not simulated with friction or with vertical motion."""
-    where = f"{study.source}: key {'friction' if study.slides else 'vertical'}"
-    if (study.slides or study.vertical) and study.more.explanation is not None:
-        raise InputError(
-            f"{where}: the departures of the key explanation rock without sliding under horizontal motion; "
-            "leave one of the two out (explanation.friction tries coefficients)."
-        )
-    if (study.slides or study.vertical) and study.compare_with is not None:
-        raise InputError(
-            f"{where}: what the key compare_with compares with rocks without sliding under horizontal motion; "
-            "leave one of the two out."
-        )
+def _check_vertical(study: Study) -> None:
+    """Refuse vertical motion of which the catalogue names no record, or that processing would cut elsewhere."""
     if not study.vertical:
         return
-    if study.more.sensitivity is not None:
-        raise InputError(
-            f"{study.source}: key vertical: the buildings of the key building_sensitivity are shaken "
-            "horizontally; leave one of the two out."
-        )
     for row in study.catalogue.to_dict("records"):
         if not row["vertical"]:
             raise InputError(
@@ -292,24 +270,6 @@ def _check_mechanics(study: Study) -> None:
                 f"{study.source}: key motions.processing[{i}]: {step['step']} looks at one component, and the "
                 "vertical one would no longer belong to it; leave it out or use trim and scale."
             )
-
-
-def _check_varied_building(study: Study) -> None:
-    """Raise where the sensitivity has no building, or names floors or levels that it does not have."""
-    where = f"{study.source}: key building_sensitivity"
-    if study.building is None:
-        raise InputError(f"{where}: expected the key building too, which it varies.")
-    for i, levels in enumerate((study.more.sensitivity or {}).get("floors", ())):
-        for label, level in levels.items():
-            key = f"{where}.floors[{i}].{label}"
-            if label not in study.floors:
-                raise InputError(
-                    f"{key}: expected a floor of the building, one of {', '.join(study.floors)}."
-                )
-            if level > study.building.storeys:
-                raise InputError(
-                    f"{key}: expected a level up to {study.building.storeys}, found {level}."
-                )
 
 
 def _check_measured_tests(study: Study, path: Path) -> None:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -69,8 +69,6 @@ class Study:
         By how much the laboratory raises the amplitude from one run to the next [%].
     fragility
         Settings of the fragility curves.
-    compare_with
-        ``thesis`` if the study is compared with the thesis that these tests come from, or None.
     keep_going
         Whether records that cannot be used are left out, and said to be, instead of ending the study.
     slides
@@ -80,7 +78,9 @@ class Study:
     write_motions
         Format in which the motions of all floors are written too, or None.
     more
-        Optional parts: shaker, measured tests, sensitivity to the building, explanation.
+        Optional parts: shaker, measured tests.
+    added
+        Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`.
     """
 
     name: str
@@ -99,12 +99,12 @@ class Study:
     amplitudes: Amplitudes
     protocol_step_percent: float
     fragility: FragilitySettings
-    compare_with: str | None
     keep_going: bool
     slides: bool
     vertical: bool
     write_motions: str | None
     more: Supplementary
+    added: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def summary(self) -> str:

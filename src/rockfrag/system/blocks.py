@@ -1,6 +1,6 @@
 """Rigid blocks and stacks of two: what every integrator, fast or plain, starts from.
 
-Conventions (thesis chapter 2, ``docs/derivation.md``): a rotation θ > 0 is clockwise and its pole is the
+Conventions (``docs/derivation.md``): a rotation θ > 0 is clockwise and its pole is the
 right corner, s = +1; an acceleration a > 0 of the ground pushes blocks towards θ < 0.  Lengths are read
 in the standing block's frame, x to the right and y up, and
 R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwise.
@@ -317,14 +317,14 @@ class Block:
         return geometry.pole_inertia(self.shape, pole)
 
     def frequency(self, pole: int = 1, g: float = GRAVITY) -> float:
-        """Frequency parameter p = √(m g R / I_O) [1/s]; thesis eq. 2.16 with its square mended."""
+        """Frequency parameter p = √(m g R / I_O) [1/s] (Housner, 1963)."""
         return geometry.frequency(self.shape, pole, g)
 
     def momentum_restitution(self, pole_before: int = 1) -> float:
         """Ratio of angular velocities after and before an impact that conserves momentum [-].
 
-        The block turns about ``pole_before`` and comes down on the other pole (Housner 1963; thesis
-        eq. 2.12, 2.14: 1 - 1.5 sin²α for a uniform block).
+        The block turns about ``pole_before`` and comes down on the other pole (Housner, 1963:
+        1 - 1.5 sin²α for a uniform block).
         """
         return geometry.momentum_restitution(self.shape, -pole_before)
 
@@ -342,7 +342,7 @@ class Stack:
     Parameters
     ----------
     pedestal, statue
-        The lower and the upper block (blocks 1 and 2 of the thesis).
+        The lower and the upper block (blocks 1 and 2).
     offset
         Distance of the middle of the statue's base to the right of the pedestal's middle [m].
 
@@ -447,7 +447,7 @@ class Stack:
     def reach(self, ground_pole: int, statue_pole: int) -> Vector:
         """Vector d from the pedestal's pole to the statue's pole as they stand [m].
 
-        Its length is l (poles on the same side) or l' (opposite sides) of thesis eq. 2.61, 2.63.
+        Its length is l (poles on the same side) or l' (opposite sides) (``docs/derivation.md``).
         """
         return Vector(*geometry.reach(self.pile, ground_pole, statue_pole))
 
@@ -456,7 +456,7 @@ class Stack:
         return Vector(*geometry.statue_arm(self.pile, statue_pole))
 
     def common_arm(self, ground_pole: int) -> Vector:
-        """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
+        """Vector from the pedestal's pole to the common centre of gravity [m]."""
         return Vector(*geometry.common_arm(self.pile, ground_pole))
 
     @property

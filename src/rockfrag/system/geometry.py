@@ -168,7 +168,7 @@ def statue_arm(pile: Pile, pole: int) -> tuple[float, float]:
 
 
 def common_arm(pile: Pile, pole: int) -> tuple[float, float]:
-    """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
+    """Vector from the pedestal's pole to the common centre of gravity [m]."""
     m1, m2 = pile.pedestal.mass, pile.statue.mass
     x1, y1 = arm(pile.pedestal, pole)
     dx, dy = reach(pile, pole, 1)

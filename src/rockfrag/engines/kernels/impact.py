@@ -1,8 +1,8 @@
 """Impacts: what the velocities are after contacts have closed.
 
 Momentum decides first: point impact, no bounce, no impulse at a pole that leaves.  The momentum before is
-projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; thesis eq. 2.12,
-2.76-2.86).
+projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; Housner, 1963;
+Spanos, Roussis and Politis, 2001).
 
 A measured restitution then says at which *rate* the closing contact comes off: ω1⁺ of the ground, ω2⁺ - ω1⁺ of the
 interface.  The laws for that rate have a file each in ``rockfrag.laws`` (``docs/restitution.md``); the rest is
@@ -155,7 +155,7 @@ def _admissible(body, state, closes1, closes2, moved):
                 continue
             if _pushed(body, state, (n1, n2), (w1, w2), test):
                 return n1, n2, w1, w2, True
-    # no admissible solution: what met stays together (thesis, after eq. 2.78)
+    # no admissible solution: what met stays together
     n1 = 0 if free1 else c1
     n2 = 0 if free2 else c2
     w1, w2 = stuck(body, state, n1, n2)
@@ -297,7 +297,7 @@ def mass_matrix(two, cosine, sine):
 
 @inlined_kernel
 def ground_impact(before, after, product, turn, omega1, omega2):
-    """Velocities after the ground closes (thesis eq. 2.68-2.71): both momenta about the new poles.
+    """Velocities after the ground closes (Psycharis, 1990): both momenta about the new poles.
 
     Parameters
     ----------

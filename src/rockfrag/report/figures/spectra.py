@@ -1,4 +1,4 @@
-"""Response spectra and rocking spectra of ground motions side by side (thesis section 2.3)."""
+"""Response spectra and rocking spectra of ground motions side by side."""
 
 import math
 from collections.abc import Sequence

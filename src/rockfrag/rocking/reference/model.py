@@ -121,7 +121,7 @@ class Model:
     def terms(
         self, poles: State, theta: Pair, omega: Pair, pull: Pair
     ) -> tuple[float, float, float, float, float]:
-        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (thesis eq. 2.43, 2.51, 2.55, 2.58).
+        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ (Spanos, Roussis and Politis, 2001).
 
         ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].
         """
@@ -276,7 +276,7 @@ class Model:
     def impact(
         self, old: State, closing: State, theta: Pair, before: Pair
     ) -> tuple[State, Pair, bool]:
-        """Contact state and angular velocities after an impact (thesis eq. 2.76 to 2.86, mended).
+        """Contact state and angular velocities after an impact (Spanos, Roussis and Politis, 2001).
 
         ``closing`` holds the old pole of each contact that closes, 0 for the others.  Last comes
         whether a measured restitution gave way to the largest with which energy does not grow.
@@ -380,7 +380,7 @@ class Model:
     def _together(
         self, old: State, closing: State, theta: Pair, before: Pair
     ) -> tuple[State, Pair]:
-        """Keep together what met, where no other outcome is possible (thesis, after eq. 2.78)."""
+        """Keep together what met, where no other outcome is possible."""
         new = (0 if closing[0] else old[0], 0 if closing[1] else old[1])
         poles = (float(new[0] or 1), float(new[1] or 1))
         return new, self.projected(poles, new, old, theta, before)
