@@ -145,11 +145,12 @@ def _law_of(name: str, law: str, value: object, shape: geometry.Shape, lone: boo
     right, left = (_told(name, law, shape, *one) for one in zip(both, (+1, -1), strict=True))
     if lone:
         # what was measured is the ratio of the lone body, unless its law makes another one of it
-        both = tuple(
-            number if kernel_law == ratio.NUMBER else measured
-            for (kernel_law, number), measured in zip((right, left), both, strict=True)
-        )
+        both = _of_lone(right, both[0]), _of_lone(left, both[1])
     return ImpactLaw("ratio" if lone else law, *both)
+
+
+def _of_lone(told: Told, measured: float) -> float:
+    return told[1] if told[0] == ratio.NUMBER else measured
 
 
 def _told(name: str, law: str, shape: geometry.Shape, measured: float, pivot: int) -> Told:

@@ -49,7 +49,7 @@ def _statements(job: Job[Study]) -> Results:
         job.motions("motions/ground"),
         seed=study.seed,
         threads=job.threads,
-        stacks=study.stacks,
+        assemblies=study.stacks,
     )
     yield "claims_theory", theory
     if not study.has_pairs:

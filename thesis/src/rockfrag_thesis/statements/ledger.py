@@ -77,7 +77,7 @@ def theory_ledger(
     seed: int,
     free_rocking: FreeRocking | None = None,
     threads: int | None = None,
-    stacks: Mapping[str, Stack] | None = None,
+    assemblies: Mapping[str, Stack] | None = None,
 ) -> pd.DataFrame:
     """Compute C1 to C24 for specimens and ground motions.
 
@@ -86,7 +86,7 @@ def theory_ledger(
     Parameters
     ----------
     specimens
-        Blocks by name.  A block named "P" is the pedestal: without ``stacks`` each other block is put on it.
+        Blocks by name.  A block named "P" is the pedestal: without ``assemblies`` each other block is put on it.
     motions
         Ground motions at their recorded amplitude.
     seed
@@ -95,7 +95,7 @@ def theory_ledger(
         Measured free rocking by specimen: times [s] and rotations [rad] of a history (C5).
     threads
         Threads to use; the results do not depend on it.
-    stacks
+    assemblies
         Stacks by name.
 
     Returns
@@ -108,7 +108,7 @@ def theory_ledger(
     InputError
         If a measured history cannot be used.
     """
-    setting = make_setting(specimens, motions, seed, free_rocking, threads, stacks)
+    setting = make_setting(specimens, motions, seed, free_rocking, threads, assemblies)
     return _table(_row(one, setting, "simulated") for one in _statements(theory=True))
 
 
