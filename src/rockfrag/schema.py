@@ -122,6 +122,9 @@ def _with_text_keys(value: Any, key: str) -> Any:
 
 def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
     """Express every quantity in the unit of its usual key, whatever key it was given under."""
+    if isinstance(value, list):
+        items = schema.get("items", {})
+        return [_in_usual_units(one, items, f"{key}[{i}]") for i, one in enumerate(value)]
     if not isinstance(value, Mapping):
         return value
     properties = schema.get("properties", {})

@@ -179,8 +179,9 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    ladder = make_ladder(motions, measure, asked, FEW_LEVELS if brief else LEVELS)
     objects = request.objects
+    few = brief or objects.many
+    ladder = make_ladder(motions, measure, asked, FEW_LEVELS if few else LEVELS)
     bodies = objects.arrangements
     if brief:
         bodies = dict(list(bodies.items())[:1])
@@ -188,7 +189,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     now = next(iter(arrangements.values()))
     target = _target(level, hazard, request.years)
     conversion = find_conversion(now, motions, request.records) if level else None
-    moved = _moved(request, motions.thinned() if brief else motions, measure, asked)
+    moved = _moved(request, motions.thinned() if few else motions, measure, asked)
     both_sides = {one.name: one.sides for one in moved}
     shifts = {"model": BETA_MODEL}
     if not request.objects.round:
@@ -227,7 +228,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         curve=None if brief else fragility_of(now.outcomes()),
         conversion=conversion,
         directions=None
-        if brief or objects.round
+        if brief or objects.round or objects.many
         else find_directions(
             objects, motions, make_ladder(motions, measure, asked, FEW_LEVELS), at
         ),

@@ -222,7 +222,8 @@ def _arrangements(found: Assessment) -> Section:
             "components at once are not simulated either."
         )
     if len(found.by_arrangement) > 1:
-        words.append("On the floor is also what remains if the pedestal is fixed to it.")
+        stand = found.request.objects.stand
+        words.append(f"On the floor is also what remains with the {stand} fixed to it.")
     message = positions(found)
     return Section(
         "arrangements",

@@ -138,7 +138,7 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
     InputError
         If a key or value is not understood, or what they say does not fit together.
     """
-    known = checked(dict(settings), "statue", source)
+    known = _checked(settings, source)
     where = folder or Path()
     try:
         return Request(
@@ -152,6 +152,19 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
         )
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
+
+
+def _checked(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """Check the keys; one pedestal is a list of one, which messages do not say."""
+    given = dict(settings)
+    single = isinstance(given.get("pedestal"), Mapping)
+    if single:
+        given["pedestal"] = [given["pedestal"]]
+    try:
+        return checked(given, "statue", source)
+    except InputError as error:
+        words = str(error)
+        raise InputError(words.replace("pedestal[0]", "pedestal") if single else words) from None
 
 
 def _level(settings: Mapping[str, Any]) -> Level | None:

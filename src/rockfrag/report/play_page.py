@@ -7,7 +7,7 @@ from importlib.metadata import version
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
-from rockfrag.report.live import AMPLITUDES_G, live_kernel, swept
+from rockfrag.report.live import AMPLITUDES_G, MOST_BODIES, live_kernel, swept
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding
 from rockfrag.report.wording import counted, number, sentence
@@ -37,8 +37,13 @@ def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[st
     Raises
     ------
     InputError
-        If the record is too long, or zero throughout.
+        If the record is too long, or zero throughout, or there are more than two blocks.
     """
+    system = as_system(body)
+    if system.count > MOST_BODIES:
+        raise InputError(
+            "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
+        )
     samples = motion.acceleration.size
     if samples > MOST_SAMPLES:
         raise InputError(
@@ -47,7 +52,6 @@ def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[st
         )
     if motion.pga <= 0:
         raise InputError(f"{motion.name}: the record is zero throughout, so nothing would rock.")
-    system = as_system(body)
     sizes = [f"{100 * one.width:.3g} × {100 * one.height:.3g} cm" for one in system.bodies]
     name = " on ".join(reversed(sizes))
     verdicts = swept({name: system}, [motion])

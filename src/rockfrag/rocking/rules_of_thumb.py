@@ -111,7 +111,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
 
 
 def three_models(body: Body) -> list[Block]:
-    """Blocks that practice checks for an object: itself, and with its pedestal as one body.
+    """Blocks that practice checks for an object: itself, and with what it stands on as one body.
 
     Parameters
     ----------

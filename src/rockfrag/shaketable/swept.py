@@ -4,7 +4,7 @@ A file of a sweep has a row per motion and amplitude, motion after motion, each 
 amplitudes. What statistics need of it is a byte a history.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,9 +16,6 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.system.system import System
-
-FALLEN = ("", "pedestal", "statue")
-"""Which body overturned, by its number in a matrix of verdicts."""
 
 ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
 """Columns that are the same for all amplitudes of a motion."""
@@ -43,13 +40,16 @@ class Swept:
     overturned
         Verdicts, shape (motions, n); also whether anything was displaced, where that was asked for.
     fallen
-        Number in ``FALLEN`` of what overturned, shape (motions, n).
+        Place in ``bodies`` of what overturned, shape (motions, n).
+    bodies
+        Names of what overturned in any of them, empty for nothing.
     """
 
     about: pd.DataFrame
     amplitude_g: NDArray[np.float64]
     overturned: NDArray[np.bool_]
-    fallen: NDArray[np.uint8]
+    fallen: NDArray[np.intp]
+    bodies: Sequence[str]
 
 
 def labels_of(system: System) -> dict[str, str]:
@@ -60,7 +60,7 @@ def labels_of(system: System) -> dict[str, str]:
 
 def fallen_names(system: System) -> tuple[str, ...]:
     """Return what tables of a study call the body that fell, by its number in outcomes."""
-    return ("", *system.names) if system.count >= len(FALLEN) else ("", *FALLEN[-system.count :])
+    return ("", *(system.names if system.count > 2 else ("pedestal", "statue")[-system.count :]))
 
 
 def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:
@@ -114,13 +114,14 @@ def _swept(part: pa.Table, path: Path) -> Swept:
     first = part.select(list(ABOUT)).take(pa.array(np.arange(0, code.size, each)))
     about = pd.DataFrame({name: first[name].to_pylist() for name in ABOUT}, dtype="str")
     body = part["overturned_body"].combine_chunks()
-    number = np.array([FALLEN.index(name) for name in body.dictionary.to_pylist()], dtype=np.uint8)
-    fallen = number[body.indices.to_numpy()].reshape(-1, each)
+    fallen = body.indices.to_numpy().reshape(-1, each)
     if SLIP in part.column_names:
         verdicts = displaced(part.select(["overturned", SLIP]).to_pandas())
     else:
         verdicts = part["overturned"].to_numpy()
-    return Swept(about, grid[0].copy(), verdicts.reshape(-1, each), fallen)
+    return Swept(
+        about, grid[0].copy(), verdicts.reshape(-1, each), fallen, body.dictionary.to_pylist()
+    )
 
 
 def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
@@ -135,12 +136,12 @@ def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator
     about
         Columns to keep.
     """
-    number = np.zeros(len(sweep), dtype=np.uint8)
-    for code, name in enumerate(FALLEN):
-        number[(sweep["overturned_body"] == name).to_numpy()] = code
+    number, bodies = pd.factorize(sweep["overturned_body"])
     overturned = sweep["overturned"].to_numpy(dtype=bool)
     amplitude = sweep["amplitude_g"].to_numpy(dtype=np.float64)
     for rows in sweep.groupby(keys, sort=False).indices.values():
         ordered = rows[np.argsort(amplitude[rows], kind="stable")]
         head = sweep[about].iloc[rows[:1]].reset_index(drop=True)
-        yield Swept(head, amplitude[ordered], overturned[None, ordered], number[None, ordered])
+        yield Swept(
+            head, amplitude[ordered], overturned[None, ordered], number[None, ordered], list(bodies)
+        )

@@ -226,10 +226,9 @@ def _shaken(
         warnings.simplefilter("ignore", LightBodies)
         return overturns(
             configuration,
-            [motion.acceleration for motion in motions],
-            [motion.dt for motion in motions],
-            scales,
-            vertical=None if vertical is None else [motion.acceleration for motion in vertical],
+            motions,
+            scales=scales,
+            vertical=vertical,
             threads=threads,
         )
 

@@ -55,7 +55,7 @@ def validity_table(
         if len(rows):
             forces = _forces(one, *_shaken(rows, motions, vertical), threads)
             parts.append(forces.set_index(rows.index))
-    found = pd.concat(parts[1:] or parts).sort_index()
+    found = pd.concat(parts[1:] or parts)[columns].sort_index()
     keys = ["test", "object", "pedestal", "event", "floor", "motion", "amplitude_g"]
     return pd.concat([known[keys], found], axis=1)
 
@@ -95,8 +95,8 @@ def _forces(
     threads: int,
 ) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
-    if one.loose:
-        return _forces_with_friction(one, motions, vertical)
+    if one.loose or one.count > 2:
+        return _forces_in_contact(one, motions, vertical)
     from rockfrag.rocking import overturns
 
     found = overturns(
@@ -115,7 +115,7 @@ def _forces(
     )
 
 
-def _forces_with_friction(
+def _forces_in_contact(
     one: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
 ) -> pd.DataFrame:
     from rockfrag.rocking import simulate

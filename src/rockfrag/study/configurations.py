@@ -10,7 +10,7 @@ from rockfrag.files import distinct_file_names
 from rockfrag.plausibility import check_density
 from rockfrag.rocking.measured_restitution import Measured, MeasuredRestitution
 from rockfrag.rocking.options import system_of
-from rockfrag.system.blocks import Block, Body, Column, Stack
+from rockfrag.system.blocks import Block, stacked
 from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
 
@@ -106,16 +106,9 @@ def names_from_above(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split("|")) if text.strip() else ()
 
 
-def arranged(blocks: Sequence[Block]) -> Body | Column:
-    """Return blocks that stand on each other, from below, as a block, a stack or a column."""
-    if len(blocks) == 1:
-        return blocks[0]
-    return Stack(blocks[0], blocks[1]) if len(blocks) == 2 else Column(tuple(blocks))
-
-
 def _named(name: str, names: Sequence[str], blocks: Mapping[str, Block]) -> System:
     """System of the blocks of these names, from below."""
-    system = arranged([blocks[one] for one in names]).system()
+    system = stacked([blocks[one] for one in names]).system()
     bodies = (replace(body, name=one) for body, one in zip(system.bodies, names, strict=True))
     return replace(system, bodies=tuple(bodies), name=name)
 

@@ -141,7 +141,7 @@ class Study:
     @property
     def simulated_in_page(self) -> bool:
         """Whether the simulation in a page has its outcomes: horizontal rocking alone, of one or two bodies."""
-        few = all(one.count < 3 for one in self.configurations)
+        few = any(one.count < 3 for one in self.configurations)
         return few and not (self.slides or self.vertical)
 
     @property

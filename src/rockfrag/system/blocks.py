@@ -21,7 +21,16 @@ from rockfrag.plausibility import inertia_warning, light_giant_warning
 from rockfrag.system import geometry
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
-from rockfrag.system.system import MOST_BODIES, System, box, cylinder, round_inertia, stands
+from rockfrag.system.system import (
+    MOST_BODIES,
+    System,
+    box,
+    common_centre,
+    cylinder,
+    round_inertia,
+    standing_centres,
+    stands,
+)
 from rockfrag.units import GRAVITY
 
 
@@ -226,7 +235,7 @@ class Block:
         return (self,)
 
     def rigidly_joined(self) -> "Block":
-        """Return the block itself, which is one rigid body already."""
+        """Return all blocks as one: this one."""
         return self
 
     @cached_property
@@ -527,6 +536,16 @@ class Column:
         """Total mass [kg]."""
         return sum(block.mass for block in self.blocks)
 
+    def rigidly_joined(self) -> Block:
+        """Return all blocks as one rigid body on the lowest base."""
+        x, y = common_centre(self.system())
+        inertia = 0.0
+        for block, at in zip(self.blocks, standing_centres(self.system()), strict=True):
+            apart = (at[0] - x) ** 2 + (at[1] - y) ** 2
+            inertia += block.centroidal_inertia + block.mass * apart
+        height = sum(block.height for block in self.blocks)
+        return Block(self.blocks[0].width, height, self.mass, inertia, y, cg_offset=x)
+
     def system(self) -> System:
         """Return the column as a system: it rocks, never slides, and conserves momentum in impacts."""
         names = [f"body {k + 1}" for k in range(len(self.blocks))]
@@ -546,9 +565,9 @@ def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str
     return System(tuple(bodies), tuple(contacts))
 
 
-Body = Block | Stack
+Body = Block | Stack | Column
 
-SystemLike = Block | Stack | Column | System
+SystemLike = Body | System
 """What stands, as it may be written."""
 
 
@@ -570,3 +589,10 @@ def as_system(thing: SystemLike) -> System:
             f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}."
         )
     return thing if isinstance(thing, System) else thing.system()
+
+
+def stacked(blocks: Sequence[Block]) -> Body:
+    """Return blocks that stand on each other, from below, as a block, a stack or a column."""
+    if len(blocks) == 1:
+        return blocks[0]
+    return Stack(blocks[0], blocks[1]) if len(blocks) == 2 else Column(tuple(blocks))

@@ -189,31 +189,20 @@ def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
 def uplift_ratios(system: System) -> tuple[float, ...]:
     """Least horizontal acceleration over g that opens each contact of a planar system at rest, from below.
 
-    A full contact opens about the pivot whose overturning moment first exceeds the weight's (thesis eq. 2.1,
-    2.21-2.25).
+    A full contact opens about the pivot whose overturning moment first exceeds the weight's (Kirkpatrick, 1927;
+    Psycharis, 1990).
     """
     if system.count == 1:
-        arms = [[geometry.arm(system.shapes[0], pivot) for pivot in (+1, -1)]]
+        arms = [tuple(geometry.arm(system.shapes[0], pivot) for pivot in (+1, -1))]
     elif system.count == 2:
         arms = [
-            [arm(system.pile, pivot) for pivot in (+1, -1)]
+            tuple(arm(system.pile, pivot) for pivot in (+1, -1))
             for arm in (geometry.common_arm, geometry.statue_arm)
         ]
     else:
-        arms = [_arms_above(system, k) for k in range(system.count)]
+        arms = [arms_above(system, k) for k in range(system.count)]
     # a body with its centre below its pivots never opens
     return tuple(min(abs(x) / y if y > 0 else math.inf for x, y in pair) for pair in arms)
-
-
-def _arms_above(system: System, k: int) -> list[tuple[float, float]]:
-    """From the ends of contact k to the common centre of gravity of the bodies above it [m]."""
-    masses = [body.mass for body in system.bodies[k:]]
-    centres = standing_centres(system)[k:]
-    x, y = (
-        sum(mass * centre[axis] for mass, centre in zip(masses, centres, strict=True)) / sum(masses)
-        for axis in (0, 1)
-    )
-    return [(x - end[0], y - end[1]) for end in contact_ends(system, k)]
 
 
 def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
@@ -306,8 +295,27 @@ def diagonal(*moments: float) -> Any:
 
 def stands(system: System) -> bool:
     """Whether the bodies above each contact of a planar system have their common centre between its ends."""
-    each = (_arms_above(system, k) for k in range(system.count))
-    return all(left > 0 > right for (left, _), (right, _) in each)
+    return all(
+        math.isfinite(x) and side * x < 0
+        for k in range(system.count)
+        for side, (x, _) in zip((-1, 1), arms_above(system, k), strict=True)
+    )
+
+
+def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
+    """From the left and the right end of contact k to the common centre of what stands on it (x, z) [m]."""
+    x, z = common_centre(system, k)
+    return tuple((x - at[0], z - at[1]) for at in contact_ends(system, k))
+
+
+def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
+    """Common centre of gravity of a planar body and all above it as they stand (x, z) [m]."""
+    masses = [body.mass for body in system.bodies[lowest:]]
+    x, z = (
+        sum(mass * at for mass, at in zip(masses, axis, strict=True)) / sum(masses)
+        for axis in zip(*standing_centres(system)[lowest:], strict=True)
+    )
+    return x, z
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:

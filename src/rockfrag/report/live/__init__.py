@@ -31,6 +31,9 @@ from rockfrag.units import GRAVITY
 MOST_SAMPLES = 70_000
 """Samples of all motions that a page carries: three quarters of a megabyte."""
 
+MOST_BODIES = 2
+"""Bodies on each other that the page simulates."""
+
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
 """Amplitudes [g] of a body that no study has swept."""
 
@@ -54,7 +57,7 @@ def live_kernel(
     Parameters
     ----------
     bodies
-        What may be chosen, by the name that a reader sees.
+        What may be chosen, by the name that a reader sees; of more than two blocks only the name is shown.
     motions
         Motions that may be chosen; no more than carry ``MOST_SAMPLES`` samples are taken, the first ones.
     verdicts
@@ -66,16 +69,20 @@ def live_kernel(
     Returns
     -------
     Markup
-        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing.
+        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing; empty if no body is left.
     """
+    known = {name: system for name, system in bodies.items() if system.count <= MOST_BODIES}
+    if not known:
+        return Markup()
     with warnings.catch_warnings():
         # the page shows pure rocking; where that may be wrong is said in the report's own words
         warnings.simplefilter("ignore", LightBodies)
-        return _element(bodies, carried(motions), verdicts, start)
+        return _element(known, bodies, carried(motions), verdicts, start)
 
 
 def _element(
     bodies: Mapping[str, System],
+    asked: Mapping[str, System],
     motions: Sequence[Motion],
     verdicts: pd.DataFrame | None,
     start: Start | None,
@@ -111,6 +118,7 @@ def _element(
     )
     return Markup(
         environment.get_template("live.html.j2").render(
+            left_out=[name for name in asked if name not in bodies],
             frames=frames,
             words=f"{list(bodies)[body]} under {motions[motion].name}: {words}",
             # a name may hold anything, but never the end of the script

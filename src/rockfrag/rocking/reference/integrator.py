@@ -24,7 +24,7 @@ from rockfrag.rocking.reference.model import (
     State,
 )
 from rockfrag.rocking.reference.response import ReferenceEvent, ReferenceResponse
-from rockfrag.system.blocks import Block, Body
+from rockfrag.system.blocks import Block, Stack
 from rockfrag.units import GRAVITY
 
 RTOL, ATOL = 1e-10, 1e-14
@@ -56,7 +56,7 @@ Watch = tuple[str, int]
 
 
 def simulate_reference(
-    body: Body,
+    body: Block | Stack,
     acceleration: ArrayLike,
     dt: float,
     *,
@@ -119,7 +119,7 @@ def simulate_reference(
     return _Run(model, (motion, up), dt, theta, omega, chatter * model.frequency).response(duration)
 
 
-def _start(name: str, body: Body, value: ArrayLike | None) -> Pair:
+def _start(name: str, body: Block | Stack, value: ArrayLike | None) -> Pair:
     if value is None:
         return 0.0, 0.0
     numbers = np.atleast_1d(np.asarray(value, dtype=float))
