@@ -69,6 +69,9 @@ def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
                     "motion": f"motion {number}",
                     "amplitude_g": amplitude,
                     "reading": "step_protocol",
+                    "censored": "none",
+                    "lower_g": amplitude,
+                    "upper_g": amplitude,
                 }
             )
     found = pedestal_tables(pd.DataFrame(rows), seed=1, slenderness={"T1": 3.0})

@@ -102,7 +102,7 @@ class Objects:
     def arrangements(self) -> dict[str, Body]:
         """The ways in which it can stand, as it stands now first."""
         body = self.body
-        if isinstance(body, Block):
+        if len(body.blocks) == 1:
             return {ALONE: body}
         joined = body.rigidly_joined()
         return {
