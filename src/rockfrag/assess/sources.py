@@ -105,6 +105,11 @@ SOURCES: Mapping[str, Source] = {
         "and site",
         Measurement("the ground velocity (PGV) of the site", 0.0),
     ),
+    "together": Source(
+        "how peak acceleration and velocity occur together",
+        "± 25 % of the spread of ln PGV at a given level, of ours; two hazard curves do not say it, and about "
+        "magnitude, distance and ground it is that of the set",
+    ),
     "hazard": Source(
         "the hazard curve",
         "Its quantiles; exponents of 2.4 to 3.6 where one level was given (EN 1998-1)",
