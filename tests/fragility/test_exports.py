@@ -61,7 +61,7 @@ def test_nrml_gives_back_median_and_dispersion_in_its_own_units(tmp_path):
     write_nrml(CURVES, path)
     space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
     root = ElementTree.parse(path).getroot()
-    assert root.find(".//n:limitStates", space).text == "overturned"
+    assert root.find(".//n:limitStates", space).text == "overturns"
     functions = {f.get("id"): f for f in root.findall(".//n:fragilityFunction", space)}
     for name, imt, theta, beta in (("T1", "PGA", 0.5, 0.4), ("P_T1", "PGV", 30.0, 0.5)):
         params = functions[name].find("n:params", space)
@@ -78,7 +78,7 @@ def states_of_one() -> pd.DataFrame:
     return pd.DataFrame(
         [
             {**one, "state": "rocks", "theta": 0.25, "beta": 1e-9},
-            {**one, "state": "overturned", "theta": 0.4, "beta": 0.4},
+            {**one, "state": "overturns", "theta": 0.4, "beta": 0.4},
         ]
     )
 
@@ -100,11 +100,11 @@ def test_nothing_that_does_not_rock_overturns_in_nrml(tmp_path):
     assert stats.norm.cdf(np.log(0.25 / 0.4) / 0.4) > 0.1
     write_nrml(curves, tmp_path / "model.xml")
     levels, chance = levels_of(tmp_path / "model.xml")
-    assert (chance["overturned"] <= chance["rocks"]).all()
-    assert (chance["overturned"][levels < 0.24] < 1e-6).all()
+    assert (chance["overturns"] <= chance["rocks"]).all()
+    assert (chance["overturns"][levels < 0.24] < 1e-6).all()
     high = levels > 0.26
     lognormal = stats.norm.cdf(np.log(levels[high] / 0.4) / 0.4)
-    assert chance["overturned"][high] == pytest.approx(lognormal, abs=1e-9)
+    assert chance["overturns"][high] == pytest.approx(lognormal, abs=1e-9)
     assert (np.diff(levels) > 0).all()
 
 
@@ -112,14 +112,14 @@ def test_rejected_curve_is_exported_as_its_points(tmp_path):
     points = pd.DataFrame(
         {
             "configuration": "urn",
-            "state": "overturned",
+            "state": "overturns",
             "x": [0.3, 0.5, 0.6, 0.8],
             "share": [0.0, 0.3, 0.4, 0.9],
         }
     )
     write_nrml(states_of_one(), tmp_path / "model.xml", shares=points)
     levels, chance = levels_of(tmp_path / "model.xml")
-    found = np.interp(points["x"], levels, chance["overturned"])
+    found = np.interp(points["x"], levels, chance["overturns"])
     assert found == pytest.approx(points["share"].to_numpy(), abs=1e-9)
     csv, story = tmp_path / "damage.csv", tmp_path / "damage.json"
     write_simcenter(states_of_one(), csv, story, shares=points)
@@ -218,7 +218,7 @@ def test_the_hash_of_a_record_set_sees_every_sample_and_no_order():
 def curves_of(sweep):
     """Curves in the amplitude as the ground's PGA, with a rocking state before overturning."""
     table = fragility_table(sweep, record_set="abc")
-    fallen = table[table.estimator == "mean_probability"].assign(state="overturned")
+    fallen = table[table.estimator == "mean_probability"].assign(state="overturns")
     rocks = fallen.assign(state="rocks", theta=0.2, beta=1e-6)
     return pd.concat([rocks, fallen], ignore_index=True)
 
@@ -251,11 +251,11 @@ def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
     write_nrml(curves.iloc[::-1], tmp_path / "model.xml")
     space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
     root = ElementTree.parse(tmp_path / "model.xml").getroot()
-    assert root.find(".//n:limitStates", space).text == "rocks overturned"
+    assert root.find(".//n:limitStates", space).text == "rocks overturns"
     function = root.find(".//n:fragilityFunction", space)
     kinds = ("n:params", "n:poes")
     states = [one.get("ls") for kind in kinds for one in function.findall(kind, space)]
-    assert states == ["rocks", "overturned"]
+    assert states == ["rocks", "overturns"]
     write_simcenter(curves.iloc[::-1], tmp_path / "d.csv", tmp_path / "d.json")
     row = pd.read_csv(tmp_path / "d.csv").iloc[0]
     # an exact threshold is written as steep as the formats take it
@@ -277,9 +277,9 @@ def test_uncertainties_of_motions_estimate_and_model_add_as_squares():
 def test_a_small_tail_below_the_threshold_is_no_probability_to_overturn_either(tmp_path):
     """A lognormal tail of 6e-4 at a level that starts nothing: small, and still impossible."""
     curves = states_of_one()
-    curves.loc[curves["state"] == "overturned", "theta"] = 0.25 * np.exp(0.4 * 3.24)
+    curves.loc[curves["state"] == "overturns", "theta"] = 0.25 * np.exp(0.4 * 3.24)
     assert 1e-4 < stats.norm.cdf(-3.24) < 1e-3
     write_nrml(curves, tmp_path / "model.xml")
     levels, chance = levels_of(tmp_path / "model.xml")
-    assert (chance["overturned"] <= chance["rocks"]).all()
-    assert (chance["overturned"][levels < 0.24] < 1e-9).all()
+    assert (chance["overturns"] <= chance["rocks"]).all()
+    assert (chance["overturns"][levels < 0.24] < 1e-9).all()

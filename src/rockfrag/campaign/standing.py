@@ -17,6 +17,7 @@ from scipy.stats import norm, qmc
 from rockfrag.campaign.trials import Trials, block_of, possible_restitution
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN
+from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Block
 from rockfrag.system.mesh import Shape
 
@@ -128,7 +129,7 @@ def ways_to_stand(
         If it could stand in none of them.
     """
     points = qmc.Sobol(len(unknowns), scramble=True, rng=np.random.default_rng(seed)).random(count)
-    rows, bodies, restitution = [], [], []
+    rows, systems = [], []
     for point in points:
         way = {
             name: one.quantile(u) for (name, one), u in zip(unknowns.items(), point, strict=True)
@@ -141,15 +142,15 @@ def ways_to_stand(
         if angle < LEAST_ANGLE_DEG:
             continue
         momentum = min(block.momentum_restitution(+1), block.momentum_restitution(-1))
-        rows.append(way | {"alpha_deg": angle})
-        bodies.append(block)
-        restitution.append(possible_restitution(block, way["restitution_ratio"] * momentum))
+        rows.append(way | {"width_m": block.width, "alpha_deg": angle})
+        ratio = possible_restitution(block, way["restitution_ratio"] * momentum)
+        systems.append(system_of(block, restitution=ratio))
     if not rows:
         raise InputError(
             f"under none of {count} guesses of what was not measured could the object stand at "
             f"{LEAST_ANGLE_DEG:g}° or more; check that it stands as its mesh does, and its unit."
         )
-    return Trials(pd.DataFrame(rows), tuple(bodies), tuple(restitution), count - len(rows))
+    return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
 
 
 def kind_of(thing: Shape | Block) -> str:

@@ -304,7 +304,7 @@ def _contact(
         "overturned",
         "right",
     ]
-    if isinstance(thing, Block):
+    if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns, dtype=float)
     low, high = study.unknowns["contact_tolerance_mm"]
     scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
@@ -345,7 +345,7 @@ def _footprint(
 ) -> pd.DataFrame:
     """Seen from above, about the centre of gravity: outline, and what carries within the plausible tolerances."""
     columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]
-    if isinstance(thing, Block):
+    if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns)
     likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
     parts = [("outline", float("nan"), thing.outline)]
