@@ -70,7 +70,7 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, U
         return {
             "edge_retreat_mm": Unknown(
                 "how far the edges carry further in",
-                "uniform from 0 to 2 mm, of ours: arrises of cut stone are broken by a millimetre or two",
+                "uniform from 0 to 2 mm, of ours: edges of cut stone are broken by a millimetre or two",
                 partial(_uniform, 0.0, 2.0),
             ),
             "restitution_ratio": Unknown(
