@@ -44,6 +44,7 @@ TABLES = (
 VARIED_SHARE = 4
 """Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
 REPLICATES = 400
+FEWEST_GROUPS = 2
 
 
 def run(job: Job[CampaignStudy]) -> Results:
@@ -99,6 +100,11 @@ def campaign_with_motions(
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
             raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
+    if campaign.tests["group"].nunique() < FEWEST_GROUPS:
+        raise InputError(
+            f"{study.tests}: its tests are of a single input motion; give those of two or more, as guesses are "
+            "chosen by the tests of some and judged by those of others."
+        )
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
         campaign = Campaign(
