@@ -118,11 +118,6 @@ def rank_probabilities(
     )
 
 
-def share_largest(ranks: pd.DataFrame, level: str) -> float:
-    """Probability that a level of `rank_probabilities` has the largest mean [-]."""
-    return float(ranks.loc[ranks["level"] == level, "p_largest"].iloc[0])
-
-
 def _resampled(means: Array, rng: np.random.Generator, draws: int) -> Array:
     samples = _samples(rng, len(means), draws)
     return np.concatenate([means[chosen].mean(axis=1) for chosen in samples])
