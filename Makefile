@@ -3,7 +3,7 @@
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make torture  a small study killed, starved and misused; make fuzz damaged inputs
-#               (INPUTS=10000 for fewer) and random requests of assess (REQUESTS=200)
+#               (INPUTS=10000 for fewer), random requests of assess (REQUESTS=200) and studies (STUDIES=20)
 # make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
@@ -16,6 +16,7 @@ PYTHON ?= python3
 STUDY ?= config/thesis.yaml
 INPUTS ?= 1000000
 REQUESTS ?= 2000
+STUDIES ?= 500
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
@@ -65,6 +66,7 @@ format: .venv/installed
 fuzz: .venv/installed
 	@$(RUN) tests.fuzz --inputs $(INPUTS)
 	@$(RUN) tests.fuzz.requests --requests $(REQUESTS)
+	@$(RUN) tests.fuzz.studies --studies $(STUDIES)
 
 torture: .venv/installed
 	@$(RUN) tests.fault_injection

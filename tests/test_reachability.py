@@ -16,6 +16,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 SOURCES = (ROOT / "src", ROOT / "thesis" / "src")
 REGISTERING = (
+    "intensity_measure",
+    "declare",
     "statement",
     "order_statement",
     "limit_state",
@@ -25,12 +27,8 @@ REGISTERING = (
 )
 """Decorators that put a function into a table, by which it is reached."""
 
-DOORS = (
-    "rockfrag.engines.contract.register_engine",
-    "rockfrag.engines.contract.forget_engine",
-    "rockfrag.outcomes.limit_states.forget_limit_state",
-)
-"""What code of one's own calls to add an engine, and to take back what it added (CONTRIBUTING.md)."""
+DOOR = re.compile(r"rockfrag.*\.(register|forget)_\w+")
+"""What code of one's own calls to add an engine, a law or a measure, and to take back what it added."""
 
 ENTRY = re.compile(r"\brockfrag\w*(?:\.\w+)*(?:[:.]\w+)?")
 FUNCTION, CLASS = (ast.FunctionDef, ast.AsyncFunctionDef), ast.ClassDef
@@ -77,8 +75,9 @@ def defined(node: ast.stmt) -> list[str]:
 
 
 def is_registered(node: ast.stmt) -> bool:
-    """Whether a decorator enters the definition into a table."""
-    calls = (one for one in getattr(node, "decorator_list", ()) if isinstance(one, ast.Call))
+    """Whether a decorator, or what makes its value, enters the definition into a table."""
+    made_by = [*getattr(node, "decorator_list", ()), getattr(node, "value", None)]
+    calls = (one for one in made_by if isinstance(one, ast.Call))
     functions = [one.func for one in calls]
     names = {
         one.attr if isinstance(one, ast.Attribute) else getattr(one, "id", "") for one in functions
@@ -246,7 +245,6 @@ def started() -> Iterator[str]:
         yield from (
             f"attribute.{name}" for name in re.findall(r"\.(\w+)", path.read_text(encoding="utf-8"))
         )
-    yield from DOORS
     # found by their names by Snakemake
     yield "snakemake_logger_plugin_rockfrag.LogHandler"
     yield "snakemake_logger_plugin_rockfrag"
@@ -254,7 +252,8 @@ def started() -> Iterator[str]:
 
 def unreached() -> list[str]:
     graph = Graph()
-    seen = graph.reached({*exported(graph.known), *started()})
+    doors = filter(DOOR.fullmatch, graph.known)
+    seen = graph.reached({*exported(graph.known), *started(), *doors})
     return sorted(full for full in graph.known if full not in seen and not hasattr(builtins, full))
 
 

@@ -110,6 +110,21 @@ STUDIES = {
         },
         records={"a": "one", "b": "two", "c": "three"},
     ),
+    "a figure on a base on a plinth": Foreign(
+        blocks={**MARBLE, "base": (40.0, 20.0, 85.0)},
+        configurations={
+            "figure": ("marble figure", None),
+            "figure on plinth": ("marble figure", "plinth"),
+            "figure on base on plinth": ("marble figure", "base|plinth"),
+        },
+        records={"a": "one", "b": "two", "c": "three"},
+    ),
+    "a column that may slide, and nothing else": Foreign(
+        blocks={**MARBLE, "base": (40.0, 20.0, 85.0)},
+        configurations={"figure on base on plinth": ("marble figure", "base|plinth")},
+        records={"a": "one", "b": "two"},
+        content={"friction": {"ground": 0.7, "interface": 0.5}},
+    ),
     "names that are hard to print": Foreign(
         blocks={
             "Büste „Ä“, $x_1$": (30.0, 90.0, 60.0),

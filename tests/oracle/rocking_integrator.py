@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.system.blocks import Block, Body
+from rockfrag.system.blocks import Block, Stack
 from rockfrag.units import GRAVITY
 
 from .rocking_model import (
@@ -57,7 +57,7 @@ Watch = tuple[str, int]
 
 
 def simulate_reference(
-    body: Body,
+    body: Block | Stack,
     acceleration: ArrayLike,
     dt: float,
     *,
@@ -120,7 +120,7 @@ def simulate_reference(
     return _Run(model, (motion, up), dt, theta, omega, chatter * model.frequency).response(duration)
 
 
-def _start(name: str, body: Body, value: ArrayLike | None) -> Pair:
+def _start(name: str, body: Block | Stack, value: ArrayLike | None) -> Pair:
     if value is None:
         return 0.0, 0.0
     numbers = np.atleast_1d(np.asarray(value, dtype=float))

@@ -23,7 +23,7 @@ from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import MeasuredRestitution
-from rockfrag.system.blocks import Block, Body, Vector
+from rockfrag.system.blocks import Block, Stack, Vector
 
 State = tuple[int, int]
 Pair = tuple[float, float]
@@ -89,7 +89,7 @@ class Model:
         `rocking_integrator.simulate_reference`.
     """
 
-    def __init__(self, body: Body, g: float, restitution: object = None) -> None:
+    def __init__(self, body: Block | Stack, g: float, restitution: object = None) -> None:
         self.g = g
         self.alone = isinstance(body, Block)
         if isinstance(body, Block):
@@ -436,7 +436,7 @@ class LinearModel(Model):
     angles and velocities are dropped.
     """
 
-    def __init__(self, body: Body, g: float, restitution: object = None) -> None:
+    def __init__(self, body: Block | Stack, g: float, restitution: object = None) -> None:
         super().__init__(body, g, restitution)
         self._lone = body if isinstance(body, Block) else None
 
@@ -494,7 +494,7 @@ class Law:
 Laws = dict[int, Law | None]
 
 
-def _checked_laws(body: Body, restitution: object) -> tuple[Laws, Laws]:
+def _checked_laws(body: Block | Stack, restitution: object) -> tuple[Laws, Laws]:
     """Laws of ground and interface by the corner that comes down."""
     name = "position"
     if isinstance(restitution, MeasuredRestitution):

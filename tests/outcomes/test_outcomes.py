@@ -11,6 +11,8 @@ from rockfrag.outcomes.limit_states import (
     limit_states,
 )
 from rockfrag.outcomes.outcomes import columns, empty_outcomes, merge_outcomes
+from rockfrag.rocking.options import system_of
+from rockfrag.system.blocks import Block
 
 ROLES = ("pedestal", "statue", "ground", "interface")
 
@@ -84,5 +86,12 @@ def test_a_limit_state_is_one_declaration():
 def test_built_in_states():
     made = shaken()
     assert limit_state_named("rocks").reached(made).tolist() == [[[False, True]], [[False, True]]]
-    assert not limit_state_named("slides").reached(made).any()
+    slides = limit_state_named("slides")
+    assert slides.reached(made).sum() == 1, "what fell is displaced"
+    made.peak_slip[0, 0, 0, 0] = 0.0004
+    assert slides.reached(made).sum() == 1, "a hair's breadth at an impact is not seen"
+    made.peak_slip[0, 0, 0, 0] = 0.002
+    assert slides.reached(made).sum() == 2
+    held, loose = Block(0.3, 1.2, 100.0).system(), system_of(Block(0.3, 1.2, 100.0), 0.5)
+    assert [slides.counted(one) for one in (held, loose)] == [False, True]
     assert limit_state_named("overturns").reached(made).sum() == 1

@@ -37,17 +37,8 @@ class _Once(argparse.Action):
     ) -> None:
         """Keep the value, or end with a sentence where there is one already."""
         if getattr(namespace, self.dest, None) not in (None, self.default):
-            raise InputError(f"{option_string} is given twice; {_ADVICE.get(self.dest, _ONE)}")
+            raise InputError(f"{option_string} is given twice; give it once.")
         setattr(namespace, self.dest, values)
-
-
-_ONE = "give it once."
-_ADVICE = {
-    "pedestal": "one block under the object is simulated. Where two are fixed to each other, or so broad and "
-    "low that "
-    "they cannot part, give them as one block with the width of the lower base and the height of both; otherwise "
-    "assess the upper two parts and, as one object, what stands on the lowest."
-}
 
 
 def add_assess_commands(commands: Any) -> None:
@@ -129,10 +120,10 @@ def _add_object(about: Any) -> None:
     )
     about.add_argument(
         "--pedestal",
-        action=_Once,
+        action="append",
         nargs="+",
         metavar="SIZE",
-        help="width, height and, if known, mass of the block it stands on",
+        help="width, height and, if known, mass of the block it stands on; again for what that stands on",
     )
 
 
@@ -163,7 +154,12 @@ def _add_place(place: Any) -> None:
         help="of the building: its period follows from that and its height",
     )
     place.add_argument("--pga", action=_Once, metavar="ACCELERATION", help="of the ground: 0.25g")
-    place.add_argument("--pgv", action=_Once, metavar="VELOCITY", help="of the ground: 20cm/s")
+    place.add_argument(
+        "--pgv",
+        action=_Once,
+        metavar="VELOCITY",
+        help="of the ground, alone or beside the other: 20cm/s",
+    )
     place.add_argument(
         "--sa", action=_Once, nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g"
     )
@@ -306,7 +302,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
         "restitution": options.restitution,
         "friction": options.friction,
         "mesh": _mesh(options),
-        "pedestal": _pedestal(options.pedestal),
+        "pedestal": _pedestals(options.pedestal),
         "floor": options.floor,
         "building": options.building or _building(options),
         "sa": options.sa,
@@ -357,15 +353,18 @@ def _building(options: argparse.Namespace) -> dict[str, Any] | None:
     return known or None
 
 
-def _pedestal(given: Sequence[str] | None) -> dict[str, str] | None:
+def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
+    """The pedestal as a file would have it, or several from above."""
     if given is None:
         return None
-    if len(given) not in (2, 3):
-        raise InputError(
-            "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
-            f"{' '.join(given)}."
-        )
-    return dict(zip(("width", "height", "mass"), given, strict=False))
+    for one in given:
+        if len(one) not in (2, 3):
+            raise InputError(
+                "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
+                f"{' '.join(one)}."
+            )
+    found = [dict(zip(("width", "height", "mass"), one, strict=False)) for one in given]
+    return found if len(found) > 1 else found[0]
 
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:

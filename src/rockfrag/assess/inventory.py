@@ -4,7 +4,7 @@ import math
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -78,8 +78,9 @@ def assess_inventory(
     ----------
     path
         CSV with ``name``, ``width``, ``height`` and, where known, ``depth``, ``mass``, ``cg_height``,
-        ``pedestal_width``, ``pedestal_height``, ``pedestal_depth``, ``pedestal_mass``, ``floor`` and
-        ``restitution`` and ``round``; units stand in the titles or in the cells.
+        ``pedestal_width``, ``pedestal_height``, ``pedestal_depth``, ``pedestal_mass``, ``floor``,
+        ``restitution`` and ``round``; units stand in the titles or in the cells. Several pedestals stand in a
+        cell from above, ``60|80``.
     shared
         What holds for all, with the keys of ``statue.yaml``, such as the hazard.
     records
@@ -172,13 +173,9 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
 def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     own: dict[str, Any] = {"name": name}
     own |= {key: row.positive_quantity(key) for key in SIZES if row.has(key)}
-    pedestal = {
-        key.removeprefix("pedestal_"): row.positive_quantity(key)
-        for key in PEDESTAL
-        if row.has(key)
-    }
-    if pedestal:
-        own["pedestal"] = pedestal
+    pedestals = _pedestals(row)
+    if pedestals:
+        own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
     if row.has("floor"):
         own["floor"] = row.text("floor")
     if row.has("restitution"):
@@ -192,11 +189,27 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
         raise InputError(_in_columns(str(error), own)) from None
 
 
+def _pedestals(row: Row) -> list[dict[str, float]]:
+    """What the object stands on, from above: a cell may hold as many quantities, with bars between them."""
+    each = {key: row.cells[key].split("|") for key in PEDESTAL if row.has(key)}
+    found: list[dict[str, float]] = []
+    for key, cells in each.items():
+        if len(cells) != len(next(iter(each.values()))):
+            raise row.error(key, "expected as many pedestals as in the other columns")
+        for i, cell in enumerate(cells):
+            if i == len(found):
+                found.append({})
+            if cell.strip():
+                part = replace(row, cells={key: cell.strip()})
+                found[i][key.removeprefix("pedestal_")] = part.positive_quantity(key)
+    return found
+
+
 def _in_columns(words: str, own: Mapping[str, Any]) -> str:
     """Name columns instead of keys, of what stands in the row."""
     for key in own:
         words = re.sub(rf"\bkey {key}\b", f"column {key}", words)
-    return words.replace("column pedestal.", "column pedestal_")
+    return re.sub(r"column pedestal(\[\d+\])?\.", "column pedestal_", words)
 
 
 def _yes(row: Row, column: str) -> bool:

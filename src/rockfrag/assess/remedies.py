@@ -10,7 +10,7 @@ from scipy import stats
 from rockfrag.assess.objects import Objects, higher, wider
 from rockfrag.assess.risk import LEVEL, Target, event_weights
 from rockfrag.assess.verdicts import Verdicts
-from rockfrag.system.blocks import Body, Stack
+from rockfrag.system.blocks import Body, stacked
 
 WIDER = 1.25
 """Factor of a wider base."""
@@ -53,24 +53,47 @@ def remedies_of(objects: Objects) -> dict[str, Body]:
     objects
         The object as it is.
     """
-    statue, pedestal = objects.statue, objects.pedestal
+    statue, pedestals = objects.statue, objects.pedestals
     more, less = f"{100 * (WIDER - 1):.0f} % wider", f"{100 * (1 - LOWER):.0f} % lower"
-    if pedestal is None:
+    if not pedestals:
         return {
             f"a base {more}": wider(statue, WIDER),
             f"a centre of gravity {less}": higher(statue, LOWER),
         }
-    stack = Stack(pedestal, statue)
-    found: dict[str, Body] = {
-        f"a base {more} under the pedestal": Stack(wider(pedestal, WIDER), statue)
+    lowest, highest = pedestals[0], pedestals[-1]
+    where = "lowest pedestal" if objects.many else "pedestal"
+    found = {
+        f"a base {more} under the {where}": stacked((wider(lowest, WIDER), *pedestals[1:], statue))
     }
-    if WIDER * statue.width <= pedestal.width:
+    if WIDER * statue.width <= highest.width:
         # beyond the pedestal's edges a wider base carries no further out
-        found[f"a base {more} under the object"] = Stack(pedestal, wider(statue, WIDER))
+        found[f"a base {more} under the object"] = stacked((*pedestals, wider(statue, WIDER)))
+    found[f"a centre of gravity {less}"] = stacked((*pedestals, higher(statue, LOWER)))
+    return found | _fixed(objects)
+
+
+def _fixed(objects: Objects) -> dict[str, Body]:
+    """Bodies that result where a joint is closed for good, each by itself and all."""
+    blocks = (*objects.pedestals, objects.statue)
+    if not objects.many:
+        return {
+            "fixing the object to its pedestal": stacked(blocks).rigidly_joined(),
+            "fixing the pedestal to the floor": objects.statue,
+        }
+    found: dict[str, Body] = {}
+    for k in range(len(blocks) - 1):
+        if len(blocks) > k + 2 and blocks[k + 2].width > blocks[k + 1].width:
+            continue  # the two as one block would carry it further out
+        above, below = len(blocks) - 2 - k, len(blocks) - 1 - k
+        what = f"pedestal {above}" if above else "the object"
+        joined = stacked(blocks[k : k + 2]).rigidly_joined()
+        found[f"fixing {what} to pedestal {below}"] = stacked(
+            (*blocks[:k], joined, *blocks[k + 2 :])
+        )
     return found | {
-        f"a centre of gravity {less}": Stack(pedestal, higher(statue, LOWER)),
-        "fixing the object to its pedestal": stack.rigidly_joined(),
-        "fixing the pedestal to the floor": statue,
+        "fixing the object and its pedestals to each other": stacked(blocks).rigidly_joined(),
+        "fixing the lowest pedestal to the floor": stacked(blocks[1:]),
+        "fixing all pedestals to the floor": objects.statue,
     }
 
 

@@ -308,6 +308,10 @@ def _mixed_fits(table: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
     return (pd.concat(frames, ignore_index=True) if frames else pd.DataFrame()), notes
 
 
+def _tied_of(tied: int, pairs: int) -> str:
+    return "the two tests of the only pair" if pairs == 1 else f"{tied} of {pairs} pairs"
+
+
 def ties_note(table: pd.DataFrame) -> list[str]:
     """Say in words how many pairs agree within their steps, and what that can mean."""
     tied = table["d"].abs() < ROUNDING
@@ -316,11 +320,11 @@ def ties_note(table: pd.DataFrame) -> list[str]:
     widest = float(table.loc[tied, "resolution"].max())
     if widest == 0:
         return [
-            f"{int(tied.sum())} of {len(table)} pairs have equal amplitudes; the table does not give the steps "
-            "(lower_g, upper_g), so the difference that they exclude is not known"
+            f"{_tied_of(int(tied.sum()), len(table))} agree in their amplitudes; the table does not give the "
+            "steps (lower_g, upper_g), so the difference that they exclude is not known"
         ]
     notes = [
-        f"{int(tied.sum())} of {len(table)} pairs overturned in the same step: each of them excludes a "
+        f"{_tied_of(int(tied.sum()), len(table))} overturned in the same step, which excludes a "
         f"change of {100 * math.expm1(widest):.1f} % or more and no smaller one; no interval is "
         "narrower than the steps of the pairs that agree"
     ]

@@ -117,6 +117,10 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     elif len(by_name) == 1:
         headline = f"At recorded strength {_overturn(fallen, motions)} {by_name.index[0]}"
         numbers = ""
+    elif motions == 1:
+        fell = by_name["sum"] > 0
+        here, not_here = (listed([str(one) for one in by_name.index[it]]) for it in (fell, ~fell))
+        headline = f"At recorded strength {subject} overturns {here}, and not {not_here}"
     else:
         counts = {str(name): int(n) for name, n in by_name["sum"].items()}
         low, high = min(counts, key=counts.__getitem__), max(counts, key=counts.__getitem__)
@@ -179,11 +183,14 @@ def _fallen(tests: pd.DataFrame) -> list[str]:
     on_pedestal = tests[(tests["pedestal"] == "P") & (tests["overturned_body"] != "")]
     if on_pedestal.empty:
         return []
-    pedestals = int((on_pedestal["overturned_body"] == "pedestal").sum())
-    if pedestals == 0:
-        return ["The object always fell, never the pedestal."]
-    falls = of_all(pedestals, len(on_pedestal), "test on a pedestal", "tests on a pedestal")
-    return [f"The pedestal itself fell in {falls} that overturned."]
+    itself = on_pedestal["overturned_body"].isin(["statue"]) | (
+        on_pedestal["overturned_body"] == on_pedestal["object"]
+    )
+    below = int((~itself).sum())
+    if below == 0:
+        return ["The object always fell, never what it stood on."]
+    falls = of_all(below, len(on_pedestal), "test on a pedestal", "tests on a pedestal")
+    return [f"What the object stood on fell first in {falls} that overturned."]
 
 
 def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> list[Finding]:

@@ -48,7 +48,11 @@ def pedestal_tables(
     if tests.empty:
         raise InputError("tests: there is no row; the pedestal's effect needs tests.")
     parts: dict[str, list[pd.DataFrame]] = {name: [] for name in PEDESTAL_TABLES}
-    for reading, rows in tests.groupby("reading", sort=False):
+    # a table that cannot follow the weakest motion has tested nothing
+    untested = (tests["censored"] == "right") & (tests["lower_g"] == 0)
+    for reading, rows in tests[~untested].groupby("reading", sort=False):
+        if rows["pedestal"].nunique() < 2:
+            continue
         found = study_pedestal(rows, seed=seed, slenderness=slenderness)
         for name, table in {
             "pairs": found.pairs.table,
@@ -62,4 +66,6 @@ def pedestal_tables(
             labelled = table.copy()
             labelled.insert(0, "reading", reading)
             parts[name].append(labelled)
+    if not parts["pairs"]:
+        raise InputError("tests: no reading has tests with and without a pedestal.")
     return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}

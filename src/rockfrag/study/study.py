@@ -9,13 +9,13 @@ from typing import Any
 import pandas as pd
 
 from rockfrag.building.model import ShearBuilding
-from rockfrag.files import is_file
+from rockfrag.files import file_name, is_file
 from rockfrag.plausibility import size_warning
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.configurations import Configuration
 from rockfrag.study.supplementary import Supplementary
 from rockfrag.system.blocks import Block, Stack
+from rockfrag.system.system import System
 
 GROUND = "ground"
 """Label of the only floor of a study without a building."""
@@ -62,7 +62,7 @@ class Study:
         Paths of the tables of bodies, the second None where each block stands alone, and the blocks by
         name.
     configurations
-        What is tested, in order.
+        What is tested, in order: systems whose bodies have the names of their blocks.
     amplitudes
         Peaks of the input motion.
     protocol_step_percent
@@ -95,7 +95,7 @@ class Study:
     specimens_file: Path
     configurations_file: Path | None
     specimens: Mapping[str, Block]
-    configurations: tuple[Configuration, ...]
+    configurations: tuple[System, ...]
     amplitudes: Amplitudes
     protocol_step_percent: float
     fragility: FragilitySettings
@@ -135,16 +135,13 @@ class Study:
     @property
     def has_pairs(self) -> bool:
         """Whether an object is tested both with and without a pedestal."""
-        sides = {
-            side: {one.object for one in self.configurations if one.label == side}
-            for side in ("P", "NP")
-        }
-        return bool(sides["P"] & sides["NP"])
+        lone = {one.names[-1] for one in self.configurations if one.count == 1}
+        return any(one.names[-1] in lone for one in self.configurations if one.count > 1)
 
     @property
     def simulated_in_page(self) -> bool:
         """Whether the simulation in a page has its outcomes: horizontal rocking alone, of one or two bodies."""
-        few = all(len(one.body.blocks) < 3 for one in self.configurations)
+        few = any(one.count < 3 for one in self.configurations)
         return few and not (self.slides or self.vertical)
 
     @property
@@ -168,10 +165,10 @@ class Study:
         motions = len(self.catalogue) * len(self.floors)
         return max(1, min(math.ceil(self.histories / HISTORIES_A_JOB), MOST_JOBS, motions))
 
-    def sweep_file(self, configuration: Configuration, job: int) -> str:
+    def sweep_file(self, configuration: System, job: int) -> str:
         """Path of a configuration's sweep under the motions of a job."""
         folder = "sweep" if self.sweep_jobs == 1 else f"sweep/{job:03d}"
-        return f"{folder}/{configuration.slug}.parquet"
+        return f"{folder}/{file_name(configuration.name)}.parquet"
 
     @property
     def sweep_files(self) -> list[str]:
@@ -185,8 +182,8 @@ class Study:
     @property
     def tested_blocks(self) -> dict[str, Block]:
         """Blocks of the objects tested and, as ``P``, the first pedestal: the ledger's names."""
-        blocks = {one.object: self.specimens[one.object] for one in self.configurations}
-        pedestals = [one.pedestal for one in self.configurations if one.pedestal]
+        blocks = {one.names[-1]: self.specimens[one.names[-1]] for one in self.configurations}
+        pedestals = [one.names[-2] for one in self.configurations if one.count > 1]
         if pedestals:
             blocks["P"] = self.specimens[pedestals[0]]
         return blocks
@@ -194,7 +191,11 @@ class Study:
     @property
     def stacks(self) -> dict[str, Stack]:
         """Stacks tested, by the name of their configuration."""
-        return {one.name: one.body for one in self.configurations if isinstance(one.body, Stack)}
+        return {
+            one.name: Stack(self.specimens[one.names[0]], self.specimens[one.names[1]])
+            for one in self.configurations
+            if one.count == 2
+        }
 
     @property
     def own_records(self) -> list[Path]:

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
@@ -21,7 +21,16 @@ from rockfrag.plausibility import inertia_warning, light_giant_warning
 from rockfrag.system import geometry
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
-from rockfrag.system.system import MOST_BODIES, System, box, cylinder, round_inertia, stands
+from rockfrag.system.system import (
+    MOST_BODIES,
+    System,
+    box,
+    common_centre,
+    cylinder,
+    round_inertia,
+    standing_centres,
+    stands,
+)
 from rockfrag.units import GRAVITY
 
 
@@ -224,6 +233,10 @@ class Block:
     def blocks(self) -> "tuple[Block, ...]":
         """The blocks from below: this one."""
         return (self,)
+
+    def rigidly_joined(self) -> "Block":
+        """Return all blocks as one: this one."""
+        return self
 
     @cached_property
     def body(self) -> RigidBody:
@@ -523,6 +536,16 @@ class Column:
         """Total mass [kg]."""
         return sum(block.mass for block in self.blocks)
 
+    def rigidly_joined(self) -> Block:
+        """Return all blocks as one rigid body on the lowest base."""
+        x, y = common_centre(self.system())
+        inertia = 0.0
+        for block, at in zip(self.blocks, standing_centres(self.system()), strict=True):
+            apart = (at[0] - x) ** 2 + (at[1] - y) ** 2
+            inertia += block.centroidal_inertia + block.mass * apart
+        height = sum(block.height for block in self.blocks)
+        return Block(self.blocks[0].width, height, self.mass, inertia, y, cg_offset=x)
+
     def system(self) -> System:
         """Return the column as a system: it rocks, never slides, and conserves momentum in impacts."""
         names = [f"body {k + 1}" for k in range(len(self.blocks))]
@@ -542,7 +565,18 @@ def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str
     return System(tuple(bodies), tuple(contacts))
 
 
-def as_system(thing: "System | Body | Column") -> System:
+Body = Block | Stack | Column
+
+SystemLike = Body | System
+"""What stands, as it may be written."""
+
+
+def is_system(thing: object) -> TypeGuard[SystemLike]:
+    """Whether a thing is a system, or writes one."""
+    return isinstance(thing, (System, Block, Stack, Column))
+
+
+def as_system(thing: SystemLike) -> System:
     """Return a system as it is, or the one that a block, a stack or a column writes.
 
     Raises
@@ -550,11 +584,15 @@ def as_system(thing: "System | Body | Column") -> System:
     InputError
         If it is none of them.
     """
-    if isinstance(thing, System):
-        return thing
-    if isinstance(thing, (Block, Stack, Column)):
-        return thing.system()
-    raise InputError(f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}.")
+    if not is_system(thing):
+        raise InputError(
+            f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}."
+        )
+    return thing if isinstance(thing, System) else thing.system()
 
 
-Body = Block | Stack
+def stacked(blocks: Sequence[Block]) -> Body:
+    """Return blocks that stand on each other, from below, as a block, a stack or a column."""
+    if len(blocks) == 1:
+        return blocks[0]
+    return Stack(blocks[0], blocks[1]) if len(blocks) == 2 else Column(tuple(blocks))
