@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.curve_facts import BETA_MODEL
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.fragility.nrml import lognormal_moments, write_nrml
 from rockfrag.fragility.simcenter import write_simcenter
 from rockfrag.fragility.sweeps import (
@@ -235,7 +235,10 @@ def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_
     told = json.loads((tmp_path / "d.json").read_text())["ROCKFRAG.T1"]["Comments"]
     for text in (said, told):
         assert "4 motions of 3 earthquakes" in text
-        assert "90 % limits: theta" in text and "of the model 0.195" in text
+        assert (
+            "90 % limits: theta" in text and f"of the model {MODEL_ERRORS[CUT].blind:.3f}" in text
+        )
+        assert f"of a {CUT}: {MODEL_ERRORS[CUT].words}" in text
         assert "Goodness of fit p = " in text
         assert "based on only 4 motions" in text
     assert "<!-- T1: rocks:" in said
@@ -267,7 +270,7 @@ def test_uncertainties_of_motions_estimate_and_model_add_as_squares():
     row = table[table.estimator == "first_overturning"].iloc[0]
     half = np.log(row.theta_upper / row.theta_lower) / 2
     assert row.beta_statistical == pytest.approx(half / stats.norm.ppf(0.95))
-    squares = row.beta**2 + row.beta_statistical**2 + BETA_MODEL**2
+    squares = row.beta**2 + row.beta_statistical**2 + MODEL_ERRORS[CUT].blind ** 2
     assert row.beta_total == pytest.approx(np.sqrt(squares))
 
 
