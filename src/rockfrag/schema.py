@@ -9,7 +9,7 @@ import json
 import math
 import re
 import reprlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -91,8 +91,14 @@ def _validator(name: str) -> Draft202012Validator:
 def registered(kind: str) -> tuple[str, ...]:
     """Return the names that a registry has: what a file may name grows with what is declared."""
     from rockfrag.laws import law_names
+    from rockfrag.motions.declared import measure_columns
 
-    return {"law of impacts": law_names}[kind]()
+    names: dict[str, Callable[[], tuple[str, ...]]] = {
+        "law of impacts": law_names,
+        "intensity measure": measure_columns,
+        "growing intensity measure": lambda: measure_columns(growing=True),
+    }
+    return names[kind]()
 
 
 def _registered(

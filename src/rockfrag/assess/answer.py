@@ -39,8 +39,8 @@ from rockfrag.assess.verdicts import (
     verdicts_of_all,
 )
 from rockfrag.errors import InputError
-from rockfrag.fragility.curve_facts import BETA_MODEL
 from rockfrag.fragility.estimators import Fragility, fragility_of
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
@@ -201,7 +201,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         )
     fewer = motions.thinned() if few else motions
     moved = _moved(request, fewer, measure, asked)
-    shifts = {"model": BETA_MODEL}
+    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].blind}
     if not request.objects.round:
         shifts["space"] = SPACE
     if conversion:

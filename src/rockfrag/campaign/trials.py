@@ -82,10 +82,12 @@ def sample_trials(
     for point in points:
         guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
         try:
-            block = _block(thing, guess)
+            block = block_of(thing, guess)
         except InputError:
             continue
-        systems.append(system_of(block, restitution=_possible(block, guess["restitution"])))
+        systems.append(
+            system_of(block, restitution=possible_restitution(block, guess["restitution"]))
+        )
         angle = min(block.critical_angle(+1), block.critical_angle(-1))
         rows.append(
             {
@@ -103,7 +105,21 @@ def sample_trials(
     return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
 
 
-def _block(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
+def block_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
+    """The planar block of a guess.
+
+    Parameters
+    ----------
+    thing
+        A shape, or the planar block itself.
+    guess
+        Its unknowns.
+
+    Raises
+    ------
+    InputError
+        If it could not stand.
+    """
     retreat = guess["edge_retreat_mm"] / 1e3
     if isinstance(thing, Shape):
         return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
@@ -117,6 +133,14 @@ def _value(name: str, limits: tuple[float, float], share: float) -> float:
     return float(low + (high - low) * share)
 
 
-def _possible(block: Block, restitution: float) -> float | None:
-    """Restitution above the value that conserves momentum is that value."""
+def possible_restitution(block: Block, restitution: float) -> float | None:
+    """Restitution above the value that conserves momentum is that value, None.
+
+    Parameters
+    ----------
+    block
+        The block.
+    restitution
+        Ratio of angular velocities [-].
+    """
     return restitution if restitution < largest_restitution(block) else None

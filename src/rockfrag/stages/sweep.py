@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
 from rockfrag.outcomes.columns import SUFFIXES
+from rockfrag.outcomes.limit_states import limit_states
 from rockfrag.outcomes.outcomes import Outcomes, columns
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.swept import fallen_names, labels_of
@@ -142,7 +143,8 @@ def sweep_table(
     Returns
     -------
     One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
-    ``motion``, ``event``, ``floor``, ``amplitude_g``, ``overturned``, ``overturned_body``,
+    ``motion``, ``event``, ``floor``, ``amplitude_g``, a column for each limit state that is counted
+    (``overturned``, with friction ``slides``), ``overturned_body``,
     ``overturning_time_s`` and ``certain_time_s`` (instant of the fall, and from which it was certain),
     ``impacts``, ``unstable_distance`` (small where the outcome nearly flipped), ``peak_rotation_body_1`` and on
     (|θ| of each body from below over its critical angle); with vertical motion and without friction also
@@ -169,7 +171,11 @@ def sweep_table(
         "event": of_motions([motion.metadata.get("event") or motion.name for motion in motions]),
         "floor": of_motions([motion.metadata["floor"] for motion in motions]),
         "amplitude_g": np.tile(values, len(motions)),
-        "overturned": result.overturned[0].ravel(),
+        **{
+            state.column: state.reached(result)[0].ravel()
+            for state in limit_states()
+            if state.counted(configuration)
+        },
         "overturned_body": _texts(
             fallen_names(configuration), result.overturned_body[0].ravel().astype(np.int32)
         ),

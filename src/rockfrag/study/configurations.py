@@ -94,7 +94,7 @@ def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) 
         if name in found:
             raise row.error("name", f"{name} is given twice")
         try:
-            found[name] = _named(name, (*reversed(below), object_name), blocks)
+            found[name] = configuration_of(name, (*reversed(below), object_name), blocks)
             distinct_file_names([name], checked)
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
@@ -106,8 +106,8 @@ def names_from_above(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split("|")) if text.strip() else ()
 
 
-def _named(name: str, names: Sequence[str], blocks: Mapping[str, Block]) -> System:
-    """System of the blocks of these names, from below."""
+def configuration_of(name: str, names: Sequence[str], blocks: Mapping[str, Block]) -> System:
+    """Return the system of the blocks of these names, from below, whose bodies have these names too."""
     system = stacked([blocks[one] for one in names]).system()
     bodies = (replace(body, name=one) for body, one in zip(system.bodies, names, strict=True))
     return replace(system, bodies=tuple(bodies), name=name)
@@ -115,7 +115,7 @@ def _named(name: str, names: Sequence[str], blocks: Mapping[str, Block]) -> Syst
 
 def each_alone(blocks: Mapping[str, Block]) -> list[System]:
     """Every block as an object that stands alone."""
-    return [_named(name, [name], blocks) for name in blocks]
+    return [configuration_of(name, [name], blocks) for name in blocks]
 
 
 def with_restitution(system: System, measured: Mapping[str, Measured], law: str) -> System:
