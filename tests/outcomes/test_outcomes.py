@@ -61,7 +61,7 @@ def test_answers_of_several_engines_are_put_together():
 
 
 def test_a_limit_state_is_one_declaration():
-    @limit_state("leans far", order=50, label="leaning far")
+    @limit_state("leans_far", order=50, label="leaning far")
     def _(outcomes):
         with np.errstate(invalid="ignore"):
             return (outcomes.peak_rotation > 0.3).any(axis=-1)
@@ -70,17 +70,17 @@ def test_a_limit_state_is_one_declaration():
         assert [state.name for state in limit_states()] == [
             "rocks",
             "slides",
-            "leans far",
+            "leans_far",
             "overturns",
         ]
-        reached = limit_state_named("leans far").reached(shaken())
+        reached = limit_state_named("leans_far").reached(shaken())
         assert reached.tolist() == [[[False, True]], [[False, True]]]
         with pytest.raises(InputError, match="declared twice"):
-            limit_state("leans far", order=1, label="")(_)
+            limit_state("leans_far", order=1, label="")(_)
     finally:
-        forget_limit_state("leans far")
+        forget_limit_state("leans_far")
     with pytest.raises(InputError, match="choose one of rocks"):
-        limit_state_named("leans far")
+        limit_state_named("leans_far")
 
 
 def test_built_in_states():

@@ -81,7 +81,8 @@ def declare(
         raise InputError(
             f"law of impacts {name!r} is declared twice; give the second another name."
         )
-    number = BUILT_IN.index(name) if name in BUILT_IN else max(map(_number, _LAWS.values())) + 1
+    last = max(len(BUILT_IN) - 1, *map(_number, _LAWS.values()), 0)
+    number = BUILT_IN.index(name) if name in BUILT_IN else last + 1
     law = Law(name, number, tell, rate, moves_impulse, scales_momentum)
     _LAWS[name] = law
     return law

@@ -57,7 +57,7 @@ class LimitState:
     @property
     def column(self) -> str:
         """Name of its column in the table of a sweep."""
-        return "overturned" if self.name == OVERTURNS else self.name.replace(" ", "_")
+        return "overturned" if self.name == OVERTURNS else self.name
 
     def counted(self, system: System) -> bool:
         """Whether the sweep of a system has a column for it."""
@@ -84,8 +84,10 @@ def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Pre
     Raises
     ------
     InputError
-        If the name is taken.
+        If the name is taken, or is not one word, as exports write several in a line.
     """
+    if not name.isidentifier():
+        raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")
 
     def declare(predicate: Predicate) -> Predicate:
         if name in _STATES:

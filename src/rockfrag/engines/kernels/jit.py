@@ -36,7 +36,7 @@ from numba import types
 from numba.extending import intrinsic, register_jitable
 
 from rockfrag import elementary
-from rockfrag.laws import couple, position
+from rockfrag.laws import couple, laws, position
 from rockfrag.lock import locked
 from rockfrag.machine_code import cached_njit
 from rockfrag.system import geometry
@@ -105,6 +105,10 @@ def _digest() -> str:
     ]
     for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
         digest.update(path.read_bytes())
+    for law in laws():
+        # one that was declared elsewhere is compiled in too
+        code = b"" if law.rate is None else law.rate.__code__.co_code
+        digest.update(f"{law.name} {law.number}".encode() + code)
     return digest.hexdigest()
 
 
