@@ -110,7 +110,7 @@ def _registered(
 
 
 def _described(schema: _Schema, otherwise: str) -> str:
-    """What is expected, in words; ``{registry}`` stands for the names in it, its own name being of two words at least."""
+    """What is expected, in words; ``{registry}`` of two words or more is its names."""
     words = str(schema.get("description", otherwise))
     return re.sub(r"\{(\w+ [\w ]+)\}", lambda found: ", ".join(registered(found[1])), words)
 
