@@ -67,6 +67,20 @@ def arrangements(folder: Path, row: str) -> list:
     return read_configurations(folder / "arrangements.csv", read_specimens(folder / "blocks.csv"))
 
 
+def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> None:
+    (tmp_path / "blocks.csv").write_text(
+        "name,width_m,height_m,mass_kg\nplinth,0.8,0.4,500\nvenus,0.3,1.0,100\n"
+    )
+    table, blocks = tmp_path / "arrangements.csv", read_specimens(tmp_path / "blocks.csv")
+    head = "name,object,pedestal,counterpart\nalone,venus,,\n"
+    table.write_text(head + "on,venus,plinth,alone\n")
+    assert [one.counterpart for one in read_configurations(table, blocks)] == ["", "alone"]
+    for wrong in ("on", "elsewhere"):
+        table.write_text(head + f"on,venus,plinth,{wrong}\n")
+        with pytest.raises(InputError, match="expected another arrangement"):
+            read_configurations(table, blocks)
+
+
 @pytest.mark.parametrize("row", ["all,venus,base|plinth", "all,venus | base | plinth,"])
 def test_an_arrangement_names_its_blocks_from_above(tmp_path: Path, row: str) -> None:
     (found,) = arrangements(tmp_path, row)

@@ -37,6 +37,8 @@ class Configuration:
         What was measured of its impacts, as :func:`rockfrag.rocking.simulate` takes it; None conserves momentum.
     friction
         Coefficients of friction, as :func:`rockfrag.rocking.simulate` takes them; None where nothing slides.
+    counterpart
+        Name of the arrangement that it is compared with; empty for its object alone on the floor.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Configuration:
     body: Body
     restitution: Restitution = None
     friction: FrictionInput | None = None
+    counterpart: str = ""
 
     @property
     def label(self) -> str:
@@ -136,17 +139,20 @@ def read_configurations(
 
     Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several
     blocks under an object are named from above, ``base|plinth``; they may stand behind the object too,
-    ``venus|base|plinth``.
+    ``venus|base|plinth``. ``counterpart`` names the arrangement with which one is compared, where that is not its
+    object alone.
 
     Raises
     ------
     InputError
         If the file or a cell is not as expected, a name is given twice, a block is not known, or
-        the object does not fit on the pedestal.
+        the object does not fit on the pedestal, or a counterpart is no other arrangement of the table.
     """
     found: dict[str, Configuration] = {}
     checked: dict[str, str] = {}
-    for row in read_rows(path, ["name", "object"], ["pedestal"]):
+    rows = read_rows(path, ["name", "object"], ["pedestal", "counterpart"])
+    names = {row.cells["name"] for row in rows}
+    for row in rows:
         name = row.text("name")
         object_name, *behind = names_from_above(row.text("object")) or ("",)
         under = names_from_above(row.cells.get("pedestal", ""))
@@ -164,7 +170,11 @@ def read_configurations(
             distinct_file_names([name], checked)
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
-        found[name] = Configuration(name, object_name, "|".join(below), body)
+        counterpart = row.cells.get("counterpart", "")
+        if counterpart and counterpart not in names - {name}:
+            raise row.error("counterpart", f"expected another arrangement, found {counterpart}")
+        pedestal = "|".join(below)
+        found[name] = Configuration(name, object_name, pedestal, body, counterpart=counterpart)
     return list(found.values())
 
 

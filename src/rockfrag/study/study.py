@@ -134,12 +134,22 @@ class Study:
 
     @property
     def has_pairs(self) -> bool:
-        """Whether an object is tested both with and without a pedestal."""
-        sides = {
-            side: {one.object for one in self.configurations if one.label == side}
-            for side in ("P", "NP")
-        }
-        return bool(sides["P"] & sides["NP"])
+        """Whether an arrangement is tested together with its counterpart."""
+        return bool(self.counterparts) or self.with_and_alone
+
+    @property
+    def with_and_alone(self) -> bool:
+        """Whether an object is compared with itself alone on the floor."""
+        alone = {one.object for one in self.configurations if one.label == "NP"}
+        rest = (one for one in self.configurations if one.name not in self.counterparts)
+        return any(one.label == "P" and one.object in alone for one in rest)
+
+    @property
+    def counterparts(self) -> dict[str, str]:
+        """What arrangements are compared with, by name, where that is not their object alone."""
+        used = {one.name: one.counterpart for one in self.configurations if one.counterpart}
+        known = {one.name for one in self.configurations}
+        return {name: other for name, other in used.items() if other in known}
 
     @property
     def simulated_in_page(self) -> bool:
