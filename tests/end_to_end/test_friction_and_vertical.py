@@ -77,7 +77,7 @@ def test_on_smooth_surfaces_what_is_stout_slides_and_what_is_slender_rocks(
     assert "What friction does" in words and "Bodies slide in" in words
     assert "neither slide nor jump" not in words
     states = table(results, "fragility_floors")
-    assert set(states["state"]) == {"slides", "overturned"}
+    assert set(states["state"]) == {"slides", "overturns"}
     # verdicts that are counted give the same curves as verdicts that are rows
     monkeypatch.setattr(rockfrag.study.study, "MOST_ROWS", 10)
     job = Job(load_study(tmp_path / "study.yaml"), results, 1, logging.getLogger("test"))

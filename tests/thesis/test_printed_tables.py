@@ -8,7 +8,6 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.study.loading import load_study
 from rockfrag.system.blocks import Block, Stack
 from rockfrag_thesis.printed_tables import (
@@ -19,6 +18,7 @@ from rockfrag_thesis.printed_tables import (
     block_properties,
     compare,
     ground_measures,
+    uplift_accelerations,
     uplift_table,
 )
 

@@ -12,7 +12,7 @@ from scipy import special
 from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.direction import Directions, find_directions
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGA, Measure
+from rockfrag.assess.hazard.measure import PGA, PGV, Measure
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.moved import Moved
 from rockfrag.assess.remedies import Remedy, compare, remedies_of
@@ -39,8 +39,8 @@ from rockfrag.assess.verdicts import (
     verdicts_of_all,
 )
 from rockfrag.errors import InputError
-from rockfrag.fragility.curve_facts import BETA_MODEL
 from rockfrag.fragility.estimators import Fragility, fragility_of
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
@@ -63,8 +63,11 @@ class Assessment:
         Level of shaking at the site; None if neither level nor hazard was given.
     hazard
         The hazard curve that was used; None if none was given.
+    counted
+        What each motion as recorded does to the object as it stands.
     arrangements
-        Verdicts of each way in which the object can stand, as it stands first.
+        Verdicts of each way in which the object can stand, as it stands first, under motions with the velocity of
+        the site.
     rocking
         Share of the motions at the level that make it rock; None without a level.
     rocks_from
@@ -81,8 +84,8 @@ class Assessment:
     by_arrangement
         What is estimated of each arrangement.
     curve
-        Lognormal fragility curve, with parameters that are NaN where the verdicts give none; None if none
-        was fitted.
+        Lognormal fragility curve of the motions as recorded, with parameters that are NaN where the outcomes give
+        none; None if none was fitted, or the velocity of the site is known.
     conversion
         What hazard in another measure than PGV leaves open; None in PGV.
     directions
@@ -101,6 +104,7 @@ class Assessment:
     motions: MotionSet
     level: Level | None
     hazard: HazardCurve | None
+    counted: Verdicts
     arrangements: Mapping[str, Verdicts]
     rocking: Estimate | None
     rocks_from: float
@@ -126,7 +130,7 @@ class Assessment:
 
     @property
     def verdicts(self) -> Verdicts:
-        """Verdicts of the object as it stands."""
+        """Outcomes of the object as it stands."""
         return next(iter(self.arrangements.values()))
 
     @property
@@ -175,7 +179,8 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     """
     if request.objects.round:
         motions = motions.in_worst_direction()
-    hazard = _governing(request, motions)
+    curves = _governing(request, motions)
+    hazard = curves[0] if curves else None
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
@@ -186,16 +191,27 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     if brief:
         bodies = dict(list(bodies.items())[:1])
     arrangements = verdicts_of(objects, bodies, motions, ladder)
-    now = next(iter(arrangements.values()))
+    counted = next(iter(arrangements.values()))
     target = _target(level, hazard, request.years)
-    conversion = find_conversion(now, motions, request.records) if level else None
-    moved = _moved(request, motions.thinned() if few else motions, measure, asked)
-    both_sides = {one.name: one.sides for one in moved}
-    shifts = {"model": BETA_MODEL}
+    exact = _starts_by_statics(request, measure)
+    conversion = None
+    if level:
+        conversion = find_conversion(
+            counted, motions, request.records, level=level, curves=curves, by_statics=exact
+        )
+    fewer = motions.thinned() if few else motions
+    moved = _moved(request, fewer, measure, asked)
+    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].blind}
     if not request.objects.round:
         shifts["space"] = SPACE
     if conversion:
         shifts["conversion"] = conversion.shift
+        arrangements = {k: conversion.at_site(one) for k, one in arrangements.items()}
+        moved = [one.turned(conversion.of(fewer).at_site) for one in moved]
+    both_sides = {one.name: one.sides for one in moved}
+    if conversion and (together := conversion.sides(counted)):
+        both_sides["together"] = together
+    now = next(iter(arrangements.values()))
 
     def estimated(one: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
         return estimate(one, now, both_sides, fixed or {}, shifts)
@@ -205,9 +221,8 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         fixed = _of_quantiles(now, hazard)
         probability = estimated(risk_target(hazard, request.years), fixed)
     rocking, share = None, None
-    rocks_from = _rocks_from(request, now)
+    rocks_from = _rocks_from(request, counted)
     if level:
-        exact = _starts_by_statics(request, measure)
         rocking = estimate_rocking(level.value, now, both_sides, exact=exact)
         share = _no_more_than(estimated(share_target(level.value)), rocking)
         rocking = _no_less_than(rocking, share)
@@ -217,24 +232,25 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         motions=motions,
         level=level,
         hazard=hazard,
+        counted=counted,
         arrangements=arrangements,
         rocking=rocking,
         rocks_from=rocks_from,
         share=share,
         probability=probability,
-        counts=_counts(now, level),
+        counts=_counts(counted, level) if now is counted else None,
         amplitudes={p: estimated(amplitude_target(p)) for p in (0.1, 0.5)},
         by_arrangement={name: target.value(one) for name, one in arrangements.items()},
-        curve=None if brief else fragility_of(now.outcomes()),
+        curve=None if brief or now is not counted else fragility_of(now.outcomes()),
         conversion=conversion,
         directions=None
         if brief or objects.round or objects.many
         else find_directions(
             objects, motions, make_ladder(motions, measure, asked, FEW_LEVELS), at
         ),
-        remedies=() if brief else _remedies(request, motions, ladder, target, now),
+        remedies=() if brief else _remedies(request, motions, ladder, target, now, conversion),
         effects=tuple(one.turned(target.value) for one in moved),
-        rules=() if brief or objects.round else tuple(check_rules(objects, motions, now)),
+        rules=() if brief or objects.round else tuple(check_rules(objects, motions, counted)),
         sliding_share=math.nan
         if brief or at is None or objects.friction is None
         else share_with_sliding(objects, motions, measure, at),
@@ -247,12 +263,20 @@ def _target(level: Level | None, hazard: HazardCurve | None, years: float) -> Ta
     return share_target(level.value) if level else amplitude_target(0.5)
 
 
-def _governing(request: Request, motions: MotionSet) -> HazardCurve | None:
-    """Of several hazard curves the one in whose measure the motions' capacities scatter least."""
-    if not request.hazard:
-        return None
-    if len(request.hazard) == 1:
-        return request.hazard[0]
+def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
+    """The hazard curve that counts, and that of PGV where there is one beside it.
+
+    Without PGV that one counts in whose measure the motions' capacities scatter least, or that of the level asked
+    about.
+    """
+    asked = request.level.measure if request.level else None
+    curves = [one for one in request.hazard if one.measure == asked] or request.hazard
+    others = [one for one in curves if one.measure != PGV]
+    velocity = [one for one in request.hazard if one.measure == PGV]
+    if not others:
+        return tuple(velocity)
+    if len(others) == 1:
+        return (*others, *velocity)
     objects = request.objects
     name, body = next(iter(objects.arrangements.items()))
 
@@ -262,7 +286,7 @@ def _governing(request: Request, motions: MotionSet) -> HazardCurve | None:
         known = np.log(first[np.isfinite(first)])
         return float(known.std()) if known.size > 1 else math.inf
 
-    return min(request.hazard, key=scatter)
+    return (min(others, key=scatter), *velocity)
 
 
 def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
@@ -349,10 +373,17 @@ def _of_quantiles(now: Verdicts, hazard: HazardCurve) -> dict[str, float]:
 
 
 def _remedies(
-    request: Request, motions: MotionSet, ladder: Ladder, target: Target, now: Verdicts
+    request: Request,
+    motions: MotionSet,
+    ladder: Ladder,
+    target: Target,
+    now: Verdicts,
+    conversion: Conversion | None,
 ) -> tuple[Remedy, ...]:
     bodies = remedies_of(request.objects)
     changed = verdicts_of(request.objects, bodies, motions, ladder)
+    if conversion:
+        changed = {name: conversion.at_site(one) for name, one in changed.items()}
     found = compare(target, now, changed)
     # an amplitude helps by growing, a probability by shrinking
     grows = request.level is None and not request.hazard

@@ -154,7 +154,12 @@ def _add_place(place: Any) -> None:
         help="of the building: its period follows from that and its height",
     )
     place.add_argument("--pga", action=_Once, metavar="ACCELERATION", help="of the ground: 0.25g")
-    place.add_argument("--pgv", action=_Once, metavar="VELOCITY", help="of the ground: 20cm/s")
+    place.add_argument(
+        "--pgv",
+        action=_Once,
+        metavar="VELOCITY",
+        help="of the ground, alone or beside the other: 20cm/s",
+    )
     place.add_argument(
         "--sa", action=_Once, nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g"
     )

@@ -98,13 +98,14 @@ def _live(found: Assessment) -> Markup:
     """
     if found.request.objects.round:
         return Markup("")
-    order = np.argsort(found.verdicts.first_levels(), kind="stable")
+    order = np.argsort(found.counted.first_levels(), kind="stable")
     places = dict.fromkeys(int(order[int(part * (order.size - 1))]) for part in LIVE)
     chosen = [replace(found.motions.base[i], name=_name_of(found, i)) for i in places]
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
         return Markup("")
-    return live_kernel(found.request.objects.arrangements, motions)
+    bodies = found.request.objects.arrangements
+    return live_kernel({name: body.system() for name, body in bodies.items()}, motions)
 
 
 def _name_of(found: Assessment, i: int) -> str:
@@ -417,7 +418,7 @@ def _glossary(found: Assessment) -> Section:
 
 
 def _motions(found: Assessment) -> Section:
-    first = found.verdicts.first_levels()
+    first = found.counted.first_levels()
     order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
     table = pd.DataFrame(
         {

@@ -441,7 +441,7 @@ def assumptions(found: Assessment) -> list[str]:
         lines.append(found.conversion.words)
     if found.hazard:
         lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
-    factor = found.verdicts.ladder.allowed.mean()
+    factor = found.counted.ladder.allowed.mean()
     lines.append(
         f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
         f"{100 * factor:.0f} % "
@@ -459,6 +459,8 @@ def doubts(found: Assessment) -> list[str]:
             lines.append(
                 f"{found.request.level.words} is exceeded {rate:.2g} times a year by this hazard; check both."
             )
+    if found.conversion and (beyond := found.conversion.beyond(found.level)):
+        lines.append(beyond)
     if found.hazard is not None:
         strong = float(found.hazard.level(1 / 475))
         least, most = {"PGA": (0.01, 2.0), "SA": (0.01, 6.0), "PGV": (0.5, 250.0)}[

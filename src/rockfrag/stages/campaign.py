@@ -1,5 +1,6 @@
 """The tables of a campaign on a shake table, from the table of tests to comparisons."""
 
+import logging
 from typing import Any
 
 import numpy as np
@@ -51,7 +52,7 @@ DRIFT_CORNER_HZ = 0.1
 def run(job: Job[CampaignStudy]) -> Results:
     """Yield the tables of the campaign (``TABLES``), each as soon as it is there."""
     study = job.study
-    campaign, motions = _campaign_with_motions(job)
+    campaign, motions = campaign_with_motions(study, job.log)
     thing = object_of(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
     verdicts, rocked = simulate_tests(trials, motions, job.threads)
@@ -75,16 +76,30 @@ def run(job: Job[CampaignStudy]) -> Results:
     yield "footprint", _footprint(study, thing, trials, verdicts == measured, groups)
 
 
-def _campaign_with_motions(job: Job[CampaignStudy]) -> tuple[Campaign, list[Motion]]:
-    """Read the table of tests and the motion of each, scaled where the table says so."""
-    study = job.study
+def campaign_with_motions(
+    study: CampaignStudy, log: logging.Logger
+) -> tuple[Campaign, list[Motion]]:
+    """Read the table of tests and the motion of each, scaled where the table says so.
+
+    Parameters
+    ----------
+    study
+        The configuration.
+    log
+        Where it is said how many tests are left out.
+
+    Raises
+    ------
+    InputError
+        If the table or a motion cannot be used.
+    """
     for public in study.fetch:
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
         absent = missing_motions(study.motions, list(campaign.tests["motion"]))
         campaign = campaign.only(~campaign.tests["motion"].isin(absent))
-        job.log.info("%d tests without a motion are left out", len(absent))
+        log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
             raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
     motions = _motions(study, campaign, study.conditioning)
@@ -289,7 +304,7 @@ def _contact(
         "overturned",
         "right",
     ]
-    if isinstance(thing, Block):
+    if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns, dtype=float)
     low, high = study.unknowns["contact_tolerance_mm"]
     scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
@@ -330,7 +345,7 @@ def _footprint(
 ) -> pd.DataFrame:
     """Seen from above, about the centre of gravity: outline, and what carries within the plausible tolerances."""
     columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]
-    if isinstance(thing, Block):
+    if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns)
     likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
     parts = [("outline", float("nan"), thing.outline)]

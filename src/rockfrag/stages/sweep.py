@@ -2,7 +2,6 @@
 
 import warnings
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +13,14 @@ from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
 from rockfrag.outcomes.columns import SUFFIXES
+from rockfrag.outcomes.limit_states import limit_states
 from rockfrag.outcomes.outcomes import Outcomes, columns
 from rockfrag.records.motion import Motion
+from rockfrag.shaketable.swept import fallen_names, labels_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 NEAR = 1 + 0.01 * np.arange(-10, 11)
@@ -70,13 +71,13 @@ def _sweep_part(job: Job[Study]) -> None:
                 for i in range(0, len(motions), batch)
             )
             histories += _write(tables, path)
-        if ups is not None and configuration.friction is None:
+        if ups is not None and not configuration.loose:
             _say_how_light(job, configuration, number)
         job.log.info("%s: %d histories so far", configuration.name, histories)
     job.log.info("response histories: %d", histories)
 
 
-def _say_how_light(job: Job[Study], configuration: Configuration, number: int) -> None:
+def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
     """Log in how many histories the ground takes more than half of all weight."""
     from rockfrag.rocking.ensemble import LIGHT
 
@@ -118,7 +119,7 @@ def _all_as_recorded(job: Job[Study]) -> pd.DataFrame:
 
 
 def sweep_table(
-    configuration: Configuration,
+    configuration: System,
     motions: Sequence[Motion],
     amplitudes: Amplitudes,
     threads: int = 1,
@@ -142,7 +143,8 @@ def sweep_table(
     Returns
     -------
     One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
-    ``motion``, ``event``, ``floor``, ``amplitude_g``, ``overturned``, ``overturned_body``,
+    ``motion``, ``event``, ``floor``, ``amplitude_g``, a column for each limit state that is counted
+    (``overturned``, with friction ``slides``), ``overturned_body``,
     ``overturning_time_s`` and ``certain_time_s`` (instant of the fall, and from which it was certain),
     ``impacts``, ``unstable_distance`` (small where the outcome nearly flipped), ``peak_rotation_body_1`` and on
     (|θ| of each body from below over its critical angle); with vertical motion and without friction also
@@ -164,24 +166,26 @@ def sweep_table(
         return _texts(texts, np.repeat(np.arange(len(motions), dtype=np.int32), each))
 
     made = {
-        "configuration": of_all(configuration.name),
-        "object": of_all(configuration.object),
-        "pedestal": of_all(configuration.label),
+        **{key: of_all(text) for key, text in labels_of(configuration).items()},
         "motion": of_motions([motion.name for motion in motions]),
         "event": of_motions([motion.metadata.get("event") or motion.name for motion in motions]),
         "floor": of_motions([motion.metadata["floor"] for motion in motions]),
         "amplitude_g": np.tile(values, len(motions)),
-        "overturned": result.overturned[0].ravel(),
+        **{
+            state.column: state.reached(result)[0].ravel()
+            for state in limit_states()
+            if state.counted(configuration)
+        },
         "overturned_body": _texts(
-            configuration.fallen_names, result.overturned_body[0].ravel().astype(np.int32)
+            fallen_names(configuration), result.overturned_body[0].ravel().astype(np.int32)
         ),
         **_of_case(result, "overturning_time", "certain_time", "impacts", "unstable_distance"),
         **_of_parts(result, "peak_rotation"),
     }
-    if configuration.friction is None and vertical is not None:
+    if not configuration.loose and vertical is not None:
         made |= _of_case(result, "minimum_gravity_ratio")
-    if configuration.friction is not None:
-        rough = _shaken(replace(configuration, friction=None), motions, scales, threads, vertical)
+    if configuration.loose:
+        rough = _shaken(configuration.held(), motions, scales, threads, vertical)
         made["peak_slip_m"] = result.peak_slip[0].max(axis=-1).ravel()
         made |= _of_parts(result, "slip", "peak_slip") | _of_case(result, "flights")
         made["overturned_without_sliding"] = rough.overturned[0].ravel()
@@ -214,7 +218,7 @@ def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray
 
 
 def _shaken(
-    configuration: Configuration,
+    configuration: System,
     motions: Sequence[Motion],
     scales: NDArray[np.float64],
     threads: int,
@@ -227,18 +231,16 @@ def _shaken(
         # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)
         return overturns(
-            [configuration.body],
+            configuration,
             motions,
             scales=scales,
-            restitution=[configuration.restitution],
-            friction=None if configuration.friction is None else [configuration.friction],
             vertical=vertical,
             threads=threads,
         )
 
 
 def as_recorded(
-    configuration: Configuration,
+    configuration: System,
     motions: Sequence[Motion],
     threads: int = 1,
     vertical: Sequence[Motion] | None = None,
@@ -268,21 +270,19 @@ def as_recorded(
     itself = len(NEAR) // 2
     table = pd.DataFrame(
         {
-            "configuration": configuration.name,
-            "object": configuration.object,
-            "pedestal": configuration.label,
+            **labels_of(configuration),
             "motion": [motion.name for motion in motions],
             "event": [motion.metadata.get("event") or motion.name for motion in motions],
             "floor": [motion.metadata["floor"] for motion in motions],
             "pga_g": [motion.pga / GRAVITY for motion in motions],
             "overturned": result.overturned[0, :, itself],
             "overturned_body": np.take(
-                configuration.fallen_names, result.overturned_body[0, :, itself]
+                fallen_names(configuration), result.overturned_body[0, :, itself]
             ),
             "peak_rotation": result.peak_rotation[0, :, itself, -1],
             "share_near": result.overturned[0].mean(axis=1),
         }
     )
-    if configuration.friction is None:
+    if not configuration.loose:
         return table
     return table.assign(peak_slip_m=result.peak_slip[0, :, itself].max(axis=-1))

@@ -120,6 +120,12 @@ class RigidBody:
         return not isinstance(self.inertia, tuple)
 
     @property
+    def width(self) -> float:
+        """Width of the base in the plane of x and z [m]."""
+        left, right = interval_of(self.base, (1.0, 0.0))
+        return right - left
+
+    @property
     def tensor(self) -> NDArray[np.float64]:
         """Tensor of inertia about the centre of gravity [kg m²], shape (3, 3); NaN but yy of a planar body."""
         if isinstance(self.inertia, tuple):

@@ -1,16 +1,15 @@
 """Friction of each contact of a body, as tests and the plain reference take it."""
 
 from rockfrag.errors import InputError
-from rockfrag.rocking.inputs import Standing
 from rockfrag.rocking.options import FrictionInput, frictions_of
-from rockfrag.system.blocks import as_system
+from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.contact import ROUGHEST, Friction
 
 __all__ = ["FrictionInput", "interface_frictions"]
 
 
 def interface_frictions(
-    body: Standing, friction: object, name: str = "friction"
+    body: SystemLike, friction: object, name: str = "friction"
 ) -> tuple[Friction, ...]:
     """Return the friction of each interface of a body, the ground first, one that never slides as rough as can be.
 
