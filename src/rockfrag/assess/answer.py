@@ -198,7 +198,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         )
     fewer = motions.thinned() if few else motions
     moved = _moved(request, fewer, measure, asked)
-    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].blind}
+    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].beyond}
     if not request.objects.round:
         shifts["space"] = SPACE
     if conversion:
