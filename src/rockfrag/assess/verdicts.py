@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,9 @@ from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.measured_restitution import Restitution
+from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body
+from rockfrag.system.contact import Friction
 
 Floats = NDArray[np.float64]
 
@@ -27,6 +29,12 @@ LEVELS = 80
 
 FEW_LEVELS = 28
 """Levels for what is only compared, and for many objects."""
+
+FEWEST_LEVELS = 14
+"""Levels for what is only compared of many objects."""
+
+MOST_TESTS = 400_000
+"""Tests that are simulated at once, which bounds the memory of their results."""
 
 RANGE = (0.05, 8.0)
 """Lowest and highest level over the median of the motions as recorded."""
@@ -62,6 +70,10 @@ class Ladder:
     allowed: NDArray[np.bool_]
 
 
+AT_REST = 1e-9
+"""Factor of motions that are not counted: at rest costs nothing."""
+
+
 def believable_scales(base: Sequence[Motion]) -> Floats:
     """Largest factor on each motion at which it is still one that a floor may feel, shape (motions, 1)."""
     return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
@@ -84,7 +96,7 @@ def make_ladder(
         Number of other levels.
     """
     values = motions.values(measure)
-    middle = float(np.median(values))
+    middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
     scales = levels / values[:, np.newaxis]
@@ -195,9 +207,7 @@ def verdicts_of(
     ladder
         The levels.
     """
-    restitution = [objects.restitution_of(body) for body in bodies.values()]
-    found = _shaken(list(bodies.values()), restitution, motions, ladder)
-    return dict(zip(bodies, found, strict=True))
+    return verdicts_of_each([objects], [bodies], motions, ladder)[0]
 
 
 def verdicts_of_all(
@@ -214,21 +224,50 @@ def verdicts_of_all(
     ladder
         The levels.
     """
-    bodies = [one.body for one in objects]
-    restitution = [one.restitution_of(one.body) for one in objects]
-    return _shaken(bodies, restitution, motions, ladder)
+    bodies = [{"": one.body} for one in objects]
+    return [found[""] for found in verdicts_of_each(objects, bodies, motions, ladder)]
+
+
+def verdicts_of_each(
+    objects: Sequence[Objects],
+    bodies: Sequence[Mapping[str, Body]],
+    motions: MotionSet,
+    ladder: Ladder,
+) -> list[dict[str, Verdicts]]:
+    """Shake several bodies of each of several objects by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        The objects.
+    bodies
+        Bodies of each by name.
+    motions
+        The motions.
+    ladder
+        The levels.
+    """
+    flat = [
+        (one, body) for one, named in zip(objects, bodies, strict=True) for body in named.values()
+    ]
+    restitution = [one.restitution_of(body) for one, body in flat]
+    most = max(1, MOST_TESTS // ladder.scales.size)
+    found: list[Verdicts] = []
+    for i in range(0, len(flat), most):
+        part = [body for _, body in flat[i : i + most]]
+        found += _shaken(part, restitution[i : i + most], motions, ladder)
+    each = iter(found)
+    return [{name: next(each) for name in named} for named in bodies]
 
 
 def _shaken(
     bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
 ) -> list[Verdicts]:
-    """Verdicts of planar bodies; an engine in space would take both components of a record here."""
-    if not bodies:
-        return []
+    """Outcomes of planar bodies; an engine in space would take both components of a record here."""
     if motions.worst:
         return _shaken_from_all_sides(bodies, restitution, motions, ladder)
-    # what is beyond is not counted, and need not be simulated as it is
-    scales = np.minimum(ladder.scales, believable_scales(motions.base))
+    scales = np.where(ladder.allowed, ladder.scales, AT_REST)
+    scales = np.minimum(scales, believable_scales(motions.base))
     result, light = simulated(bodies, motions.base, scales, restitution)
     rocked = limit_state_named("rocks").reached(result)
     return [
@@ -280,6 +319,7 @@ def _shaken_from_all_sides(
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
     scales = np.minimum(ladder.scales[of_row], believable_scales(shaking))
+    scales = np.where(ladder.allowed[of_row], scales, AT_REST)
     result, light = simulated(bodies, shaking, scales, restitution)
     # the place of the record that stands for each motion
     place = np.arange(len(motions.base))
@@ -293,6 +333,39 @@ def _shaken_from_all_sides(
         np.logical_or.at(rocked, of_row, moves[i])
         found.append(Verdicts(ladder, fell[place], rocked[place], motions.events, light))
     return found
+
+
+def on_pad(
+    objects: Objects, friction: float, motions: MotionSet, ladder: Ladder
+) -> tuple[Verdicts, Floats]:
+    """Outcomes of the object on a pad on which it may slide, and how far it does.
+
+    Parameters
+    ----------
+    objects
+        The object as it is.
+    friction
+        Coefficient of friction of the pad, which lies between the object and what it stands on [-].
+    motions
+        The motions.
+    ladder
+        The levels.
+
+    Returns
+    -------
+    outcomes, slip
+        The largest displacement on the pad [m] has the shape (motions, levels).
+    """
+    body = objects.body
+    system = system_of(body, restitution=objects.restitution_of(body))
+    *below, pad = system.contacts
+    pad = replace(pad, friction=Friction(friction, friction))
+    system = replace(system, contacts=(*below, pad))
+    scales = np.where(ladder.allowed, ladder.scales, AT_REST)
+    result = overturns(system, motions.base, scales=scales)
+    rocked = limit_state_named("rocks").reached(result)[0]
+    outcomes = Verdicts(ladder, result.overturned[0], rocked, motions.events)
+    return outcomes, result.peak_slip[0, ..., -1]
 
 
 def share_with_sliding(
