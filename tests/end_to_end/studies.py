@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from rockfrag.study.loading import load_study
+from rockfrag.study.loading import load_any
 
 from .. import stages_in_process
 
@@ -118,5 +118,5 @@ def run(study: Foreign, folder: Path) -> Path:
 
 def run_stages(path: Path) -> Path:
     """Run all stages of a configuration in this process, and return the folder of its results."""
-    study = load_study(path)
+    study = load_any(path)
     return stages_in_process.run_stages(study, path.parent / "results" / study.name)

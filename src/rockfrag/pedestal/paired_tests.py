@@ -47,11 +47,6 @@ class Pairs:
 
     __repr__ = short_repr
 
-    @property
-    def balanced(self) -> bool:
-        """Whether every object met every floor of every event exactly once."""
-        return is_balanced(self.table)
-
     def notes(self) -> list[str]:
         """Say in words what is not among the complete pairs."""
         notes = []
@@ -100,13 +95,6 @@ def _some(names: Iterable[str]) -> str:
 
 def _counted(n: int, noun: str) -> str:
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
-
-
-def is_balanced(table: pd.DataFrame) -> bool:
-    """Whether pairs fill the grid object x event x floor with one row per cell."""
-    counts = table.groupby(["object", "event", "floor"]).size()
-    cells = int(np.prod([table[name].nunique() for name in ("object", "event", "floor")]))
-    return len(counts) == cells and bool((counts == 1).all())
 
 
 def check_tests(tests: pd.DataFrame) -> pd.DataFrame:

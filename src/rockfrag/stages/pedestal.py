@@ -8,7 +8,7 @@ from rockfrag.errors import InputError
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 
-PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "mixed", "notes")
+PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "notes")
 """Tables of :func:`pedestal_tables`, each written under ``pedestal/``."""
 
 
@@ -60,10 +60,11 @@ def pedestal_tables(
             "whole": found.whole,
             "without_event": found.without_event,
             "ranks": found.ranks,
-            "mixed": found.mixed,
             "notes": pd.DataFrame({"note": list(found.notes)}),
         }.items():
             labelled = table.copy()
             labelled.insert(0, "reading", reading)
             parts[name].append(labelled)
+    if not parts["pairs"]:
+        raise InputError("tests: no reading has tests with and without a pedestal.")
     return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}

@@ -54,24 +54,13 @@ OF_ONE_COMPONENT = (
 AnyStudy = Study | MeasuredTable | CampaignStudy
 
 
-def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's configuration file and everything small that it names, and check them all.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key or row, what was expected and what was found.
-    """
-    return study_from(read_yaml(path), path)
-
-
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
     """Read a configuration of any kind: a simulated study, a measured table, a campaign on a shake table.
 
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        One sentence with the file, the key or row, what was expected and what was found.
     """
     return any_study(read_yaml(path), path)
 
@@ -82,7 +71,7 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        As :func:`load_any`.
     """
     if is_measured_table(content):
         return measured_table_from(content, path)
@@ -97,7 +86,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        As :func:`load_any`.
     """
     source = Path(path)
     content = checked(content, "study", str(source))

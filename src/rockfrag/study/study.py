@@ -150,11 +150,6 @@ class Study:
         return {GROUND: 0} if self.building is None else dict(self.building.floors)
 
     @property
-    def motion_sets(self) -> list[str]:
-        """Paths of the motions that shake the bodies."""
-        return ["motions/floors.parquet", *(["motions/vertical.parquet"] if self.vertical else [])]
-
-    @property
     def body_files(self) -> list[str]:
         """Paths of the tables of bodies."""
         return [str(path) for path in (self.specimens_file, self.configurations_file) if path]
