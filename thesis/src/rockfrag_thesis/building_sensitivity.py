@@ -175,12 +175,13 @@ class _Ground:
         return self.known[motion.name]
 
     def _shake(self, motion: Motion) -> pd.DataFrame:
-        tables = [
+        tables: list[pd.DataFrame] = [
             sweep_table(one, [motion], self.amplitudes_g, self.threads).to_pandas()
             for one in self.specimens
         ]
         event = motion.metadata.get("event") or motion.metadata["ground_motion"]
-        return pd.concat(tables, ignore_index=True).assign(event=event)
+        found = pd.concat(tables, ignore_index=True)
+        return found.assign(event=event)
 
 
 def _sweep(
