@@ -24,6 +24,7 @@ from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
 from rockfrag.study.configurations import (
     each_alone,
     read_configurations,
+    read_counterparts,
     read_specimens,
     with_friction,
     with_restitution,
@@ -94,10 +95,12 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
     specimens = read_specimens(specimens_file)
     configurations_file, known = None, each_alone(specimens)
+    counterparts: dict[str, str] = {}
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
         known = read_configurations(configurations_file, specimens)
+        counterparts = read_counterparts(configurations_file)
     building = content.get("building")
     building_file = None if building is None else existing_file(source, "building", building)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
@@ -132,6 +135,11 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
+        counterparts={
+            one.name: counterparts[one.name]
+            for one in configurations
+            if counterparts.get(one.name) in {other.name for other in configurations}
+        },
     )
     asked = plugins_asked(content)
     study = replace(
