@@ -110,9 +110,9 @@ def _registered(
 
 
 def _described(schema: _Schema, otherwise: str) -> str:
-    """What is expected, in words; ``{registry}`` stands for the names in it."""
+    """What is expected, in words; ``{registry}`` of two words or more is its names."""
     words = str(schema.get("description", otherwise))
-    return re.sub(r"\{(.+?)\}", lambda found: ", ".join(registered(found[1])), words)
+    return re.sub(r"\{(\w+ [\w ]+)\}", lambda found: ", ".join(registered(found[1])), words)
 
 
 def _with_text_keys(value: Any, key: str) -> Any:

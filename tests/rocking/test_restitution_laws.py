@@ -15,7 +15,8 @@ from rockfrag.laws import law_names
 from rockfrag.rocking import MeasuredRestitution
 from rockfrag.rocking.measured_restitution import largest_restitution
 from rockfrag.rocking.options import system_of
-from rockfrag.rocking.reference.model import Model
+
+from ..oracle.rocking_model import Model
 
 STILL = np.zeros(300)
 OUTCOME = np.dtype([("c", np.int64, 2), ("omega", np.float64, 2), ("gave_way", np.int64)])

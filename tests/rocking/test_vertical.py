@@ -6,7 +6,8 @@ import pytest
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.laws import law_names
 from rockfrag.rocking import MeasuredRestitution
-from rockfrag.rocking.reference import simulate_reference
+
+from ..oracle.rocking_integrator import simulate_reference
 
 # random bodies may lose contact, and pure rocking is what these tests are about
 pytestmark = pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")

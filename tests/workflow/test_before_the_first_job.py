@@ -17,7 +17,7 @@ from rockfrag.motions.measures import measure_motion
 from rockfrag.records.motion import Motion
 from rockfrag.schema import registered
 from rockfrag.study.configurations import read_specimens
-from rockfrag.study.loading import load_any, load_study
+from rockfrag.study.loading import load_any
 from rockfrag.yaml_file import read_yaml
 
 from .conftest import study_content, write_study
@@ -114,14 +114,14 @@ def test_every_measure_that_a_study_may_ask_for_is_measured_and_grows_with_the_a
 
 
 def test_null_is_the_same_as_no_building(study_folder: Path):
-    study = load_study(write_study(study_folder, {**study_content(), "building": None}))
+    study = load_any(write_study(study_folder, {**study_content(), "building": None}))
     assert study.building is None
     assert study.floors == {"ground": 0}
 
 
 def test_without_a_table_of_configurations_each_block_stands_alone(study_folder: Path):
     content = {**study_content(), "bodies": {"specimens": "specimens.csv", "use": ["T1", "T2"]}}
-    study = load_study(write_study(study_folder, content))
+    study = load_any(write_study(study_folder, content))
     assert [one.name for one in study.configurations] == ["T1", "T2"]
     assert not study.has_pairs
 

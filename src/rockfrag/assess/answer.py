@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.assess.conversion import Conversion, find_conversion
@@ -45,8 +44,6 @@ from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
 """Folder of fetched records."""
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """Simulation against measurement as a referee wants it: shares with intervals, both errors, rivals, regions."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -123,16 +123,20 @@ def fragility_beside(
         row: dict[str, object] = {"who": name}
         for i, parameter in enumerate(("theta", "beta")):
             row[parameter] = curve[0, i]
-            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = np.nanquantile(
-                curve[1:, i], tails
-            )
+            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = _limits(curve[1:, i], tails)
             if name != "measured":
                 ratio = curve[:, i] / curves["measured"][:, i]
                 row[f"{parameter}_ratio"] = ratio[0]
-                limits = np.nanquantile(ratio[1:], tails)
+                limits = _limits(ratio[1:], tails)
                 row[f"{parameter}_ratio_lower"], row[f"{parameter}_ratio_upper"] = limits
         rows.append(row)
     return pd.DataFrame(rows)
+
+
+def _limits(values: Floats, tails: Sequence[float]) -> Floats:
+    """Quantiles of what is a number; NaN where no resample gives a curve, as of one kind of outcome."""
+    known = values[np.isfinite(values)]
+    return np.quantile(known, tails) if known.size else np.full(len(tails), np.nan)
 
 
 def curves_of(measure: Floats, verdicts: Bools | Floats, weights: Floats) -> Floats:

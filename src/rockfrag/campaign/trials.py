@@ -8,6 +8,7 @@ evenly (scrambled Sobol points).
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -103,6 +104,45 @@ def sample_trials(
             "or lower edge_retreat_mm."
         )
     return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
+
+
+OUTER, CROWDED = 0.1, 0.25
+"""An end of a range is preferred if its outer tenth holds more than a quarter of the plausible trials: ours."""
+
+
+_NOTHING_BEYOND = (("edge_retreat_mm", 0.0), ("restitution", 1.0))
+
+
+def preferred_edges(
+    trials: pd.DataFrame, plausible: Any, ranges: Mapping[str, tuple[float, float]]
+) -> dict[str, str]:
+    """Say at which ends of their ranges plausible trials crowd.
+
+    Parameters
+    ----------
+    trials
+        Table of :class:`Trials`.
+    plausible
+        Labels of its plausible rows.
+    ranges
+        Lowest and highest value of each unknown; directions all around have no end.
+
+    Returns
+    -------
+    dict
+        ``low end`` or ``high end`` by unknown.
+    """
+    found = {}
+    for name, limits in ranges.items():
+        if name == "direction_deg" and limits[1] - limits[0] >= 360:
+            continue
+        # by rank, so that where few trials can stand few are expected
+        rank = trials[name].rank(pct=True)[plausible]
+        ends = ((limits[0], "low end", rank <= OUTER), (limits[1], "high end", rank > 1 - OUTER))
+        for limit, edge, at in ends:
+            if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
+                found[name] = edge
+    return found
 
 
 def block_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block:

@@ -407,24 +407,18 @@ AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)
 """Periods over which the average spectral acceleration is taken [s]."""
 
 
-def average_spectral_acceleration(motion: Motion, damping: float = 0.05) -> float:
-    """Geometric mean of the pseudo-spectral acceleration at `AVERAGE_PERIODS`, AvgSA [m/s²].
-
-    Eads, Miranda and Lignos (2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no
-    period of its own, so the periods are those from which its overturning threshold feels the motion.
-    """
-    from rockfrag.motions.side_by_side import peak_displacements
-
-    return _average(peak_displacements(motion, AVERAGE_PERIODS, damping))
-
-
 def _average(displacement: Floats) -> float:
     spectrum = displacement * (2 * math.pi / AVERAGE_PERIODS) ** 2
     return float(np.prod(spectrum ** (1 / spectrum.size)))
 
 
 def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, float]:
-    """`housner_intensity` [m] and `average_spectral_acceleration` [m/s²] of one march of all oscillators."""
+    """`housner_intensity` [m] and AvgSA [m/s²], by one integration of all oscillators.
+
+    AvgSA is the geometric mean of the pseudo-spectral acceleration at `AVERAGE_PERIODS` (Eads, Miranda and
+    Lignos, 2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no period of its own, so the
+    periods are those from which its overturning threshold feels the motion.
+    """
     from rockfrag.motions.side_by_side import peak_displacements
 
     periods = np.concatenate([HOUSNER_PERIODS, AVERAGE_PERIODS])

@@ -240,6 +240,38 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     return pd.concat(parts, ignore_index=True), origin
 
 
+def with_counterparts(
+    tests: pd.DataFrame, counterparts: Mapping[str, str]
+) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Let arrangements that name their counterpart be compared with it instead of with the object alone.
+
+    Parameters
+    ----------
+    tests
+        See `check_tests`, with the column ``configuration``.
+    counterparts
+        Arrangement with which each one is compared, both by name.
+
+    Returns
+    -------
+    tests
+        The rows; those of each such comparison stand for an object of their own, with the arrangement as P and
+        its counterpart as NP.
+    origin
+        Object by the name of each comparison.
+    """
+    parts = [tests[~tests["configuration"].isin(list(counterparts))]]
+    origin: dict[str, str] = {}
+    for name, other in counterparts.items():
+        label = f"{name} against {other}"
+        for side, configuration in (("P", name), ("NP", other)):
+            rows = tests[tests["configuration"] == configuration]
+            parts.append(rows.assign(object=label, pedestal=side, configuration=configuration))
+            if side == "P" and len(rows):
+                origin[label] = str(rows["object"].iloc[0])
+    return pd.concat(parts, ignore_index=True), origin
+
+
 def slenderness_of(clean: pd.DataFrame, slenderness: Mapping[str, float]) -> pd.Series:
     """Slenderness of each row's object [-].
 

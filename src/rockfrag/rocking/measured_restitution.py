@@ -73,27 +73,6 @@ def largest_restitution(block: Block, pole: int | None = None) -> float:
     return geometry.largest_restitution(block.shape, pole)
 
 
-def impulse_position(block: Block, restitution: float, pole: int) -> float:
-    """Where the impulse of a closing base acts, if the lone block comes off with ``restitution``.
-
-    The angular momentum about the point of the impulse is conserved; conserving it about the new pole
-    (position 1) gives :meth:`Block.momentum_restitution`, about the middle of the base (position 0) of
-    a symmetric block gives 1.
-
-    Parameters
-    ----------
-    restitution
-        ω⁺ / ω⁻ of the lone block on a rigid base [-].
-    pole
-        The corner that comes down, +1 or -1.
-
-    Returns
-    -------
-    Position σ of the impulse in half widths from the middle towards the new pole [-].
-    """
-    return geometry.impulse_position(block.shape, restitution, pole)
-
-
 def impact_laws(
     system: System, restitution: Restitution, name: str = "restitution"
 ) -> tuple[ImpactLaw, ...]:

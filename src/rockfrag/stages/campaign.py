@@ -13,6 +13,7 @@ from rockfrag.campaign.comparison import (
     judged_tests,
     paired_row,
 )
+from rockfrag.campaign.peaks import check_peaks, measured_peaks
 from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
 from rockfrag.campaign.table_motions import missing_motions, table_motions
 from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
@@ -21,8 +22,6 @@ from rockfrag.campaign.trials import Trials, sample_trials
 from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
 from rockfrag.campaign.verdicts import simulate_tests
 from rockfrag.errors import InputError
-from rockfrag.motions.filtering import highpass
-from rockfrag.motions.intensity import pga, pgv
 from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.motions.scaling import scale_to_pga
@@ -34,8 +33,8 @@ from rockfrag.system.blocks import Block
 from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
 
-OURS = "rockfrag"
-"""Who gave the simulated verdicts, in the tables."""
+OURS, VOTES = "rockfrag", "rockfrag by votes"
+"""Who gave the simulated verdicts, and the votes behind them, in the tables."""
 
 TABLES = (
     *("tests", "trials", "agreement", "rocking", "fragility"),
@@ -45,8 +44,7 @@ TABLES = (
 VARIED_SHARE = 4
 """Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
 REPLICATES = 400
-DRIFT_CORNER_HZ = 0.1
-"""High-pass before a measured motion is integrated: its noise would drift."""
+FEWEST_GROUPS = 2
 
 
 def run(job: Job[CampaignStudy]) -> Results:
@@ -102,11 +100,18 @@ def campaign_with_motions(
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
             raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
+    if campaign.tests["group"].nunique() < FEWEST_GROUPS:
+        raise InputError(
+            f"{study.tests}: its tests are of a single input motion; give those of two or more, as guesses are "
+            "chosen by the tests of some and judged by those of others."
+        )
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
         campaign = Campaign(
-            _measured(campaign.tests, motions), ("pga_g", "pgv_cm_s"), campaign.codes
+            campaign.tests.join(measured_peaks(motions)), ("pga_g", "pgv_cm_s"), campaign.codes
         )
+    elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
+        check_peaks(campaign.tests, motions, study.motions)
     return campaign, motions
 
 
@@ -130,14 +135,6 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
         motion if np.isnan(peak) else scale_to_pga(motion, peak)
         for motion, peak in zip(motions, peaks, strict=True)
     ]
-
-
-def _measured(tests: pd.DataFrame, motions: list[Motion]) -> pd.DataFrame:
-    """Intensity of the motions themselves, where the table of tests has none."""
-    return tests.assign(
-        pga_g=[pga(one) / GRAVITY for one in motions],
-        pgv_cm_s=[100 * pgv(highpass(one, DRIFT_CORNER_HZ)) for one in motions],
-    )
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:
@@ -243,7 +240,7 @@ def _fragility(
         fragility_beside(
             campaign.tests[name].to_numpy(),
             measured,
-            {OURS: validated.verdict},
+            {OURS: validated.verdict, VOTES: validated.mean_votes},
             groups,
             level=study.confidence,
             replicates=REPLICATES,

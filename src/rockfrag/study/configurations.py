@@ -70,7 +70,7 @@ def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) 
 
     Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several
     blocks under an object are named from above, ``base|plinth``; they may stand behind the object too,
-    ``venus|base|plinth``.
+    ``venus|base|plinth``. Of ``counterpart`` see :func:`read_counterparts`.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) 
     """
     found: dict[str, System] = {}
     checked: dict[str, str] = {}
-    for row in read_rows(path, ["name", "object"], ["pedestal"]):
+    for row in read_rows(path, *_COLUMNS):
         name = row.text("name")
         object_name, *behind = names_from_above(row.text("object")) or ("",)
         under = names_from_above(row.cells.get("pedestal", ""))
@@ -99,6 +99,27 @@ def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) 
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
     return list(found.values())
+
+
+_COLUMNS = (["name", "object"], ["pedestal", "counterpart"])
+
+
+def read_counterparts(path: str | os.PathLike[str]) -> dict[str, str]:
+    """Read with which arrangement one is compared, by name, where that is not its object alone on the floor.
+
+    Raises
+    ------
+    InputError
+        If the table cannot be read, or a counterpart is no other arrangement of it.
+    """
+    rows = read_rows(path, *_COLUMNS)
+    names = {row.cells["name"] for row in rows}
+    found = {row.text("name"): row.text("counterpart") for row in rows if row.has("counterpart")}
+    for row in rows:
+        other = found.get(row.cells["name"])
+        if other is not None and other not in names - {row.cells["name"]}:
+            raise row.error("counterpart", f"expected another arrangement, found {other}")
+    return found
 
 
 def names_from_above(text: str) -> tuple[str, ...]:

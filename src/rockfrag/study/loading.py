@@ -24,6 +24,7 @@ from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
 from rockfrag.study.configurations import (
     each_alone,
     read_configurations,
+    read_counterparts,
     read_specimens,
     with_friction,
     with_restitution,
@@ -54,24 +55,13 @@ OF_ONE_COMPONENT = (
 AnyStudy = Study | MeasuredTable | CampaignStudy
 
 
-def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's configuration file and everything small that it names, and check them all.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key or row, what was expected and what was found.
-    """
-    return study_from(read_yaml(path), path)
-
-
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
     """Read a configuration of any kind: a simulated study, a measured table, a campaign on a shake table.
 
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        One sentence with the file, the key or row, what was expected and what was found.
     """
     return any_study(read_yaml(path), path)
 
@@ -82,7 +72,7 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        As :func:`load_any`.
     """
     if is_measured_table(content):
         return measured_table_from(content, path)
@@ -97,7 +87,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        As :func:`load_any`.
     """
     source = Path(path)
     content = checked(content, "study", str(source))
@@ -105,10 +95,12 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
     specimens = read_specimens(specimens_file)
     configurations_file, known = None, each_alone(specimens)
+    counterparts: dict[str, str] = {}
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
         known = read_configurations(configurations_file, specimens)
+        counterparts = read_counterparts(configurations_file)
     building = content.get("building")
     building_file = None if building is None else existing_file(source, "building", building)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
@@ -143,6 +135,11 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
         vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
+        counterparts={
+            one.name: counterparts[one.name]
+            for one in configurations
+            if counterparts.get(one.name) in {other.name for other in configurations}
+        },
     )
     asked = plugins_asked(content)
     study = replace(

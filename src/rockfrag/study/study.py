@@ -79,6 +79,8 @@ class Study:
         Format in which the motions of all floors are written too, or None.
     more
         Optional parts: shaker, measured tests.
+    counterparts
+        Name of the configuration with which one is compared, where that is not its object alone on the floor.
     added
         Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`.
     """
@@ -104,6 +106,7 @@ class Study:
     vertical: bool
     write_motions: str | None
     more: Supplementary
+    counterparts: Mapping[str, str] = field(default_factory=dict)
     added: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -134,9 +137,15 @@ class Study:
 
     @property
     def has_pairs(self) -> bool:
-        """Whether an object is tested both with and without a pedestal."""
+        """Whether an arrangement is tested together with what it is compared with."""
+        return bool(self.counterparts) or self.with_and_alone
+
+    @property
+    def with_and_alone(self) -> bool:
+        """Whether an object is compared with itself alone on the floor."""
         lone = {one.names[-1] for one in self.configurations if one.count == 1}
-        return any(one.names[-1] in lone for one in self.configurations if one.count > 1)
+        rest = (one for one in self.configurations if one.name not in self.counterparts)
+        return any(one.names[-1] in lone for one in rest if one.count > 1)
 
     @property
     def simulated_in_page(self) -> bool:
@@ -148,11 +157,6 @@ class Study:
     def floors(self) -> dict[str, int]:
         """Level of each floor that is shaken, by its label; 0 is the ground."""
         return {GROUND: 0} if self.building is None else dict(self.building.floors)
-
-    @property
-    def motion_sets(self) -> list[str]:
-        """Paths of the motions that shake the bodies."""
-        return ["motions/floors.parquet", *(["motions/vertical.parquet"] if self.vertical else [])]
 
     @property
     def body_files(self) -> list[str]:

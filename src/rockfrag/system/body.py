@@ -41,25 +41,6 @@ class Circle(NamedTuple):
 Outline = Interval | Polygon | Circle
 
 
-def convex_polygon(points: object) -> Polygon:
-    """Return the convex hull of points, shape (n, 2) [m], as a polygon.
-
-    Raises
-    ------
-    InputError
-        If the points span no area.
-    """
-    # scipy is loaded only by those who need it
-    from scipy.spatial import ConvexHull, QhullError
-
-    values = real_array("outline", points, "m")
-    try:
-        hull = ConvexHull(values)
-    except (QhullError, ValueError) as error:
-        raise InputError(f"outline: {shown(points)} are no corners of a polygon.") from error
-    return Polygon(tuple((float(x), float(y)) for x, y in values[hull.vertices]))
-
-
 @dataclass(frozen=True)
 class RigidBody:
     """One rigid body of a system.

@@ -12,8 +12,8 @@ from rockfrag.engines.records import body_record
 from rockfrag.laws import law_names
 from rockfrag.rocking import Block, MeasuredRestitution, Stack
 from rockfrag.rocking.options import system_of
-from rockfrag.rocking.reference.model import LinearModel, Model
 
+from ...oracle.rocking_model import LinearModel, Model
 from .motion import lagrange_by_newton
 from .systems import System, error, impact_map, random_systems
 
