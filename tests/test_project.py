@@ -182,3 +182,25 @@ def test_what_only_the_owner_can_fill_in_is_listed_and_still_missing():
         assert key in words
     for name in re.findall(r"`([A-Za-z_]+\.(?:md|toml|cff))`", words):
         assert (ROOT / name).is_file(), name
+
+
+def test_what_an_addition_costs_stands_where_the_table_says():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = text.split("## What an addition costs")[1].split("\n\n")[1].splitlines()[2:]
+    rows = {row.split("|")[1].strip().split(" ", 1)[1]: row for row in table}
+    assert len(rows) == len(table) >= 8
+    for row in table:
+        for name in re.findall(r"`(rockfrag\.[a-z_.]+)`", row):
+            importlib.import_module(name)
+    # a file a law, a package or module an engine, and nothing beside them
+    files = {path.stem for path in (ROOT / "src/rockfrag/laws").glob("[!_]*.py")}
+    assert files == set(importlib.import_module("rockfrag.laws").BUILT_IN)
+    for name in importlib.import_module("rockfrag.engines.contract").BUILT_IN:
+        assert importlib.import_module(name).ENGINE.name
+    # a declaration a measure, beside its function
+    source = (ROOT / "src/rockfrag/motions/intensity.py").read_text(encoding="utf-8")
+    declared = importlib.import_module("rockfrag.motions.declared").declared()
+    assert source.count("@intensity_measure(") == len(declared) > 15
+    states = (ROOT / "src/rockfrag/outcomes/limit_states.py").read_text(encoding="utf-8")
+    known = importlib.import_module("rockfrag.outcomes.limit_states").limit_states()
+    assert states.count("\n@limit_state(") == len(known) == 3

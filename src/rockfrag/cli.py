@@ -259,10 +259,10 @@ def _block(option: str, given: Sequence[str]) -> "Block":
 def _acceleration_doubt(peak: float, body: "Body") -> str:
     """Say that the motion looks as if it were in another unit, or return an empty text."""
     from rockfrag.plausibility import peak_warning
-    from rockfrag.rocking.inputs import least_uplift
+    from rockfrag.system.system import uplift_ratios
     from rockfrag.units import GRAVITY
 
-    return peak_warning(peak, least_uplift(body.system(), GRAVITY))
+    return peak_warning(peak, GRAVITY * min(uplift_ratios(body.system())))
 
 
 def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]

@@ -13,7 +13,7 @@ import yaml
 
 from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.report.part import Results
-from rockfrag.study.loading import load_study
+from rockfrag.study.loading import load_any
 
 from .checked_report import check_first_page, check_report
 from .studies import Foreign, run_stages, write
@@ -142,7 +142,7 @@ def fate(study: Foreign, folder: Path) -> tuple[int, list[str]]:
     path = write(study, folder)
     (folder / "shaker.yaml").write_text(yaml.safe_dump(SHAKER))
     try:
-        loaded = load_study(path)
+        loaded = load_any(path)
     except InputError as error:
         return 2, _one_sentence(str(error))
     try:

@@ -14,7 +14,7 @@ from rockfrag_thesis.explanation.explain import explain
 from rockfrag_thesis.explanation.simulated import REFERENCE
 from rockfrag_thesis.first_page import first_page
 from rockfrag_thesis.pattern import departures_by_floor
-from rockfrag_thesis.specimens import SLENDERNESS
+from rockfrag_thesis.specimens import THESIS_BODIES
 from rockfrag_thesis.statements import Evidence, ledger
 
 from ..end_to_end.checked_report import open_words
@@ -35,7 +35,8 @@ WORDS_WITH_DIGITS = (
 
 
 def effects_of(tests: pd.DataFrame) -> pd.DataFrame:
-    return pedestal_tables(tests.assign(reading=READING), 1, SLENDERNESS)["effects"]
+    slenderness = {name: body.slenderness for name, body in THESIS_BODIES.items()}
+    return pedestal_tables(tests.assign(reading=READING), 1, slenderness)["effects"]
 
 
 def claims_of(tests: pd.DataFrame) -> pd.DataFrame:

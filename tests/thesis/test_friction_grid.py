@@ -45,7 +45,7 @@ def test_amplitudes_are_those_of_each_pair_climbed_by_itself(motions: list[Motio
 
 
 def test_without_end_friction_gives_what_pure_rocking_gives(motions: list[Motion]) -> None:
-    pure = ladder_amplitudes([TOWER, STACK], [None, None], motions, LADDER)
+    pure = ladder_amplitudes([TOWER.system(), STACK.system()], motions, LADDER)
     rough = [
         survived_amplitudes(TOWER, [(math.inf,)], motions, LADDER)[0],
         survived_amplitudes(STACK, [(math.inf, math.inf)], motions, LADDER)[0],

@@ -6,6 +6,7 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag_thesis.explanation.explain import CHANGES, OPEN, SAME, explain, where_laws_agree
 from rockfrag_thesis.explanation.simulated import (
@@ -13,6 +14,7 @@ from rockfrag_thesis.explanation.simulated import (
     Case,
     case_ratios,
     factor_cases,
+    ideal_case,
     mass_error_rows,
     perturbed_cases,
     with_references,
@@ -48,7 +50,13 @@ def test_no_restitution_makes_a_difference_on_a_pedestal_that_cannot_move(motion
 def test_an_interface_that_takes_more_energy_acts_like_a_lone_object_that_does(motions):
     lossy = 0.9 * TOWER.momentum_restitution()
     rows = case_ratios(factor_cases("T2", ROCK, {"interface_restitution": (0.9,)}), motions, LADDER)
-    lone = Case("lone", 0.0, "T2", TOWER, ROCK, lossy, (None, lossy))
+    lone = Case(
+        "lone",
+        0.0,
+        "T2",
+        system_of(TOWER, restitution=lossy),
+        system_of(ROCK, restitution=(None, lossy)),
+    )
     alike = case_ratios([lone], motions, LADDER)
     # on so heavy a pedestal by every law
     for _, by_law in rows.groupby("factor"):
@@ -58,7 +66,7 @@ def test_an_interface_that_takes_more_energy_acts_like_a_lone_object_that_does(m
 
 
 def test_mass_that_is_not_counted_scales_every_ratio_by_the_masses(motions):
-    ideal = case_ratios([Case("ideal", 0.0, "T2", TOWER, STACK)], motions, LADDER)
+    ideal = case_ratios([ideal_case("T2", STACK)], motions, LADDER)
     rows = mass_error_rows(ideal, {"T2": STACK}, [10.0])
     factor = rows.groupby("factor")["ratio"].mean() / ideal["ratio"].mean()
     assert factor["pedestal_not_counted"] == pytest.approx((10 + 2.79 + 2.3) / (10 + 2.79))
@@ -67,7 +75,7 @@ def test_mass_that_is_not_counted_scales_every_ratio_by_the_masses(motions):
 
 
 def test_the_table_is_one_that_the_explanation_takes(motions):
-    ideal = case_ratios([Case("ideal", 0.0, "T2", TOWER, STACK)], motions, LADDER)
+    ideal = case_ratios([ideal_case("T2", STACK)], motions, LADDER)
     cases = factor_cases("T2", STACK, {"pedestal_width_cm": (13.0,), "pedestal_lean_deg": (2.0,)})
     effects = explain(with_references(case_ratios(cases, motions, LADDER), ideal))
     assert set(effects["factor"]) == {"pedestal_width_cm", "pedestal_lean_deg"}
@@ -80,8 +88,9 @@ def test_perturbed_copies_follow_from_the_seed_and_differ_on_the_two_sides():
         perturbed_cases("T2", STACK, 0.01, 0.02, 3, np.random.default_rng(5)) for _ in range(2)
     )
     assert first == again
-    assert len({case.lone.width for case in first}) == 3
-    assert all(case.lone.width != case.stack.statue.width for case in first)
+    widths = [(case.lone.bodies[0].width, case.stack.bodies[1].width) for case in first]
+    assert len(set(widths)) == 3
+    assert all(lone != upper for lone, upper in widths)
 
 
 @pytest.mark.parametrize(
@@ -102,7 +111,7 @@ def test_a_level_that_cannot_be_is_named(levels, words):
 def test_restitution_is_varied_by_each_law_that_differs():
     levels = {"interface_restitution": (0.9, 1.05)}
     cases = factor_cases("T2", STACK, levels)
-    found = {(case.factor, case.level): case.stack_restitution.law for case in cases}
+    found = {(case.factor, case.level): case.stack.contacts[1].law.name for case in cases}
     assert found == {
         ("interface_restitution", 0.9): "position",
         ("interface_restitution", 1.05): "position",

@@ -65,7 +65,7 @@ rule pedestal:
         read("tests"),
         bodies=STUDY.body_files,
     output:
-        table("pedestal/pairs", "pedestal/effects", "pedestal/whole", "pedestal/mixed"),
+        table("pedestal/pairs", "pedestal/effects", "pedestal/whole"),
         table("pedestal/without_event", "pedestal/ranks", "pedestal/notes"),
     log:
         f"{RESULTS}/logs/pedestal.log",

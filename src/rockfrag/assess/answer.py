@@ -42,14 +42,12 @@ from rockfrag.assess.verdicts import (
     verdicts_of_each,
 )
 from rockfrag.errors import InputError
-from rockfrag.fragility.curve_facts import BETA_MODEL
 from rockfrag.fragility.estimators import Fragility, fragility_of
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"
 """Folder of fetched records."""
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,7 +299,7 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     return found
 
 
-def _pad_words(friction: float, slip: Floats, plan: Plan, ladder: Ladder) -> str:
+def _pad_words(friction: float, slip: NDArray[np.float64], plan: Plan, ladder: Ladder) -> str:
     """The pad, and how far the object slides on it at the site's level."""
     words = f"a pad of friction {friction:g}"
     if plan.level is None:
@@ -345,7 +343,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     shaken = _at_site(shaken, plan, conversion)
     arrangements, moved = shaken.arrangements, shaken.moved
     both_sides = {one.name: one.sides for one in moved}
-    shifts = {"model": BETA_MODEL}
+    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].blind}
     if not objects.round:
         shifts["space"] = SPACE
     if conversion:

@@ -16,7 +16,7 @@ from rockfrag.assess.answer import Assessment
 from rockfrag.assess.risk import estimate, probability_in, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
 from rockfrag.assess.verdicts import Verdicts
-from rockfrag.fragility.curve_facts import BETA_MODEL
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
 NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
 """Numbers of objects of which it is said how often so many topple together."""
@@ -113,7 +113,7 @@ def _numbers(first: Assessment, together: Verdicts, count: NDArray[np.int64]) ->
     years = first.request.years
     target = risk_target(first.hazard, years)
     # what is not known of one body says nothing about the others; these two are common to all
-    shifts = {"model": BETA_MODEL, "space": SPACE}
+    shifts = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
     at = int(together.ladder.levels.searchsorted(first.level.value))
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:

@@ -1,7 +1,7 @@
 """The object and what it stands on as blocks, what was assumed of them, and what is not known to the digit."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -11,11 +11,11 @@ from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
-from rockfrag.rocking.inputs import least_uplift
-from rockfrag.rocking.measured_restitution import Measured
+from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.mesh import Shape, read_shape
+from rockfrag.system.system import System, uplift_ratios
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
@@ -105,7 +105,7 @@ class Objects:
     def arrangements(self) -> dict[str, Body]:
         """The ways in which it can stand, as it stands now first."""
         body = self.body
-        if isinstance(body, Block):
+        if len(body.blocks) == 1:
             return {ALONE: body}
         joined = body.rigidly_joined()
         return {
@@ -117,23 +117,24 @@ class Objects:
     @property
     def least_uplift(self) -> float:
         """Least peak acceleration of what it stands on at which any contact opens [g]: b/h of a uniform block."""
-        return least_uplift(self.body.system(), 1.0)
+        return min(uplift_ratios(self.body.system()))
 
-    def restitution_of(self, body: Body) -> Sequence[Measured] | None:
-        """Restitution as simulations take it: of a block (right, left), of several such a pair for each.
+    def system_of(self, body: Body) -> System:
+        """Return what is shaken: a body whose impacts lose what was measured or assumed, and gain no energy.
 
         Parameters
         ----------
         body
-            An arrangement of the object, with or without changes; no impact of it gains energy.
+            An arrangement of the object, with or without changes.
         """
+        system = body.system()
         if self.restitution is None and self.livelier == 1 and not self.round:
-            return None
+            return system
         # on the floor it stands on its own base, fixed to its pedestal on that of the pedestal
         rolls = self.round and body.blocks[-1].height == self.statue.height
-        *below, top = body.system().carried
-        each = [*(self._ratios(shape, False) for shape in below), self._ratios(top, rolls)]
-        return each if below else each[0]
+        *below, top = system.carried
+        each = [*(self._ratios(shape, rolls=False) for shape in below), self._ratios(top, rolls)]
+        return system_of(system, restitution=each if below else each[0])
 
     def _ratios(self, shape: geometry.Shape, rolls: bool) -> tuple[float, float]:
         right, left = (self._ratio(shape, pole, rolls) for pole in (1, -1))

@@ -104,7 +104,8 @@ def _live(found: Assessment) -> Markup:
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
         return Markup("")
-    return live_kernel(found.request.objects.arrangements, motions)
+    bodies = found.request.objects.arrangements
+    return live_kernel({name: body.system() for name, body in bodies.items()}, motions)
 
 
 def _name_of(found: Assessment, i: int) -> str:

@@ -11,7 +11,6 @@ from rockfrag.assess.objects import Objects, higher
 from rockfrag.assess.risk import LEVEL, Target, event_weights
 from rockfrag.assess.verdicts import Verdicts
 from rockfrag.system.blocks import Block, Body, Stack, stacked
-from rockfrag.units import GRAVITY
 
 WIDER = 1.25
 """Width of a foot plate over that of the base."""
@@ -184,21 +183,3 @@ def without_simulation() -> list[str]:
         "An object on a pad (--pad-friction) slides instead of rocking; how far is said, and that it may leave "
         "what it stands on, or meet a wall, is not counted.",
     ]
-
-
-def fixed_to_floor(objects: Objects, peak: float) -> float:
-    """Tension that anchors along one edge carry if everything is fixed to the floor [N].
-
-    Static, at a peak acceleration: the moment of the inertia about the opposite edge less that of the weight.
-
-    Parameters
-    ----------
-    objects
-        The object as it is.
-    peak
-        Peak acceleration of the floor [m/s²].
-    """
-    whole = objects.body.rigidly_joined()
-    arm = min(abs(whole.arm(pole).x) for pole in (1, -1))
-    moment = whole.mass * (peak * whole.h - GRAVITY * arm)
-    return float(max(moment, 0.0) / whole.width)

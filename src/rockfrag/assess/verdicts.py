@@ -17,10 +17,9 @@ from rockfrag.outcomes.outcomes import Outcomes as Simulated
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
+from rockfrag.system.system import System
 
 Floats = NDArray[np.float64]
 
@@ -247,62 +246,54 @@ def verdicts_of_each(
     ladder
         The levels.
     """
-    flat = [
-        (one, body) for one, named in zip(objects, bodies, strict=True) for body in named.values()
+    systems = [
+        one.system_of(body)
+        for one, named in zip(objects, bodies, strict=True)
+        for body in named.values()
     ]
-    restitution = [one.restitution_of(body) for one, body in flat]
     most = max(1, MOST_TESTS // ladder.scales.size)
     found: list[Verdicts] = []
-    for i in range(0, len(flat), most):
-        part = [body for _, body in flat[i : i + most]]
-        found += _shaken(part, restitution[i : i + most], motions, ladder)
+    for i in range(0, len(systems), most):
+        found += _shaken(systems[i : i + most], motions, ladder)
     each = iter(found)
     return [{name: next(each) for name in named} for named in bodies]
 
 
-def _shaken(
-    bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
-) -> list[Verdicts]:
+def _shaken(systems: Sequence[System], motions: MotionSet, ladder: Ladder) -> list[Verdicts]:
     """Outcomes of planar bodies; an engine in space would take both components of a record here."""
     if motions.worst:
-        return _shaken_from_all_sides(bodies, restitution, motions, ladder)
+        return _shaken_from_all_sides(systems, motions, ladder)
     scales = np.where(ladder.allowed, ladder.scales, AT_REST)
     scales = np.minimum(scales, believable_scales(motions.base))
-    result, light = simulated(bodies, motions.base, scales, restitution)
+    result, light = simulated(systems, motions.base, scales)
     rocked = limit_state_named("rocks").reached(result)
     return [
         Verdicts(ladder, result.overturned[i], rocked[i], motions.events, light)
-        for i in range(len(bodies))
+        for i in range(len(systems))
     ]
 
 
 def simulated(
-    bodies: Sequence[Body],
-    shaking: Sequence[Motion],
-    scales: Floats,
-    restitution: Sequence[Restitution],
+    systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Simulated, bool]:
     """What happened, and whether a body may have left the ground, which an assessment says in its own words.
 
     Parameters
     ----------
-    bodies
+    systems
         What is shaken.
     shaking
         Motions of what it stands on.
     scales
         Factors on them, shape (motions, levels).
-    restitution
-        Of each body.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
         result = overturns(
-            bodies,
+            systems,
             [motion.acceleration for motion in shaking],
             [motion.dt for motion in shaking],
             scales,
-            restitution=restitution,
         )
     light = [issubclass(one.category, LightBodies) for one in caught]
     for one, known in zip(caught, light, strict=True):
@@ -312,7 +303,7 @@ def simulated(
 
 
 def _shaken_from_all_sides(
-    bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
+    systems: Sequence[System], motions: MotionSet, ladder: Ladder
 ) -> list[Verdicts]:
     """Verdicts by records, each in its worst direction; both components of a record get that of the record."""
     records = motions.turned(WORST_STEP_DEG)
@@ -320,14 +311,14 @@ def _shaken_from_all_sides(
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
     scales = np.minimum(ladder.scales[of_row], believable_scales(shaking))
     scales = np.where(ladder.allowed[of_row], scales, AT_REST)
-    result, light = simulated(bodies, shaking, scales, restitution)
+    result, light = simulated(systems, shaking, scales)
     # the place of the record that stands for each motion
     place = np.arange(len(motions.base))
     for first, second in motions.pairs:
         place[second] = first
     found = []
     moves = limit_state_named("rocks").reached(result)
-    for i in range(len(bodies)):
+    for i in range(len(systems)):
         fell, rocked = (np.zeros(ladder.scales.shape, dtype=bool) for _ in range(2))
         np.logical_or.at(fell, of_row, result.overturned[i])
         np.logical_or.at(rocked, of_row, moves[i])
@@ -356,8 +347,7 @@ def on_pad(
     outcomes, slip
         The largest displacement on the pad [m] has the shape (motions, levels).
     """
-    body = objects.body
-    system = system_of(body, restitution=objects.restitution_of(body))
+    system = objects.system_of(objects.body)
     *below, pad = system.contacts
     pad = replace(pad, friction=Friction(friction, friction))
     system = replace(system, contacts=(*below, pad))
@@ -387,14 +377,12 @@ def share_with_sliding(
     level
         The level, in the measure's unit.
     """
-    body = objects.body
     scales = level / motions.values(measure)
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
     fallen = overturns(
-        body,
+        objects.system_of(objects.body),
         motions.base,
         scales=np.minimum(scales[:, np.newaxis], believable_scales(motions.base)),
-        restitution=[objects.restitution_of(body)],
         friction=objects.friction,
     ).overturned[0, :, 0]
     return float(fallen[allowed].mean())

@@ -16,7 +16,7 @@ from rockfrag.fragility.censored import (
 )
 from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_verdicts
 from rockfrag.fragility.empirical import survival_windows
-from rockfrag.fragility.intervals import Interval, IntervalMethod, interval_over_motions
+from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Outcomes, outcomes_from_table
 from rockfrag.keywords import named_keywords
@@ -89,16 +89,11 @@ def fragility_of(
     outcomes: Outcomes,
     *,
     link: Link = "probit",
-    interval: IntervalMethod = "jackknife",
     level: float = 0.90,
-    replicates: int = 1000,
     seed: int = 0,
     dependence: Literal["tests", "motions"] | None = None,
 ) -> Fragility:
     """Fit a curve to verdicts and give it limits over motions, or events where they are known.
-
-    ``dependence`` says how the goodness of fit is simulated, see
-    :func:`rockfrag.fragility.goodness.goodness_of_fit`.
 
     Parameters
     ----------
@@ -106,25 +101,17 @@ def fragility_of(
         Verdicts with their measure, see :class:`Outcomes`.
     link
         ``probit`` (lognormal curve) or ``logit``.
-    interval
-        Kind of limits: ``jackknife``, ``percentile`` or ``bca`` (bootstrap).
     level
         Of the confidence limits [-], 0 to 1.
-    replicates
-        Number of bootstrap replicates.
-    seed
-        Seed of the bootstrap.
-    dependence
-        How the goodness of fit is simulated: ``tests`` or ``motions``; see :func:`goodness_of_fit`.
+    seed, dependence
+        How the goodness of fit is simulated, see :func:`goodness_of_fit`.
 
     Returns
     -------
     The :class:`Fragility`.
     """
     fit = fit_lognormal(outcomes, link=link)
-    limits = interval_over_motions(
-        outcomes, method=interval, level=level, replicates=replicates, seed=seed, link=link
-    )
+    limits = interval_over_motions(outcomes, level=level, link=link)
     return Fragility(fit, limits, checks_of_verdicts(outcomes, fit, limits, dependence, seed))
 
 

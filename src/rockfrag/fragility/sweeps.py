@@ -14,32 +14,8 @@ from rockfrag.fragility.drawn_curves import curve_points, share_points, verdict_
 from rockfrag.fragility.estimators import Fragility, fragility_of, incremental_of
 from rockfrag.fragility.observations import positive
 from rockfrag.fragility.sweep_data import SweepData, TableSweep
+from rockfrag.motions.declared import declared, measure_of
 from rockfrag.records.motion import Motion
-
-_SCALE_LINEARLY = (
-    "pga",
-    "pgv_cm_s",
-    "pgv_m_s",
-    "pgd",
-    "cav",
-    "avgsa",
-    "sa_",
-    "sv_",
-    "sd_",
-    "housner",
-    "pulse_velocity",
-    "uplift_ratio",
-    "velocity_ratio",
-)
-_STAY = (
-    "pgv_over_pga",
-    "d5_",
-    "mean_period",
-    "predominant_period",
-    "pulse_period",
-    "pulse_explained",
-    "frequency_ratio",
-)
 
 
 def scale_power(measure: str) -> int:
@@ -50,16 +26,14 @@ def scale_power(measure: str) -> int:
     InputError
         If it is not known how the measure scales.
     """
-    if measure.startswith("arias"):
-        return 2
-    if measure.startswith(_STAY):
-        return 0
-    if measure.startswith(_SCALE_LINEARLY):
-        return 1
-    raise InputError(
-        f"measure {measure!r}: it is not known how it grows with the amplitude of a scaled motion; "
-        f"choose one that starts with {', '.join(('arias', *_STAY, *_SCALE_LINEARLY))}."
-    )
+    found = measure_of(measure)
+    if found is None:
+        known = ", ".join(dict.fromkeys(one.name for one in declared()))
+        raise InputError(
+            f"measure {measure!r}: it is not known how it grows with the amplitude of a scaled motion; choose "
+            f"one of {known}, with a unit behind it."
+        )
+    return found.power
 
 
 def with_measures(

@@ -124,8 +124,8 @@ def _live(results: Results) -> Markup:
     study = results.study
     if not study.simulated_in_page:
         return Markup()
-    bodies = {one.name: one.body for one in study.configurations}
-    return live_kernel(bodies, results.floors, results.verdicts)
+    systems = {one.name: one for one in study.configurations}
+    return live_kernel(systems, results.floors, results.verdicts)
 
 
 def _lead(results: Results) -> str:

@@ -118,7 +118,8 @@ def three_models(body: Body) -> list[Block]:
     body
         The object, or the object on its pedestal.
     """
-    return [body] if isinstance(body, Block) else [body.blocks[-1], body.rigidly_joined()]
+    # a block joined with nothing is the block
+    return list(dict.fromkeys((body.blocks[-1], body.rigidly_joined())))
 
 
 def predicted(body: Body, motion: Motion, rule: Rule) -> float:

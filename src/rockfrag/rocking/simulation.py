@@ -14,19 +14,19 @@ from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.inputs import (
     MotionLike,
-    Standing,
     checked_switch,
     ground_motion,
     warn_of_units,
 )
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput, system_of
+from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 
 
 @named_keywords
 def simulate(
-    body: Standing,
+    body: SystemLike,
     motion: MotionLike,
     dt: float | None = None,
     *,

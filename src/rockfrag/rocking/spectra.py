@@ -18,7 +18,6 @@ from rockfrag.engines.steps import fastest_frequency
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_array
 from rockfrag.keywords import named_keywords
-from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import MotionLike
@@ -168,29 +167,3 @@ def rocking_spectrum(
         np.isinf(rotation), np.inf, found.of_top("peak_velocity").reshape(shape) / p
     )
     return RockingSpectrum(period, angle, rotation, velocity)
-
-
-def spectra(
-    motion: Motion,
-    periods: ArrayLike,
-    alpha: ArrayLike | Sequence[float],
-    dampings: Sequence[float] = (0.02, 0.05, 0.10),
-    *,
-    restitution: Restitution = None,
-    threads: int | None = None,
-) -> tuple[list[ResponseSpectrum], RockingSpectrum]:
-    """Response spectra (one per damping) and the rocking spectrum of a motion, over the same periods.
-
-    Parameters
-    ----------
-    periods
-        Natural periods of the oscillators, and 2π/p of the blocks [s], shape (k,).
-    alpha
-        Critical angles of the blocks [rad], shape (j,).
-    dampings
-        Fractions of critical damping of the oscillators [-].
-    """
-    return (
-        [response_spectrum(motion, periods, damping) for damping in dampings],
-        rocking_spectrum(motion, periods, alpha, restitution=restitution, threads=threads),
-    )

@@ -15,15 +15,11 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named
+from rockfrag.system.system import System
 
 ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
 """Columns that are the same for all amplitudes of a motion."""
-
-SLIP = "peak_slip_m"
-"""Column of a sweep with friction: largest slip of any contact [m]."""
-
-SLIDES = 0.001
-"""Slip above which a body counts as having slid [m]: a displacement that one sees."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +33,7 @@ class Swept:
     amplitude_g
         Amplitudes [g], rising, shape (n,).
     overturned
-        Verdicts, shape (motions, n); also whether anything was displaced, where that was asked for.
+        Whether the limit state that was asked for was reached, shape (motions, n).
     fallen
         Place in ``bodies`` of what overturned, shape (motions, n).
     bodies
@@ -51,44 +47,42 @@ class Swept:
     bodies: Sequence[str]
 
 
-def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:
-    """Whether each run slid by more than `SLIDES` of any contact, or overturned, shape (n,).
-
-    Parameters
-    ----------
-    sweep
-        With ``overturned`` and the column `SLIP`.
-    """
-    slip = sweep[SLIP].to_numpy(dtype=float)
-    return np.asarray((slip > SLIDES) | sweep["overturned"].to_numpy(dtype=bool))
+def labels_of(system: System) -> dict[str, str]:
+    """Return what tables of a study call a system: its configuration, its object, with or without a pedestal."""
+    side = "P" if system.count > 1 else "NP"
+    return {"configuration": system.name, "object": system.names[-1], "pedestal": side}
 
 
-def read_swept(paths: Iterable[Path], *, slid: bool = False) -> Iterator[Swept]:
+def fallen_names(system: System) -> tuple[str, ...]:
+    """Return what tables of a study call the body that fell, by its number in outcomes."""
+    return ("", *(system.names if system.count > 2 else ("pedestal", "statue")[-system.count :]))
+
+
+def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swept]:
     """Yield the verdicts of sweeps in parts of some motions, so that memory holds one part.
 
     Parameters
     ----------
     paths
         Files of sweeps, each of one configuration or of some motions of it.
-    slid
-        Whether the verdict is that something was :func:`displaced`, of sweeps with friction, and not that it
-        overturned.
+    state
+        Name of the limit state that is asked for, which the sweeps count.
 
     Raises
     ------
     InputError
         If a part does not hold whole motions that rose through the same amplitudes.
     """
-    slips = [SLIP] if slid else []
-    columns = [*ABOUT, "amplitude_g", "overturned", "overturned_body", *slips]
+    reached = limit_state_named(state).column
+    columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]
     texts = [*ABOUT, "overturned_body"]
     for path in paths:
         with pq.ParquetFile(path, read_dictionary=texts) as file:
             for group in range(file.num_row_groups):
-                yield _swept(file.read_row_group(group, columns=columns), path)
+                yield _swept(file.read_row_group(group, columns=columns), reached, path)
 
 
-def _swept(part: pa.Table, path: Path) -> Swept:
+def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
     amplitude = part["amplitude_g"].to_numpy()
     motion = part["motion"].combine_chunks()
     code = motion.indices.to_numpy()
@@ -103,13 +97,8 @@ def _swept(part: pa.Table, path: Path) -> Swept:
     about = pd.DataFrame({name: first[name].to_pylist() for name in ABOUT}, dtype="str")
     body = part["overturned_body"].combine_chunks()
     fallen = body.indices.to_numpy().reshape(-1, each)
-    if SLIP in part.column_names:
-        verdicts = displaced(part.select(["overturned", SLIP]).to_pandas())
-    else:
-        verdicts = part["overturned"].to_numpy()
-    return Swept(
-        about, grid[0].copy(), verdicts.reshape(-1, each), fallen, body.dictionary.to_pylist()
-    )
+    found = part[reached].to_numpy().reshape(-1, each)
+    return Swept(about, grid[0].copy(), found, fallen, body.dictionary.to_pylist())
 
 
 def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
@@ -565,7 +565,18 @@ def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str
     return System(tuple(bodies), tuple(contacts))
 
 
-def as_system(thing: "System | Body") -> System:
+Body = Block | Stack | Column
+
+SystemLike = Body | System
+"""What stands, as it may be written."""
+
+
+def is_system(thing: object) -> TypeGuard[SystemLike]:
+    """Whether a thing is a system, or writes one."""
+    return isinstance(thing, (System, Block, Stack, Column))
+
+
+def as_system(thing: SystemLike) -> System:
     """Return a system as it is, or the one that a block, a stack or a column writes.
 
     Raises
@@ -573,14 +584,11 @@ def as_system(thing: "System | Body") -> System:
     InputError
         If it is none of them.
     """
-    if isinstance(thing, System):
-        return thing
-    if isinstance(thing, (Block, Stack, Column)):
-        return thing.system()
-    raise InputError(f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}.")
-
-
-Body = Block | Stack | Column
+    if not is_system(thing):
+        raise InputError(
+            f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}."
+        )
+    return thing if isinstance(thing, System) else thing.system()
 
 
 def stacked(blocks: Sequence[Block]) -> Body:

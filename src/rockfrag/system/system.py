@@ -105,9 +105,20 @@ class System:
         return sum(body.mass for body in self.bodies)
 
     @property
+    def height(self) -> float:
+        """Height of all bodies on each other [m]."""
+        return sum(body.height for body in self.bodies)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Name of each body from below: its own, or its number."""
         return tuple(body.name or f"body {k + 1}" for k, body in enumerate(self.bodies))
+
+    def held(self) -> "System":
+        """Return the system with contacts that never slide."""
+        return replace(
+            self, contacts=tuple(replace(contact, friction=None) for contact in self.contacts)
+        )
 
     def in_plane(self, direction_deg: float = 0.0) -> "System":
         """Return the planar system that moves in the vertical plane of a direction [degrees]."""
@@ -173,6 +184,25 @@ def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
     assert isinstance(body.inertia, float | int)
     x, y = geometry.turned(body.centre[0] - (base.left + base.right) / 2, body.centre[2], tilt)
     return geometry.Shape((base.right - base.left) / 2, body.mass, body.inertia, x, y)
+
+
+def uplift_ratios(system: System) -> tuple[float, ...]:
+    """Least horizontal acceleration over g that opens each contact of a planar system at rest, from below.
+
+    A full contact opens about the pivot whose overturning moment first exceeds the weight's (Kirkpatrick, 1927;
+    Psycharis, 1990).
+    """
+    if system.count == 1:
+        arms = [tuple(geometry.arm(system.shapes[0], pivot) for pivot in (+1, -1))]
+    elif system.count == 2:
+        arms = [
+            tuple(arm(system.pile, pivot) for pivot in (+1, -1))
+            for arm in (geometry.common_arm, geometry.statue_arm)
+        ]
+    else:
+        arms = [arms_above(system, k) for k in range(system.count)]
+    # a body with its centre below its pivots never opens
+    return tuple(min(abs(x) / y if y > 0 else math.inf for x, y in pair) for pair in arms)
 
 
 def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:

@@ -16,14 +16,12 @@ from rockfrag.building.floors import respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
 from rockfrag.errors import InputError
-from rockfrag.motions.scaling import factors_to_pga, scale
+from rockfrag.motions.scaling import scale
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
-from rockfrag.system.blocks import Body, as_system
+from rockfrag.stages.sweep import sweep_table
+from rockfrag.system.system import System
 
 Floats = NDArray[np.float64]
 
@@ -57,18 +55,6 @@ class Variant:
     label: str
     building: ShearBuilding
     ground_scale: float = 1.0
-
-
-@dataclass(frozen=True)
-class Specimen:
-    """One configuration on the table: names of object and configuration, ``P`` or ``NP``, body, impacts."""
-
-    configuration: str
-    object: str
-    pedestal: str
-    body: Body
-    restitution: Restitution = None
-    friction: FrictionInput | None = None
 
 
 def building_variants(
@@ -127,7 +113,7 @@ def _variant(settings: Mapping[str, Any], axis: str, value: Any, source: str) ->
 def building_sensitivity(
     variants: Sequence[Variant],
     motions: Sequence[Motion],
-    specimens: Sequence[Specimen],
+    specimens: Sequence[System],
     amplitudes_g: Floats,
     protocol: Protocol,
     threads: int = 1,
@@ -142,7 +128,7 @@ def building_sensitivity(
     motions
         Ground motions, with ``event`` in their metadata.
     specimens
-        What stands on the table: each object with and without its pedestal.
+        What stands on the table: each object with and without its pedestal, named as tables call it.
     amplitudes_g
         Amplitudes of the sweeps [g], rising.
     protocol
@@ -174,7 +160,7 @@ def building_sensitivity(
 class _Ground:
     """Sweeps of motions, which remembers those of the ground: they are the same for every variant."""
 
-    def __init__(self, specimens: Sequence[Specimen], amplitudes_g: Floats, threads: int) -> None:
+    def __init__(self, specimens: Sequence[System], amplitudes_g: Floats, threads: int) -> None:
         self.specimens = specimens
         self.amplitudes_g = amplitudes_g
         self.threads = threads
@@ -189,49 +175,13 @@ class _Ground:
         return self.known[motion.name]
 
     def _shake(self, motion: Motion) -> pd.DataFrame:
-        result = overturns(
-            [specimen.body for specimen in self.specimens],
-            [motion.acceleration],
-            motion.dt,
-            factors_to_pga(motion, self.amplitudes_g),
-            restitution=[specimen.restitution for specimen in self.specimens],
-            friction=_frictions(self.specimens),
-            threads=self.threads,
-        )
-        return pd.concat(
-            [
-                pd.DataFrame(
-                    {
-                        "configuration": specimen.configuration,
-                        "object": specimen.object,
-                        "pedestal": specimen.pedestal,
-                        "motion": motion.name,
-                        "event": motion.metadata.get("event") or motion.metadata["ground_motion"],
-                        "floor": motion.metadata["floor"],
-                        "amplitude_g": self.amplitudes_g,
-                        "overturned": result.overturned[i, 0],
-                        "overturned_body": fallen_names(specimen.body)[
-                            result.overturned_body[i, 0]
-                        ],
-                    }
-                )
-                for i, specimen in enumerate(self.specimens)
-            ],
-            ignore_index=True,
-        )
-
-
-def fallen_names(body: Body) -> NDArray[np.object_]:
-    """What tables call the body that fell, by its number in outcomes."""
-    count = len(body.blocks)
-    names = as_system(body).names if count > 2 else ("pedestal", "statue")[-count:]
-    return np.array(["", *names], dtype=object)
-
-
-def _frictions(specimens: Sequence[Specimen]) -> list[FrictionInput] | None:
-    """Friction of each specimen; None where nothing slides, which holds for all or for none."""
-    known = [one.friction for one in specimens if one.friction is not None]
-    return known or None
+        tables: list[pd.DataFrame] = [
+            sweep_table(one, [motion], self.amplitudes_g, self.threads).to_pandas()
+            for one in self.specimens
+        ]
+        event = motion.metadata.get("event") or motion.metadata["ground_motion"]
+        found = pd.concat(tables, ignore_index=True)
+        return found.assign(event=event)
 
 
 def _sweep(

@@ -1,5 +1,6 @@
 """Tables 3.1, 3.3 and 4.1 of the thesis, computed again beside the printed values."""
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,9 +10,8 @@ import pandas as pd
 
 from rockfrag.motions.intensity import pga, pgd, pgv
 from rockfrag.records.motion import Motion
-from rockfrag.stages.bodies import uplift_accelerations
-from rockfrag.study.configurations import Configuration
-from rockfrag.system.blocks import Block
+from rockfrag.system.blocks import Block, SystemLike, as_system
+from rockfrag.system.system import System, uplift_ratios
 from rockfrag.tabular import read_rows
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
@@ -61,9 +61,19 @@ def block_properties(blocks: Mapping[str, Block]) -> pd.DataFrame:
     )
 
 
-def uplift_table(configurations: Sequence[Configuration]) -> pd.DataFrame:
+def uplift_accelerations(body: SystemLike) -> tuple[float, float]:
+    """Least accelerations [m/s²] at which a body starts to rock in pattern 3 and in pattern 4.
+
+    A lone block rocks like a statue on a pedestal that cannot move: its own value is that of pattern 4, and its
+    pattern 3 is NaN.
+    """
+    *together, alone = (GRAVITY * ratio for ratio in uplift_ratios(as_system(body)))
+    return min(together, default=math.nan), alone
+
+
+def uplift_table(configurations: Sequence[System]) -> pd.DataFrame:
     """Accelerations of Table 4.1: ``name`` and the columns of ``TABLE_4_1``."""
-    rows = [(one.name, *uplift_accelerations(one.body)) for one in configurations]
+    rows = [(one.name, *uplift_accelerations(one)) for one in configurations]
     return pd.DataFrame(rows, columns=["name", *(q.column for q in TABLE_4_1)])
 
 

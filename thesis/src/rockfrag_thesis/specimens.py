@@ -11,8 +11,3 @@ THESIS_BODIES: Mapping[str, Block] = {
     "P": Block(0.184, 0.208, 2.300),
 }
 """Towers and pedestal of Table 3.1, as in ``config/specimens.csv``."""
-
-SLENDERNESS: Mapping[str, float] = {
-    name: body.slenderness for name, body in THESIS_BODIES.items() if name != "P"
-}
-"""Height over width of the towers [-]."""

@@ -14,9 +14,8 @@ from rockfrag.rocking.case_list import overturned_cases
 from rockfrag.rocking.ensemble import Options, prepared
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import always_overturning, first_overturning, step_protocol
-from rockfrag.study.configurations import Configuration
-from rockfrag.system.blocks import Body, Column
-from rockfrag.system.perturbation import Written, perturbed
+from rockfrag.system.perturbation import perturbed
+from rockfrag.system.system import System
 
 SIZES = (1e-9, 1e-6, 1e-4)
 """Relative differences of the motion and of every width and height, at most."""
@@ -27,15 +26,15 @@ COPIES = 4
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Bounds = tuple[float, float]
-Copy = tuple[Written, float]
-"""A perturbed body and the factor on its motion."""
+Copy = tuple[System, float]
+"""A perturbed system and the factor on its motion."""
 
 CLIMBING = ("step_protocol", "first_overturning")
 """Readings that see nothing above the amplitude at which they end."""
 
 
 def standing_readings(
-    configurations: Sequence[Configuration],
+    configurations: Sequence[System],
     motions: Sequence[Motion],
     amplitudes_g: Floats,
     protocol: Protocol,
@@ -67,14 +66,12 @@ def standing_readings(
     rng = np.random.default_rng(seed)
     rows = []
     for one in configurations:
-        assert not isinstance(one.body, Column)
-        copies = [[_copy(one.body, size, rng) for _ in range(COPIES)] for size in SIZES]
+        copies = [[_copy(one, size, rng) for _ in range(COPIES)] for size in SIZES]
         fell = overturns(
-            [one.body],
+            one,
             [motion.acceleration for motion in motions],
             [motion.dt for motion in motions],
             scales,
-            restitution=[one.restitution],
             threads=threads,
         ).overturned[0]
         found = [_readings(amplitudes_g, verdicts, protocol) for verdicts in fell]
@@ -87,7 +84,7 @@ def standing_readings(
         for number in range(COPIES):
             tried = [each[number] for each in copies]
             wanted = _asked(amplitudes_g, found, stands)
-            ends = _verdicts(one, tried, motions, scales, wanted, threads)
+            ends = _verdicts(tried, motions, scales, wanted, threads)
             for k, i in np.ndindex(wanted.shape[:2]):
                 # where a copy was not shaken its verdict changes no reading that is still in question
                 verdicts = np.where(wanted[k, i], ends[k, i], fell[i])
@@ -109,8 +106,8 @@ def standing_readings(
     return pd.DataFrame(rows)
 
 
-def _copy(body: Body, size: float, rng: np.random.Generator) -> Copy:
-    near = perturbed(body, size, rng)
+def _copy(system: System, size: float, rng: np.random.Generator) -> Copy:
+    near = perturbed(system, size, rng)
     return near, 1 + size * float(rng.uniform(-1, 1))
 
 
@@ -147,7 +144,6 @@ def _asked(
 
 
 def _verdicts(
-    configuration: Configuration,
     copies: Sequence[Copy],
     motions: Sequence[Motion],
     scales: Floats,
@@ -158,14 +154,8 @@ def _verdicts(
     copy, motion, amplitude = np.nonzero(wanted)
     factors = np.array([factor for _, factor in copies])
     ends = np.zeros(wanted.shape, dtype=bool)
-    restitution = [configuration.restitution] * len(copies)
-    cases = prepared(
-        [body for body, _ in copies],
-        motions,
-        None,
-        (1.0,),
-        Options(restitution=restitution, threads=threads),
-    )
+    systems = [system for system, _ in copies]
+    cases = prepared(systems, motions, None, (1.0,), Options(threads=threads))
     ends[wanted] = overturned_cases(cases, copy, motion, scales[motion, amplitude] * factors[copy])
     return ends
 

@@ -139,7 +139,7 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
                 "pairs": int(pairs[level, floor]),
                 "events": effect.units,
                 "left_out": int(tried[level, floor] - pairs[level, floor]),
-                "p_equivalence": equivalence(effect).p if level != marked[0] else np.nan,
+                "p_equivalence": equivalence(effect) if level != marked[0] else np.nan,
             }
         )
     result = pd.DataFrame(found)

@@ -17,9 +17,9 @@ from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.inputs import least_uplift
 from rockfrag.rocking.options import system_of
 from rockfrag.system.blocks import Body, Stack
+from rockfrag.system.system import uplift_ratios
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -220,6 +220,6 @@ def _outcomes(
 def _never_turns(body: Body, friction: tuple[float, ...]) -> bool:
     """Whether nothing can rise or slide off from rest, whatever the horizontal motion (docs/contact.md)."""
     system = body.system()
-    rises = least_uplift(system, 1.0)
+    rises = min(uplift_ratios(system))
     upright = system.contacts[0].tilt == 0 and friction[0] == min(friction)
     return upright and friction[0] < rises

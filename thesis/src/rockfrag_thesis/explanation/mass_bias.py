@@ -6,11 +6,6 @@ factor for every motion.
 """
 
 import math
-from collections.abc import Mapping
-
-import numpy as np
-import numpy.typing as npt
-import pandas as pd
 
 from rockfrag.errors import InputError
 
@@ -54,54 +49,3 @@ def ratio_bias(
     with_pedestal = (table + statue + pedestal) / counted_with
     without = (table + statue) / counted_without
     return with_pedestal / without
-
-
-def mass_errors(
-    masses: Mapping[str, float],
-    pedestal: float,
-    table_masses: npt.ArrayLike = (2.0, 5.0, 10.0, 20.0),
-) -> pd.DataFrame:
-    """Bias of P/NP for two ways of miscounting, by object and mass of the table.
-
-    ``pedestal not counted``: the same mass is divided by with and without the pedestal, which raises
-    P/NP.  ``table not counted``: only the blocks' weight is divided by, which lowers P/NP.
-
-    Parameters
-    ----------
-    masses
-        Mass by object [kg].
-    pedestal
-        Mass of the pedestal [kg].
-    table_masses
-        Moved masses of the table [kg], shape (n,).
-
-    Returns
-    -------
-    pandas.DataFrame
-        error, object, table_kg, ratio_bias [-].
-    """
-    rows: list[dict[str, object]] = []
-    for object_name in sorted(masses):
-        statue = masses[object_name]
-        for table in np.asarray(table_masses, dtype=float):
-            counted = {
-                "pedestal not counted": (table + statue, table + statue),
-                "table not counted": (statue + pedestal, statue),
-            }
-            for error, (with_pedestal, without) in counted.items():
-                bias = ratio_bias(
-                    statue,
-                    pedestal,
-                    float(table),
-                    counted_with=with_pedestal,
-                    counted_without=without,
-                )
-                rows.append(
-                    {
-                        "error": error,
-                        "object": object_name,
-                        "table_kg": float(table),
-                        "ratio_bias": bias,
-                    }
-                )
-    return pd.DataFrame(rows)

@@ -5,7 +5,7 @@ counted, the protocol's step, and all tolerances at once in perturbed copies.  T
 what :func:`rockfrag_thesis.explanation.explain.explain` takes.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import radians
 
@@ -14,11 +14,14 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
+from rockfrag.laws import BUILT_IN
 from rockfrag.motions.scaling import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.measured_restitution import LAWS, Law, MeasuredRestitution, Restitution
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.rocking.measured_restitution import MeasuredRestitution
+from rockfrag.rocking.options import system_of
+from rockfrag.system.blocks import Block, Stack
+from rockfrag.system.system import System
 from rockfrag_thesis.explanation.mass_bias import ratio_bias
 
 Floats = NDArray[np.float64]
@@ -28,6 +31,9 @@ BATCH = 64
 
 RUNGS = 8
 """Rungs of a ladder that are climbed at a time: whatever has fallen climbs no further."""
+
+LAWS = BUILT_IN[1:]
+"""Laws that are tried, the usual one first."""
 
 REFERENCE = "ideal"
 LARGEST_RESTITUTION = 0.995
@@ -42,19 +48,20 @@ class Case:
     factor, level, object, replicate
         What differs, how much, of which object, and the number of the perturbed copy.
     lone, stack
-        Bodies without and with the pedestal.
-    lone_restitution, stack_restitution
-        As :func:`rockfrag.rocking.overturns` takes them; None conserves momentum.
+        What stands on the table without and with the pedestal.
     """
 
     factor: str
     level: float
     object: str
-    lone: Block
-    stack: Stack
-    lone_restitution: Restitution = None
-    stack_restitution: Restitution = None
+    lone: System
+    stack: System
     replicate: int = 0
+
+
+def ideal_case(object_name: str, stack: Stack) -> Case:
+    """Return an object with and without its pedestal as the ideal model has them."""
+    return Case(REFERENCE, 0.0, object_name, stack.statue.system(), stack.system())
 
 
 def factor_cases(
@@ -106,39 +113,28 @@ def departed_case(object_name: str, stack: Stack, departures: Mapping[str, float
     InputError
         If a body cannot stand or a restitution would add energy; factor and level are named.
     """
-    setup = Setup(stack.statue, stack)
-    for factor, change in DEPARTURES.items():
-        if factor not in departures:
-            continue
+    names = [name for name in DEPARTURES if name in departures]
+    measured: dict[str, float] = {}
+    law = LAWS[0]
+    for factor in names:
         level = departures[factor]
         try:
-            setup = change(setup, level)
+            if factor in _SHAPES:
+                stack = _SHAPES[factor](stack, level)
+                continue
+            base, law = LAW_OF[factor]
+            block, places = _RESTITUTIONS[base]
+            measured |= dict.fromkeys(places, _restitution(stack.blocks[block], level))
         except InputError as error:
             raise InputError(f"explanation.{factor}, {level:g}, {object_name}: {error}") from error
-    names = [name for name in DEPARTURES if name in departures]
+    lone = measured.pop("lone", None)
     return Case(
         " + ".join(names),
         float(departures[names[0]]),
         object_name,
-        setup.lone,
-        setup.stack,
-        setup.alone,
-        None
-        if setup.ground is None and setup.interface is None
-        else MeasuredRestitution((setup.ground, setup.interface), setup.law),
+        system_of(stack.statue, restitution=lone),
+        system_of(stack, restitution=MeasuredRestitution(measured, law) if measured else None),
     )
-
-
-@dataclass(frozen=True)
-class Setup:
-    """What stands on the table; restitutions of the lone object, the pedestal, the interface; their law."""
-
-    lone: Block
-    stack: Stack
-    alone: float | None = None
-    ground: float | None = None
-    interface: float | None = None
-    law: Law = LAWS[0]
 
 
 def _restitution(block: Block, factor: float) -> float:
@@ -151,73 +147,53 @@ def _restitution(block: Block, factor: float) -> float:
     return value
 
 
-def _statue_restitution(setup: Setup, factor: float) -> Setup:
-    value = _restitution(setup.lone, factor)
-    return replace(setup, alone=value, interface=value)
+def _pedestal_lean(stack: Stack, degrees: float) -> Stack:
+    leaning = replace(stack.pedestal, lean=stack.pedestal.lean + radians(degrees))
+    return replace(stack, pedestal=leaning)
 
 
-def _interface_restitution(setup: Setup, factor: float) -> Setup:
-    return replace(setup, interface=_restitution(setup.stack.statue, factor))
+def _statue_offset(stack: Stack, millimetres: float) -> Stack:
+    return replace(stack, offset=stack.offset + millimetres / 1000)
 
 
-def _ground_restitution(setup: Setup, factor: float) -> Setup:
-    return replace(setup, ground=_restitution(setup.stack.pedestal, factor))
+def _statue_cg_offset(stack: Stack, millimetres: float) -> Stack:
+    statue = replace(stack.statue, cg_offset=stack.statue.cg_offset + millimetres / 1000)
+    return replace(stack, statue=statue)
 
 
-def _pedestal_lean(setup: Setup, degrees: float) -> Setup:
-    leaning = replace(setup.stack.pedestal, lean=setup.stack.pedestal.lean + radians(degrees))
-    return replace(setup, stack=replace(setup.stack, pedestal=leaning))
-
-
-def _statue_offset(setup: Setup, millimetres: float) -> Setup:
-    offset = setup.stack.offset + millimetres / 1000
-    return replace(setup, stack=replace(setup.stack, offset=offset))
-
-
-def _statue_cg_offset(setup: Setup, millimetres: float) -> Setup:
-    statue = replace(setup.lone, cg_offset=setup.lone.cg_offset + millimetres / 1000)
-    return replace(setup, lone=statue, stack=replace(setup.stack, statue=statue))
-
-
-def _pedestal_width(setup: Setup, centimetres: float) -> Setup:
+def _pedestal_width(stack: Stack, centimetres: float) -> Stack:
     # of the same material and depth; the inertia follows from the shape
-    ideal = setup.stack.pedestal
+    ideal = stack.pedestal
     width = centimetres / 100
-    pedestal = replace(ideal, width=width, mass=ideal.mass * width / ideal.width, inertia=None)
-    return replace(setup, stack=replace(setup.stack, pedestal=pedestal))
+    mass = ideal.mass * width / ideal.width
+    return replace(stack, pedestal=replace(ideal, width=width, mass=mass, inertia=None))
 
 
-Change = Callable[[Setup, float], Setup]
-"""What a level of a factor does to what stands on the table."""
-
-_RESTITUTIONS: Mapping[str, Change] = {
-    "statue_restitution": _statue_restitution,
-    "interface_restitution": _interface_restitution,
-    "ground_restitution": _ground_restitution,
+_SHAPES: Mapping[str, Callable[[Stack, float], Stack]] = {
+    "pedestal_lean_deg": _pedestal_lean,
+    "statue_offset_mm": _statue_offset,
+    "statue_cg_offset_mm": _statue_cg_offset,
+    "pedestal_width_cm": _pedestal_width,
 }
+"""What a level of a factor does to the shape of a stack."""
 
-LAW_OF: Mapping[str, tuple[str, Law]] = {
+_RESTITUTIONS: Mapping[str, tuple[int, tuple[str, ...]]] = {
+    "statue_restitution": (1, ("lone", "interface")),
+    "interface_restitution": (1, ("interface",)),
+    "ground_restitution": (0, ("ground",)),
+}
+"""Block from below whose restitution a factor multiplies, and the contacts that have it."""
+
+LAW_OF: Mapping[str, tuple[str, str]] = {
     name if law == LAWS[0] else f"{name}_{law}": (name, law)
     for name in _RESTITUTIONS
     for law in LAWS
 }
 """What a factor of restitution varies, and the law by which stacks follow it."""
 
-
-def _by_law(factor: str) -> Change:
-    base, law = LAW_OF[factor]
-    return lambda setup, level: replace(_RESTITUTIONS[base](setup, level), law=law)
-
-
-DEPARTURES: Mapping[str, Change] = {
-    # shapes before restitutions, which are factors on what the shapes give
-    "pedestal_lean_deg": _pedestal_lean,
-    "statue_offset_mm": _statue_offset,
-    "statue_cg_offset_mm": _statue_cg_offset,
-    "pedestal_width_cm": _pedestal_width,
-    **{factor: _by_law(factor) for factor in LAW_OF},
-}
-"""How each mechanical factor changes what stands on the table, by its name."""
+# shapes before restitutions, which are factors on what the shapes give
+DEPARTURES = (*_SHAPES, *LAW_OF)
+"""Names of the mechanical factors."""
 
 
 def perturbed_cases(
@@ -251,10 +227,17 @@ def perturbed_cases(
             float(np.clip(b.momentum_restitution() + restitution * z, 0.01, LARGEST_RESTITUTION))
             for b, z in zip((lone, pedestal, statue), rng.standard_normal(3), strict=True)
         ]
-        both = (values[1], values[2])
-        level = 100 * tolerance
         copy = Stack(pedestal, statue, stack.offset)
-        cases.append(Case("tolerances", level, object_name, lone, copy, values[0], both, number))
+        cases.append(
+            Case(
+                "tolerances",
+                100 * tolerance,
+                object_name,
+                system_of(lone, restitution=values[0]),
+                system_of(copy, restitution=(values[1], values[2])),
+                number,
+            )
+        )
     return cases
 
 
@@ -266,8 +249,7 @@ def _perturbed(block: Block, tolerance: float, rng: np.random.Generator) -> Bloc
 
 
 def ladder_amplitudes(
-    bodies: Sequence[Body],
-    restitution: Sequence[Restitution],
+    systems: Sequence[System],
     motions: Sequence[Motion],
     ladder_g: Floats,
     threads: int = 1,
@@ -276,7 +258,7 @@ def ladder_amplitudes(
 
     Parameters
     ----------
-    bodies, restitution
+    systems
         What stands on the table.
     motions
         Motions of the table.
@@ -287,21 +269,20 @@ def ladder_amplitudes(
 
     Returns
     -------
-    Amplitudes [g], shape (bodies, motions); NaN where nothing or everything was survived.
+    Amplitudes [g], shape (systems, motions); NaN where nothing or everything was survived.
     """
     scales = np.array([factors_to_pga(motion, ladder_g) for motion in motions])
-    fell = np.zeros((len(bodies), *scales.shape), dtype=bool)
+    fell = np.zeros((len(systems), *scales.shape), dtype=bool)
     for rungs in np.array_split(np.arange(len(ladder_g)), np.arange(RUNGS, len(ladder_g), RUNGS)):
         climbing = np.logical_not(fell.any(axis=2))
         here, under = np.flatnonzero(climbing.any(axis=1)), np.flatnonzero(climbing.any(axis=0))
         if not here.size:
             break
         found = overturns(
-            [bodies[i] for i in here.tolist()],
+            [systems[i] for i in here.tolist()],
             [motions[j].acceleration for j in under.tolist()],
             [motions[j].dt for j in under.tolist()],
             scales[np.ix_(under, rungs)],
-            restitution=[restitution[i] for i in here.tolist()],
             threads=threads,
         ).overturned
         # a pair that has fallen already has its first fall below
@@ -335,29 +316,16 @@ def case_ratios(
     ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``,
     ``resolution`` (half-width to which its logarithm is known, a step of the ladder [-]).
     """
-    wanted: dict[tuple[Body, Restitution], int] = {}
-    for case in cases:
-        for key in _keys(case):
-            wanted.setdefault(key, len(wanted))
-    order = list(wanted)
+    order = list(dict.fromkeys(one for case in cases for one in (case.lone, case.stack)))
     parts = []
     for first in range(0, len(order), BATCH):
         batch = order[first : first + BATCH]
-        bodies, values = [body for body, _ in batch], [value for _, value in batch]
-        parts.append(ladder_amplitudes(bodies, values, motions, ladder_g, threads))
+        parts.append(ladder_amplitudes(batch, motions, ladder_g, threads))
         progress(first + len(batch))
-    amplitudes = np.concatenate(parts)
-    tables = []
-    for case in cases:
-        lone, stack = (amplitudes[wanted[key]] for key in _keys(case))
-        tables.append(_rows(case, motions, stack, lone))
+    found = dict(zip(order, np.concatenate(parts), strict=True))
+    tables = [_rows(case, motions, found[case.stack], found[case.lone]) for case in cases]
     step = float(np.log(ladder_g[1] / ladder_g[0])) if len(ladder_g) > 1 else 0.0
     return pd.concat(tables, ignore_index=True).assign(resolution=step)
-
-
-def _keys(case: Case) -> Iterator[tuple[Body, Restitution]]:
-    yield case.lone, case.lone_restitution
-    yield case.stack, case.stack_restitution
 
 
 def _rows(case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats) -> pd.DataFrame:

@@ -79,9 +79,9 @@ def explanation_tables(
     from rockfrag_thesis.explanation.explain import explain, where_laws_agree
     from rockfrag_thesis.explanation.simulated import (
         LAW_OF,
-        Case,
         case_ratios,
         factor_cases,
+        ideal_case,
         mass_error_rows,
         perturbed_cases,
         with_references,
@@ -91,9 +91,7 @@ def explanation_tables(
     if settings is None:
         raise ValueError("the study asks for no explanation")
     stacks = tested_stacks(study)
-    ideal_cases = [
-        Case("ideal", 0.0, object_name, s.statue, s) for object_name, s in stacks.items()
-    ]
+    ideal_cases = [ideal_case(object_name, stack) for object_name, stack in stacks.items()]
     rng = np.random.default_rng(study.seed)
     cases = list(ideal_cases)
     for object_name, stack in stacks.items():
@@ -185,7 +183,7 @@ def inversion_table(
     ``simulated_above``, the ratios when the two departures act together in one simulation, for the closest pairs
     and for friction of both interfaces; the others have none.
     """
-    from rockfrag.rocking.measured_restitution import LAWS
+    from rockfrag.laws import law_names
     from rockfrag_thesis.explanation.inversion import FRICTION, NEUTRAL, friction_departures, invert
     from rockfrag_thesis.explanation.simulated import (
         DEPARTURES,
@@ -205,7 +203,7 @@ def inversion_table(
         neutral["pedestal_width_cm"] = 100 * widths.pop()
     step = float(np.log1p(study.protocol_step_percent / 100))
     # restitution by the first law; what it finds is judged beside the others
-    other_laws = [factor for factor, (_, law) in LAW_OF.items() if law != LAWS[0]]
+    other_laws = [factor for factor, (_, law) in LAW_OF.items() if law != law_names()[0]]
     ratios = ratios[~ratios["factor"].isin(other_laws)]
     if friction is not None:
         ratios = pd.concat([ratios, friction_departures(friction)], ignore_index=True)
@@ -247,11 +245,11 @@ def _set_simulated(
 
 def tested_stacks(study: Study) -> dict[str, Stack]:
     """Stack of each object that is tested with and without a pedestal; of several the first."""
-    lone = {one.object for one in study.configurations if one.label == "NP"}
+    lone = {one.names[-1] for one in study.configurations if one.count == 1}
     stacks: dict[str, Stack] = {}
     for one in study.configurations:
-        if isinstance(one.body, Stack) and one.object in lone:
-            stacks.setdefault(one.object, one.body)
+        if one.count == 2 and one.names[-1] in lone:
+            stacks.setdefault(one.names[-1], study.stacks[one.name])
     return stacks
 
 

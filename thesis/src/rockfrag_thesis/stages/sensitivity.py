@@ -11,11 +11,7 @@ def run(job: Job[Study]) -> Results:
     """Yield the tests on the floors of every building, and their means."""
     from rockfrag.shaketable.mean_amplitudes import mean_amplitudes_of
     from rockfrag.shaketable.readings import READING
-    from rockfrag_thesis.building_sensitivity import (
-        Specimen,
-        building_sensitivity,
-        building_variants,
-    )
+    from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
 
     study = job.study
     varied = settings_of(study).sensitivity
@@ -23,14 +19,10 @@ def run(job: Job[Study]) -> Results:
         raise ValueError("the study varies no building")
     settings = read_yaml(study.building_file)
     variants = building_variants(settings, varied, str(study.building_file))
-    specimens = [
-        Specimen(one.name, one.object, one.label, one.body, one.restitution, one.friction)
-        for one in study.configurations
-    ]
     tests = building_sensitivity(
         variants,
         job.motions("motions/ground"),
-        specimens,
+        study.configurations,
         study.amplitudes.values_g,
         protocol_of(study),
         job.threads,

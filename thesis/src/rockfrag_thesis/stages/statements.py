@@ -45,10 +45,11 @@ def _statements(job: Job[Study]) -> Results:
 
     study = job.study
     theory = theory_ledger(
-        {**study.tested_blocks, **study.stacks},
+        study.tested_blocks,
         job.motions("motions/ground"),
         seed=study.seed,
         threads=job.threads,
+        assemblies=study.stacks,
     )
     yield "claims_theory", theory
     if not study.has_pairs:

@@ -9,7 +9,6 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import Estimate, contrast, mean_effect
-from rockfrag.pedestal.mixed import long_rows
 from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests, pedestals_apart
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.specimens import THESIS_BODIES
@@ -91,7 +90,7 @@ class Evidence:
     @cached_property
     def amplitudes(self) -> pd.DataFrame:
         """Two rows per pair: side ("P" or "NP"), ln_a, a_g, slenderness and the pair's columns."""
-        rows = long_rows(self.table)
+        rows = _sides(self.table)
         return rows.assign(
             side=np.where(rows["ped"] == 1, "P", "NP"),
             a_g=np.exp(rows["ln_a"]),
@@ -147,3 +146,17 @@ class Evidence:
 
 def _plain(name: str) -> str:
     return "".join(letter for letter in name.lower() if letter.isalnum())
+
+
+def _sides(pairs: pd.DataFrame) -> pd.DataFrame:
+    """Turn pairs into two tests each, with ln_a and ped (0 or 1).
+
+    ``resolution`` of a test is half the width of its step [-], half that of its pair.
+    """
+    sides = [
+        pairs[["object", "event", "floor", "motion", "s_c"]].assign(
+            ped=value, ln_a=np.log(pairs[column]), resolution=pairs["resolution"] / 2
+        )
+        for value, column in ((0, "a_np_g"), (1, "a_p_g"))
+    ]
+    return pd.concat(sides, ignore_index=True)

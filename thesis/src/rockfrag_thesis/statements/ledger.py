@@ -11,7 +11,7 @@ from rockfrag.pedestal.cluster_means import TooFewUnitsError
 from rockfrag.pedestal.multiplicity import holm
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.system.blocks import Body
+from rockfrag.system.blocks import Block, Stack
 from rockfrag_thesis.statements import (  # noqa: F401  (each enters its statements when it is loaded)
     blocks,
     earthquakes,
@@ -71,12 +71,13 @@ class Row:
 
 
 def theory_ledger(
-    specimens: Mapping[str, Body],
+    specimens: Mapping[str, Block],
     motions: Sequence[Motion],
     *,
     seed: int,
     free_rocking: FreeRocking | None = None,
     threads: int | None = None,
+    assemblies: Mapping[str, Stack] | None = None,
 ) -> pd.DataFrame:
     """Compute C1 to C24 for specimens and ground motions.
 
@@ -85,8 +86,7 @@ def theory_ledger(
     Parameters
     ----------
     specimens
-        Blocks and stacks by name.  A block named "P" is the pedestal: without stacks among the
-        specimens each other block is put on it.
+        Blocks by name.  A block named "P" is the pedestal: without ``assemblies`` each other block is put on it.
     motions
         Ground motions at their recorded amplitude.
     seed
@@ -95,6 +95,8 @@ def theory_ledger(
         Measured free rocking by specimen: times [s] and rotations [rad] of a history (C5).
     threads
         Threads to use; the results do not depend on it.
+    assemblies
+        Stacks by name.
 
     Returns
     -------
@@ -106,7 +108,7 @@ def theory_ledger(
     InputError
         If a measured history cannot be used.
     """
-    setting = make_setting(specimens, motions, seed, free_rocking, threads)
+    setting = make_setting(specimens, motions, seed, free_rocking, threads, assemblies)
     return _table(_row(one, setting, "simulated") for one in _statements(theory=True))
 
 

@@ -13,7 +13,7 @@ from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Body, Response, Stack, simulate
-from rockfrag.stages.bodies import uplift_accelerations
+from rockfrag_thesis.printed_tables import uplift_accelerations
 from rockfrag_thesis.specimens import THESIS_BODIES
 from rockfrag_thesis.statements.motion_spectra import MotionSpectra
 from rockfrag_thesis.statements.statement import Undecidable
@@ -147,15 +147,15 @@ class Setting:
 
 
 def make_setting(
-    specimens: Mapping[str, Body],
+    specimens: Mapping[str, Block],
     motions: Sequence[Motion],
     seed: int,
     free_rocking: FreeRocking | None = None,
     threads: int | None = None,
+    stacks: Mapping[str, Stack] | None = None,
 ) -> Setting:
-    """Sort the specimens, and put each tower on the pedestal if no stack is given."""
-    blocks = {name: body for name, body in specimens.items() if isinstance(body, Block)}
-    stacks = {name: body for name, body in specimens.items() if isinstance(body, Stack)}
+    """Put each tower on the pedestal if no stack is given."""
+    blocks, stacks = dict(specimens), dict(stacks or {})
     pedestal = blocks.pop("P", None)
     if pedestal is not None and not stacks:
         stacks = {f"P&{name}": Stack(pedestal, block) for name, block in blocks.items()}

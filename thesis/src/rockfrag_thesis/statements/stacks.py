@@ -9,8 +9,8 @@ import pandas as pd
 
 from rockfrag.engines.response import PATTERNS
 from rockfrag.rocking import Block, Stack, simulate
-from rockfrag.stages.bodies import uplift_accelerations
 from rockfrag.units import GRAVITY
+from rockfrag_thesis.printed_tables import uplift_accelerations
 from rockfrag_thesis.statements.setting import (
     EXACT,
     Setting,

@@ -32,9 +32,6 @@ class Finding(StrEnum):
     """It holds for the thesis's specimens, with exceptions among other bodies or inputs."""
 
 
-BASES = ("computed", "simulated", "measured")
-"""What a row of the ledger rests on: algebra, the model, or a laboratory."""
-
 UNDECIDED = "undecided"
 EXCLUDED = "a change of 10 % or more is excluded"
 

@@ -86,7 +86,7 @@ class Model:
         Gravity [m/s²].
     restitution
         None, a number for a block, or a pair (ground, interface) for a stack; see
-        :func:`rockfrag.rocking.reference.simulate_reference`.
+        `rocking_integrator.simulate_reference`.
     """
 
     def __init__(self, body: Block | Stack, g: float, restitution: object = None) -> None:

@@ -1,7 +1,7 @@
 """A statue on a pedestal by scipy's ``solve_ivp``, the counterpart of ``competitors.scipy_lone``.
 
 The mechanics (contact states, impacts, what a closed contact can hold) is that of
-``rockfrag.rocking.reference.model``, with plain floats where every stage of a step calls it.
+`rocking_model`, with plain floats where every stage of a step calls it.
 """
 
 import math
@@ -9,12 +9,13 @@ from collections.abc import Callable
 from itertools import pairwise, product
 
 import numpy as np
-from competitors import SLOWEST_IMPACT, Array, G
 from scipy.integrate import solve_ivp
 
-from rockfrag.rocking.reference.integrator import LONGEST_TAIL
-from rockfrag.rocking.reference.model import Model, Pair, State
 from rockfrag.system.blocks import Body, Stack
+
+from .competitors import SLOWEST_IMPACT, Array, G
+from .rocking_integrator import LONGEST_TAIL
+from .rocking_model import Model, Pair, State
 
 Ground = Callable[[float], float]
 Watch = Callable[[float, Array], float]

@@ -3,14 +3,15 @@
 from rockfrag.engines.planar.history import CLOSING, contact_history
 from rockfrag.engines.response import Response
 from rockfrag.engines.steps import STEP
-from rockfrag.rocking.inputs import MotionLike, Standing, ground_motion
+from rockfrag.rocking.inputs import MotionLike, ground_motion
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput, system_of
+from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 
 
 def simulate_with_friction(
-    body: Standing,
+    body: SystemLike,
     acceleration: MotionLike,
     dt: float,
     *,

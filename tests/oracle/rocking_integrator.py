@@ -2,7 +2,7 @@
 
 Dormand and Prince's 8(5,3) pair (Hairer, Nørsett & Wanner 1993, as scipy's DOP853) with relative
 tolerance 1e-10 between the samples of the motion, where the acceleration is linear, and every event
-located on the dense output.  The mechanics is that of :mod:`rockfrag.rocking.reference.model`;
+located on the dense output.  The mechanics is that of `rocking_model`;
 nothing is shared with the fast kernel but the bodies.
 """
 
@@ -16,16 +16,17 @@ from scipy.optimize import brentq
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.reference.model import (
+from rockfrag.system.blocks import Block, Stack
+from rockfrag.units import GRAVITY
+
+from .rocking_model import (
     NEGLIGIBLE_SPEED,
     LinearModel,
     Model,
     Pair,
     State,
 )
-from rockfrag.rocking.reference.response import ReferenceEvent, ReferenceResponse
-from rockfrag.system.blocks import Block, Stack
-from rockfrag.units import GRAVITY
+from .rocking_response import ReferenceEvent, ReferenceResponse
 
 RTOL, ATOL = 1e-10, 1e-14
 
