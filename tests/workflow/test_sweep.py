@@ -42,13 +42,13 @@ def test_amplitudes_grow_by_the_step_up_to_the_highest():
 @pytest.mark.parametrize("body", [TOWER, STACK])
 def test_a_sweep_does_not_depend_on_threads_or_on_the_batch(body: Block | Stack):
     configuration = replace(body.system(), name="X")
-    whole = sweep(configuration, motions(), AMPLITUDES, threads=2)
-    parts = [sweep(configuration, [motion], AMPLITUDES, threads=1) for motion in motions()]
+    whole = sweep(configuration, motions(), AMPLITUDES.values_g, threads=2)
+    parts = [sweep(configuration, [motion], AMPLITUDES.values_g, threads=1) for motion in motions()]
     pd.testing.assert_frame_equal(whole, pd.concat(parts, ignore_index=True), check_exact=True)
 
 
 def test_below_its_threshold_a_block_never_moves():
-    table = sweep(TOWER.system(), motions(), AMPLITUDES)
+    table = sweep(TOWER.system(), motions(), AMPLITUDES.values_g)
     low = table["amplitude_g"] < 1 / 3
     assert (table.loc[low, "peak_rotation_body_1"] == 0).all()
     assert table.loc[~low, "peak_rotation_body_1"].iloc[-1] > 0

@@ -64,6 +64,8 @@ class Objects:
         What was not given.
     doubts
         Sentences, one for each thing that looks wrong.
+    pad_friction
+        Coefficient of friction of a pad that is tried under the object [-]; None to try none.
     """
 
     statue: Block
@@ -77,6 +79,7 @@ class Objects:
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
     doubts: tuple[str, ...] = ()
+    pad_friction: float | None = None
 
     @property
     def body(self) -> Body:
@@ -244,7 +247,10 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         scan=scan,
         assumed=(*first, *assumed),
         doubts=tuple(doubts),
+        pad_friction=settings.get("pad_friction"),
     )
+    if objects.round and objects.pad_friction is not None:
+        raise InputError("key pad_friction: is not simulated under a round base; leave it out.")
     _check_restitution(objects)
     return objects
 

@@ -3,7 +3,6 @@
 import warnings
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,19 +11,23 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
-from rockfrag.outcomes.columns import SUFFIXES
 from rockfrag.outcomes.limit_states import limit_states
-from rockfrag.outcomes.outcomes import Outcomes, columns
+from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.swept import fallen_names, labels_of
 from rockfrag.stages.job import Job, Results
-from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.study import Study
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 NEAR = 1 + 0.01 * np.arange(-10, 11)
 """Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""
+
+RECORDED = ("overturning_time", "certain_time", "impacts", "unstable_distance", "peak_rotation")
+"""Columns of outcomes in every sweep."""
+
+SLID = ("flights", "slip", "peak_slip")
+"""Columns of outcomes in sweeps with friction."""
 
 ROWS_AT_ONCE = 131_072
 """Histories in memory at a time, and of a row group of a file."""
@@ -64,7 +67,7 @@ def _sweep_part(job: Job[Study]) -> None:
                 sweep_table(
                     configuration,
                     motions[i : i + batch],
-                    study.amplitudes,
+                    study.amplitudes.values_g,
                     job.threads,
                     None if ups is None else ups[i : i + batch],
                 )
@@ -121,7 +124,7 @@ def _all_as_recorded(job: Job[Study]) -> pd.DataFrame:
 def sweep_table(
     configuration: System,
     motions: Sequence[Motion],
-    amplitudes: Amplitudes,
+    amplitudes_g: NDArray[np.float64],
     threads: int = 1,
     vertical: Sequence[Motion] | None = None,
 ) -> pa.Table:
@@ -133,8 +136,8 @@ def sweep_table(
         What stands on the table.
     motions
         Motions of the table; each is scaled so that its peak is the amplitude.
-    amplitudes
-        Peaks of the motion.
+    amplitudes_g
+        Peaks of the motion [g].
     threads
         Threads to use; the result does not depend on it.
     vertical
@@ -154,10 +157,9 @@ def sweep_table(
     """
     from rockfrag.motions.scaling import factors_to_pga
 
-    values = amplitudes.values_g
-    scales = np.array([factors_to_pga(motion, values) for motion in motions])
+    scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
     result = _shaken(configuration, motions, scales, threads, vertical)
-    each = len(values)
+    each = len(amplitudes_g)
 
     def of_all(text: str) -> pa.DictionaryArray:
         return _texts([text], np.zeros(each * len(motions), dtype=np.int32))
@@ -170,7 +172,7 @@ def sweep_table(
         "motion": of_motions([motion.name for motion in motions]),
         "event": of_motions([motion.metadata.get("event") or motion.name for motion in motions]),
         "floor": of_motions([motion.metadata["floor"] for motion in motions]),
-        "amplitude_g": np.tile(values, len(motions)),
+        "amplitude_g": np.tile(amplitudes_g, len(motions)),
         **{
             state.column: state.reached(result)[0].ravel()
             for state in limit_states()
@@ -179,35 +181,16 @@ def sweep_table(
         "overturned_body": _texts(
             fallen_names(configuration), result.overturned_body[0].ravel().astype(np.int32)
         ),
-        **_of_case(result, "overturning_time", "certain_time", "impacts", "unstable_distance"),
-        **_of_parts(result, "peak_rotation"),
+        **result.wide(0, RECORDED),
     }
-    if not configuration.loose and vertical is not None:
-        made |= _of_case(result, "minimum_gravity_ratio")
     if configuration.loose:
         rough = _shaken(configuration.held(), motions, scales, threads, vertical)
-        made["peak_slip_m"] = result.peak_slip[0].max(axis=-1).ravel()
-        made |= _of_parts(result, "slip", "peak_slip") | _of_case(result, "flights")
+        made["peak_slip_m"] = result.of_any("peak_slip")[0].ravel()
+        made |= result.wide(0, SLID)
         made["overturned_without_sliding"] = rough.overturned[0].ravel()
+    elif vertical is not None:
+        made |= result.wide(0, ("minimum_gravity_ratio",))
     return pa.table(made)
-
-
-def _of_case(result: Outcomes, *names: str) -> dict[str, NDArray[Any]]:
-    """Columns of the outcomes of one configuration."""
-    titles = {one.name: one.title for one in columns("cases")}
-    return {titles[name]: getattr(result, name)[0].ravel() for name in names}
-
-
-def _of_parts(result: Outcomes, *names: str) -> dict[str, NDArray[Any]]:
-    """Columns of each body or contact of one configuration, from below, numbered."""
-    parts = {one.name: one for one in columns() if one.table != "cases"}
-    found = {}
-    for name in names:
-        one = parts[name]
-        for k in range(result.counts[0]):
-            place = f"{'body' if one.table == 'bodies' else 'contact'}_{k + 1}"
-            found[f"{name}_{place}{SUFFIXES[one.unit]}"] = getattr(result, name)[0, ..., k].ravel()
-    return found
 
 
 def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray:
@@ -285,4 +268,4 @@ def as_recorded(
     )
     if not configuration.loose:
         return table
-    return table.assign(peak_slip_m=result.peak_slip[0, :, itself].max(axis=-1))
+    return table.assign(peak_slip_m=result.of_any("peak_slip")[0, :, itself])

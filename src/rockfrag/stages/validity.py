@@ -108,9 +108,9 @@ def _forces(
     )
     return pd.DataFrame(
         {
-            "friction_demand": found.friction_demand[0, :, 0].max(axis=1),
-            "least_normal_force_n": found.least_normal_force[0, :, 0].min(axis=1),
-            "unstable_distance": found.unstable_distance[0, :, 0],
+            "friction_demand": found.of_any("friction_demand")[0, :, 0],
+            "least_normal_force_n": found.of_any("least_normal_force")[0, :, 0],
+            **found.wide(0, ("unstable_distance",)),
         }
     )
 

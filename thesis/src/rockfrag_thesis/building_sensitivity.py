@@ -16,12 +16,11 @@ from rockfrag.building.floors import respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
 from rockfrag.errors import InputError
-from rockfrag.motions.scaling import factors_to_pga, scale
+from rockfrag.motions.scaling import scale
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep
-from rockfrag.shaketable.swept import fallen_names, labels_of
+from rockfrag.stages.sweep import sweep_table
 from rockfrag.system.system import System
 
 Floats = NDArray[np.float64]
@@ -176,32 +175,13 @@ class _Ground:
         return self.known[motion.name]
 
     def _shake(self, motion: Motion) -> pd.DataFrame:
-        result = overturns(
-            self.specimens,
-            [motion.acceleration],
-            motion.dt,
-            factors_to_pga(motion, self.amplitudes_g),
-            threads=self.threads,
-        )
-        return pd.concat(
-            [
-                pd.DataFrame(
-                    {
-                        **labels_of(specimen),
-                        "motion": motion.name,
-                        "event": motion.metadata.get("event") or motion.metadata["ground_motion"],
-                        "floor": motion.metadata["floor"],
-                        "amplitude_g": self.amplitudes_g,
-                        "overturned": result.overturned[i, 0],
-                        "overturned_body": np.take(
-                            fallen_names(specimen), result.overturned_body[i, 0]
-                        ),
-                    }
-                )
-                for i, specimen in enumerate(self.specimens)
-            ],
-            ignore_index=True,
-        )
+        tables: list[pd.DataFrame] = [
+            sweep_table(one, [motion], self.amplitudes_g, self.threads).to_pandas()
+            for one in self.specimens
+        ]
+        event = motion.metadata.get("event") or motion.metadata["ground_motion"]
+        found = pd.concat(tables, ignore_index=True)
+        return found.assign(event=event)
 
 
 def _sweep(
