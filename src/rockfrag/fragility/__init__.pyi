@@ -9,7 +9,6 @@ from .discrete_hazard import (
     fit_step_hazard as fit_step_hazard,
 )
 from .empirical import (
-    isotonic_share as isotonic_share,
     local_share as local_share,
     share_in_bins as share_in_bins,
     survival_windows as survival_windows,
