@@ -62,7 +62,6 @@ from .surface import (
 from .sweeps import (
     fragility_row as fragility_row,
     fragility_table as fragility_table,
-    fragility_tables as fragility_tables,
     record_set_hash as record_set_hash,
     table_hash as table_hash,
     with_measures as with_measures,

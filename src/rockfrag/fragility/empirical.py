@@ -1,4 +1,4 @@
-"""What the verdicts say without a curve: shares in bins and local, survival windows.
+"""What the verdicts say without a curve: shares in bins and near a value, survival windows.
 
 Rocking bodies overturn at one amplitude and survive a larger one; a fitted curve cannot show it, so
 these stand beside it.
