@@ -1,0 +1,177 @@
+"""How often the interval of ``assess`` holds the truth, in synthetic worlds of boxes and of scans.
+
+In each world earthquakes, the body's edges, contact, direction, restitution, the floor's period and the errors of the
+model are drawn from the distributions that :mod:`rockfrag.assess` states; it is told what a user would know. What
+is sought is the fraction of all earthquakes that topple the object at a PGV. Printed by
+``python -m tests.validation.test_assess_coverage 300``.
+"""
+
+import sys
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.hazard.measure import PGV
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.objects import ON_POINTS, Objects, higher, wider
+from rockfrag.assess.place import Place
+from rockfrag.assess.request import make_request
+from rockfrag.assess.risk import share_target
+from rockfrag.assess.scan import make_scan
+from rockfrag.assess.sources import SPACE
+from rockfrag.assess.verdicts import make_ladder, verdicts_of_all
+from rockfrag.campaign.standing import Unknown, unknowns_of, ways_to_stand
+from rockfrag.campaign.trials import block_of
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
+from rockfrag.motions import bandpass
+from rockfrag.records.motion import Motion
+from rockfrag.system.mesh import Shape
+
+EARTHQUAKES, OF_A_SET, COMPONENTS, COUNT = 240, 14, 2, 600
+WORLDS, QUICK = 300, 60
+SETTINGS = {"width": "0.3 m", "height": "1.2 m", "cg_height": "0.6 m", "mass": "200 kg"}
+IN_A_BUILDING = {"floor": "2/3"}
+
+
+def _motions(random: np.random.Generator) -> list[Motion]:
+    """Synthetic earthquakes: noise in a band about a frequency of its own, two components each."""
+    found = []
+    for number in range(EARTHQUAKES):
+        middle = np.exp(random.normal(np.log(1.2), 0.5))
+        about = {"event": f"synthetic {number}", "station": "s"}
+        for component in range(COMPONENTS):
+            raw = random.standard_normal(COUNT) * np.hanning(COUNT)
+            name = f"synthetic {number} {component}"
+            motion = Motion(raw, 0.01, name, metadata=about)
+            found.append(bandpass(motion, 0.4 * middle, 2 * middle))
+    return found
+
+
+@cache
+def _pool(seed: int = 1) -> list[Motion]:
+    return _motions(np.random.default_rng(seed))
+
+
+def _set(numbers: np.ndarray) -> MotionSet:
+    chosen = tuple(_pool()[COMPONENTS * i + k] for i in numbers for k in range(COMPONENTS))
+    pairs = tuple((i, i + 1) for i in range(0, len(chosen), COMPONENTS))
+    return MotionSet(chosen, chosen, pairs, "synthetic motions")
+
+
+def _scanned(random: np.random.Generator) -> Shape:
+    """A synthetic scan of a column: a foot whose points lie at heights of their own, and a top."""
+    angle, radius = random.uniform(0, 2 * np.pi, 80), 0.18 * np.sqrt(random.uniform(0.2, 1, 80))
+    foot = np.column_stack(
+        [radius * np.cos(angle), radius * np.sin(angle), 0.003 * random.uniform(0, 1, 80) ** 2]
+    )
+    foot[:, 2] -= foot[:, 2].min()
+    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    top = np.column_stack([0.15 * np.cos(around), 0.15 * np.sin(around), np.full(12, 1.2)])
+    points = np.vstack([foot, top]) - [0, 0, 0.6]
+    return Shape(points, 200.0, np.diag([26.0, 26.0, 3.0]), 0.09, "synthetic scan")
+
+
+def _told_of(shape: Shape, objects: Objects) -> Objects:
+    """The object as assess takes it from a scan of which nothing else is known."""
+    scan, _ = make_scan(shape, {}, None)
+    tolerances = {**objects.tolerances, "restitution": ON_POINTS["restitution"]}
+    return replace(
+        objects,
+        statue=scan.block(),
+        scan=scan,
+        livelier=ON_POINTS["livelier"],
+        tolerances=tolerances,
+    )
+
+
+def _stretched(unknown: Unknown, factor: float) -> Unknown:
+    """The same unknown with quantiles that lie further from the middle, in logarithm."""
+    middle = unknown.quantile(0.5)
+    return replace(unknown, quantile=lambda u: middle * (unknown.quantile(u) / middle) ** factor)
+
+
+def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Objects:
+    unknowns = unknowns_of(SCAN)
+    name = "contact_tolerance_mm"
+    unknowns[name] = _stretched(unknowns[name], outside)
+    table = ways_to_stand(shape, unknowns, 64, seed).table
+    way = dict(table.iloc[0])
+    return replace(told, statue=block_of(shape, way), livelier=way["restitution_ratio"])
+
+
+def _true_place(place: Place, random: np.random.Generator) -> Place:
+    """The place with the period and the damping of its building drawn; stiffness goes with the square of frequency."""
+    if place.building is None:
+        return place
+    slower, damped = (
+        max(0.2, 1 + place.tolerances[name] * random.standard_normal())
+        for name in ("period", "damping")
+    )
+    building = replace(
+        place.building,
+        stiffnesses=tuple(k / slower**2 for k in place.building.stiffnesses),
+        damping=replace(place.building.damping, ratio=place.building.damping.ratio * damped),
+    )
+    return replace(place, building=building)
+
+
+def world(seed: int, kind: str, outside: float = 1.0) -> bool:
+    """Whether the interval holds the truth in one world.
+
+    Parameters
+    ----------
+    seed
+        Of everything that is drawn.
+    kind
+        ``scan`` or ``cut block``.
+    outside
+        Factor by which one spread is larger in the world than is assumed: that of the contact tolerance of a scan,
+        of the model's error of a cut block.
+    """
+    random = np.random.default_rng([seed, kind == SCAN])
+    in_building = IN_A_BUILDING if seed % 2 else {}
+    level = {"pgv": f"{random.uniform(20, 60):.1f} cm/s"}
+    request = make_request({**SETTINGS, **in_building, **level}, "synthetic")
+    told = request.objects
+    if kind == SCAN:
+        shape = _scanned(random)
+        told = _told_of(shape, told)
+        truth = _true_scan(shape, told, seed, outside)
+    else:
+        truth = replace(
+            told, livelier=1 + told.tolerances["restitution"] * random.standard_normal()
+        )
+    z = random.standard_normal(2)
+    statue = wider(truth.statue, 1 + told.tolerances["width"] * z[0])
+    truth = replace(truth, statue=higher(statue, 1 + told.tolerances["cg_height"] * z[1]))
+    place = _true_place(request.place, random)
+    everything = _set(np.arange(EARTHQUAKES)).at(place)
+    (outcomes,) = verdicts_of_all([truth], everything, make_ladder(everything, PGV))
+    spread = MODEL_ERRORS[kind].beyond * (outside if kind == CUT else 1.0)
+    error = random.normal(0, spread) + random.normal(0, SPACE)
+    sought = share_target(request.level.value / np.exp(error)).value(outcomes)
+    seen = _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
+    found = assess_with(replace(request, objects=told), seen, brief=True).share
+    return bool(found.lower <= sought <= found.upper)
+
+
+def held(kind: str, worlds: int, outside: float = 1.0) -> float:
+    """Fraction of worlds whose truth the interval holds."""
+    return float(np.mean([world(seed, kind, outside) for seed in range(worlds)]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [CUT, SCAN])
+def test_the_interval_holds_the_truth_as_often_as_it_says(kind):
+    fraction = held(kind, QUICK)
+    # of 60 worlds at 90 %: 4 standard errors are 15 points, and what is above only says that it is careful
+    assert 0.75 < fraction
+
+
+if __name__ == "__main__":
+    for of_kind in (CUT, SCAN):
+        for by in (1.0, 1.5):
+            print(f"{of_kind}, one spread times {by:g}: {held(of_kind, int(sys.argv[1]), by):.3f}")
