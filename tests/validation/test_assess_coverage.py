@@ -1,8 +1,8 @@
 """How often the interval of ``assess`` holds the truth, in synthetic worlds of boxes and of scans.
 
-In each world earthquakes, the body's edges, contact, direction, restitution, the floor's period and the errors of the
-model are drawn from the distributions that :mod:`rockfrag.assess` states; it is told what a user would know. What
-is sought is the fraction of all earthquakes that topple the object at a PGV. Printed by
+In each world earthquakes, the body's edges, contact, direction, restitution, the floor's period and the errors of
+the model are drawn from the distributions that :mod:`rockfrag.assess` states; it is told what a user would know.
+What is sought is the fraction of all earthquakes that topple the object at a PGV. Printed by
 ``python -m tests.validation.test_assess_coverage 300``.
 """
 
@@ -17,12 +17,12 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.measure import PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import ON_POINTS, Objects, higher, wider
+from rockfrag.assess.outcomes import make_intensity_levels, outcomes_of_all
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import make_request
-from rockfrag.assess.risk import share_target
+from rockfrag.assess.risk import fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
-from rockfrag.assess.verdicts import make_ladder, verdicts_of_all
 from rockfrag.campaign.standing import Unknown, unknowns_of, ways_to_stand
 from rockfrag.campaign.trials import block_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
@@ -41,7 +41,7 @@ def _motions(random: np.random.Generator) -> list[Motion]:
     found = []
     for number in range(EARTHQUAKES):
         middle = np.exp(random.normal(np.log(1.2), 0.5))
-        about = {"event": f"synthetic {number}", "station": "s"}
+        about = {"earthquake": f"synthetic {number}", "station": "s"}
         for component in range(COMPONENTS):
             raw = random.standard_normal(COUNT) * np.hanning(COUNT)
             name = f"synthetic {number} {component}"
@@ -149,12 +149,12 @@ def world(seed: int, kind: str, outside: float = 1.0) -> bool:
     truth = replace(truth, statue=higher(statue, 1 + told.tolerances["cg_height"] * z[1]))
     place = _true_place(request.place, random)
     everything = _set(np.arange(EARTHQUAKES)).at(place)
-    (outcomes,) = verdicts_of_all([truth], everything, make_ladder(everything, PGV))
+    (outcomes,) = outcomes_of_all([truth], everything, make_intensity_levels(everything, PGV))
     spread = MODEL_ERRORS[kind].beyond * (outside if kind == CUT else 1.0)
     error = random.normal(0, spread) + random.normal(0, SPACE)
-    sought = share_target(request.level.value / np.exp(error)).value(outcomes)
+    sought = fraction_target(request.level.value / np.exp(error)).value(outcomes)
     seen = _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
-    found = assess_with(replace(request, objects=told), seen, brief=True).share
+    found = assess_with(replace(request, objects=told), seen, brief=True).fraction
     return bool(found.lower <= sought <= found.upper)
 
 
