@@ -12,7 +12,7 @@ from rockfrag.study.loading import load_any
 
 from .. import stages_in_process
 
-CATALOGUE = "name,event,date,station,component,magnitude,distance_km,source,file,vertical,sha256,unit,licence\n"
+CATALOGUE = "name,earthquake,date,station,component,magnitude,distance_km,source,file,vertical,sha256,unit,licence\n"
 STEP, SAMPLES = 0.02, 250
 
 
@@ -27,7 +27,7 @@ class Foreign:
     configurations
         Object and pedestal (or None) of each configuration by name, and with what it is compared, if that is said.
     records
-        Event of each record by name.
+        Earthquake of each record by name.
     floors
         Level of each floor by its label, in a building of three storeys; None for no building.
     content
@@ -64,11 +64,11 @@ def write(study: Foreign, folder: Path) -> Path:
         ],
     )
     rows = []
-    for number, (name, event) in enumerate(study.records.items()):
+    for number, (name, earthquake) in enumerate(study.records.items()):
         names = f"record{number}.txt", f"record{number}-up.txt"
-        for seed, one in zip((number, 100 + number), names, strict=True):
-            _record(folder / one, seed)
-        rows.append((name, event, *[""] * 5, "folder", *names, "", "g", "own"))
+        for seed, item in zip((number, 100 + number), names, strict=True):
+            _record(folder / item, seed)
+        rows.append((name, earthquake, *[""] * 5, "folder", *names, "", "g", "own"))
     _table(folder / "motions.csv", CATALOGUE.strip(), rows)
     content: dict[str, Any] = {
         "study": "own",
@@ -168,7 +168,7 @@ STUDIES = {
         records=dict(list(TEN.items())[:4]),
         content={"amplitudes": {"lowest_g": 0.1, "highest_g": 0.7, "step_percent": 20}},
     ),
-    "two bodies under one event": Foreign(
+    "two bodies under one earthquake": Foreign(
         blocks={"bust": (25.0, 60.0, 45.0), "column": (30.0, 180.0, 200.0)},
         configurations={"bust": ("bust", None), "column": ("column", None)},
         records={"north": "the one", "east": "the one"},
@@ -199,8 +199,8 @@ STUDIES = {
         content={"amplitudes": {"lowest_g": 0.01, "highest_g": 0.05, "step_percent": 20}},
     ),
     "everything overturns at the first step": Foreign(
-        blocks={"pole": (2.0, 150.0, 1.5), "foot": (30.0, 10.0, 20.0)},
-        configurations={"pole": ("pole", None), "pole on foot": ("pole", "foot")},
+        blocks={"pivot": (2.0, 150.0, 1.5), "foot": (30.0, 10.0, 20.0)},
+        configurations={"pivot": ("pivot", None), "pivot on foot": ("pivot", "foot")},
         records={"a": "one", "b": "two"},
         content={"amplitudes": {"lowest_g": 0.8, "highest_g": 1.5, "step_percent": 20}},
     ),

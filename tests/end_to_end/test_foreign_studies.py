@@ -20,7 +20,7 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     check_first_page(Results(load_any(tmp_path / "study.yaml"), results))
     words = " ".join(page.words)
     tests = pd.read_parquet(results / "tests.parquet")
-    tests = tests[tests["reading"] == "step_protocol"]
+    tests = tests[tests["definition"] == "step_protocol"]
     assert len(tests) == len(study.configurations) * len(study.records) * len(study.floors or [1])
     # what is not known is shown as a bound wherever tests are shown
     bounds = tests[tests["amplitude_g"].isna()]
