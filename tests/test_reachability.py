@@ -18,7 +18,7 @@ SOURCES = (ROOT / "src", ROOT / "thesis" / "src")
 REGISTERING = (
     "intensity_measure",
     "declare",
-    "statement",
+    "hypothesis",
     "order_hypothesis",
     "limit_state",
     "register",
