@@ -99,11 +99,9 @@ def coverage(n: int, over: str) -> pd.DataFrame:
         brackets, verdicts = simulated(events, each, rng)
         fitters = {
             "brackets": bracket_fitter(brackets, over),
-            "verdicts": verdict_fitter(
-                verdicts, verdicts.motion if over == "motion" else verdicts.event
-            ),
+            "verdicts": verdict_fitter(verdicts, over),
         }
-        _, notes = population(n, events, over)
+        _, notes = population(brackets, over)
         for name, (fit, groups) in fitters.items():
             interval = resampled_interval(fit, groups, over=over, notes=notes)
             found[name].append(holds(interval))

@@ -1,6 +1,7 @@
 """The observations that every fragility estimator starts from, checked once at the door."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -14,9 +15,33 @@ from rockfrag.short_repr import short_repr
 Floats = NDArray[np.float64]
 """An array of floating-point numbers."""
 
+Over = Literal["motion", "event"]
+"""What tests are grouped by: those of a group are not independent."""
+
+
+class Grouped:
+    """Tests that are labelled with their motion and event."""
+
+    motion: NDArray[np.object_]
+    event: NDArray[np.object_]
+
+    @property
+    def n_motions(self) -> int:
+        """Number of different motions."""
+        return len(pd.unique(pd.Series(self.motion)))
+
+    @property
+    def n_events(self) -> int:
+        """Number of different events."""
+        return len(pd.unique(pd.Series(self.event)))
+
+    def groups(self, over: Over) -> NDArray[np.object_]:
+        """Label of each test's motion or event, shape (n,)."""
+        return self.motion if over == "motion" else self.event
+
 
 @dataclass(frozen=True)
-class Outcomes:
+class Outcomes(Grouped):
     """Overturned or not, at known values of one intensity measure.
 
     Attributes
@@ -60,16 +85,6 @@ class Outcomes:
     def n_overturned(self) -> int:
         """Number of tests that overturned."""
         return int(self.overturned.sum())
-
-    @property
-    def n_motions(self) -> int:
-        """Number of different motions."""
-        return len(pd.unique(pd.Series(self.motion)))
-
-    @property
-    def n_events(self) -> int:
-        """Number of different events."""
-        return len(pd.unique(pd.Series(self.event)))
 
     @property
     def n_repeated(self) -> int:
