@@ -1,4 +1,4 @@
-"""The counted shares of motions as a fragility function that OpenQuake reads (NRML 0.5, discrete)."""
+"""The counted fractions of motions as a fragility function that OpenQuake reads (NRML 0.5, discrete)."""
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.fragility.identifiers import identifiers
@@ -17,12 +17,14 @@ def as_nrml(found: Assessment) -> str:
     found
         The assessment.
     """
-    name, verdicts = found.request.name, found.verdicts
+    name, outcomes = found.request.name, found.outcomes
     function = discrete_function(
         identifiers([name], "_:-")[name],
         found.measure.name,
-        verdicts.ladder.levels,
-        {OVERTURNS: verdicts.shares()},
+        outcomes.intensity_levels.levels,
+        {OVERTURNS: outcomes.fractions()},
     )
-    words = f"{name}, {found.request.place.words}: share of {found.motions.words} that topple it."
+    words = (
+        f"{name}, {found.request.place.words}: fraction of {found.motions.words} that topple it."
+    )
     return model_text(words, [OVERTURNS], [function])
