@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-9
 """Largest error of a step, in position [m], attitude [-] and velocities [m/s, rad/s]."""
 
-CUT_OFF = 1e-7
+CUT_OFF = 1e-6
 """Energy over rest, as a part of what an overturning takes, below which a body comes to rest [-]."""
 
 AFTER = 30.0
@@ -127,6 +127,7 @@ def run_case(
     -------
     The outcome, and the history, shape (m, COLUMNS), m ≤ samples.
     """
+    acceleration = np.ascontiguousarray(acceleration)
     y = standing(body, turned) if start is None else start.copy()
     history = np.full((samples, kernel.COLUMNS), math.nan)
     out = np.zeros(kernel.OUTCOME)
