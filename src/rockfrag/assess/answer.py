@@ -179,7 +179,9 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    ladder = make_ladder(motions, measure, asked, FEW_LEVELS if brief else LEVELS)
+    ladder = make_ladder(
+        motions, measure, asked, FEW_LEVELS if brief or request.objects.round else LEVELS
+    )
     objects = request.objects
     bodies = objects.arrangements
     if brief:
@@ -188,7 +190,9 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     now = next(iter(arrangements.values()))
     target = _target(level, hazard, request.years)
     conversion = find_conversion(now, motions, request.records) if level else None
-    moved = _moved(request, motions.thinned() if brief else motions, measure, asked)
+    moved = _moved(
+        request, motions.thinned() if brief or request.objects.round else motions, measure, asked
+    )
     both_sides = {one.name: one.sides for one in moved}
     shifts = {"model": BETA_MODEL}
     if not request.objects.round:

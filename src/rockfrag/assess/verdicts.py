@@ -2,23 +2,26 @@
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
 from rockfrag.assess.hazard.measure import Measure
-from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.observations import Outcomes
 from rockfrag.outcomes.limit_states import limit_state_named
 from rockfrag.outcomes.outcomes import Outcomes as Simulated
 from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
+from rockfrag.rocking.inputs import checked_threads
 from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.system.blocks import Body
+from rockfrag.system.blocks import Block, Body
 
 Floats = NDArray[np.float64]
 
@@ -165,6 +168,20 @@ class Verdicts:
         first = self.first()
         return np.where(first >= 0, self.ladder.levels[first], np.inf)
 
+    def joined(self, other: "Verdicts") -> "Verdicts":
+        """What happens in one of two answers about the same motions.
+
+        Parameters
+        ----------
+        other
+            The other answer.
+        """
+        return replace(
+            self,
+            overturned=self.overturned | other.overturned,
+            rocked=self.rocked | other.rocked,
+        )
+
     def outcomes(self) -> Outcomes:
         """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
         motion, level = np.nonzero(self.ladder.allowed)
@@ -196,7 +213,8 @@ def verdicts_of(
         The levels.
     """
     restitution = [objects.restitution_of(body) for body in bodies.values()]
-    found = _shaken(list(bodies.values()), restitution, motions, ladder)
+    rolling = [objects.rolling(body) for body in bodies.values()]
+    found = _shaken(list(bodies.values()), restitution, rolling, motions, ladder)
     return dict(zip(bodies, found, strict=True))
 
 
@@ -216,17 +234,39 @@ def verdicts_of_all(
     """
     bodies = [one.body for one in objects]
     restitution = [one.restitution_of(one.body) for one in objects]
-    return _shaken(bodies, restitution, motions, ladder)
+    rolling = [one.rolling(one.body) for one in objects]
+    return _shaken(bodies, restitution, rolling, motions, ladder)
 
 
 def _shaken(
-    bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
+    bodies: Sequence[Body],
+    restitution: Sequence[Restitution],
+    rolling: Sequence[Block | None],
+    motions: MotionSet,
+    ladder: Ladder,
 ) -> list[Verdicts]:
-    """Verdicts of planar bodies; an engine in space would take both components of a record here."""
+    """Verdicts of planar bodies; round ones that are free to roll are shaken in space.
+
+    On a pedestal that may lift both answers count: what falls in either falls.
+    """
     if not bodies:
         return []
     if motions.worst:
-        return _shaken_from_all_sides(bodies, restitution, motions, ladder)
+        planar = [i for i, body in enumerate(bodies) if rolling[i] is None or body.blocks[1:]]
+        found = dict(
+            zip(
+                planar,
+                _shaken_from_all_sides(
+                    [bodies[i] for i in planar], [restitution[i] for i in planar], motions, ladder
+                ),
+                strict=True,
+            )
+        )
+        space = [i for i, one in enumerate(rolling) if one is not None]
+        rolled = _rolled([rolling[i] for i in space], motions, ladder)
+        for i, one in zip(space, rolled, strict=True):
+            found[i] = one if i not in found else found[i].joined(one)
+        return [found[i] for i in range(len(bodies))]
     # what is beyond is not counted, and need not be simulated as it is
     scales = np.minimum(ladder.scales, believable_scales(motions.base))
     result, light = simulated(bodies, motions.base, scales, restitution)
@@ -272,10 +312,39 @@ def simulated(
     return result, any(light)
 
 
+def _rolled(bodies: Sequence[Block | None], motions: MotionSet, ladder: Ladder) -> list[Verdicts]:
+    """Verdicts of round bodies in space under both components of each record, where it has two."""
+    if not bodies:
+        return []
+    paired = {i for pair in motions.pairs for i in pair}
+    shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
+    shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
+    first = [pair[0] for pair in motions.pairs]
+    first += [i for i in range(len(motions.base)) if i not in paired]
+    scales = np.minimum(ladder.scales[first], believable_scales(motions.base)[first])
+    result = run_in_space(
+        [body for body in bodies if body is not None],
+        shaking,
+        scales,
+        threads=checked_threads(None),
+    )
+    moves = limit_state_named("rocks").reached(result)
+    place = np.zeros(len(motions.base), dtype=np.intp)
+    place[first] = np.arange(len(first))
+    for one, other in motions.pairs:
+        place[other] = place[one]
+    return [
+        Verdicts(ladder, result.overturned[i][place], moves[i][place], motions.events)
+        for i in range(len(bodies))
+    ]
+
+
 def _shaken_from_all_sides(
     bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
 ) -> list[Verdicts]:
     """Verdicts by records, each in its worst direction; both components of a record get that of the record."""
+    if not bodies:
+        return []
     records = motions.turned(WORST_STEP_DEG)
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])

@@ -8,8 +8,8 @@ the energy lost by friction (14).  Everything is for a unit of mass: energies in
 import math
 
 import numpy as np
-from rockfrag.engines.kernels.jit import kernel
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import cross, dot, minus, plus, times, to_world
 
 SIZE = 15

@@ -10,7 +10,6 @@ slide and where to.
 import math
 
 from rockfrag.engines.kernels.jit import kernel
-
 from rockfrag.engines.spatial._algebra import factor, substitute
 from rockfrag.engines.spatial._forces import MOST
 

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from rockfrag.engines.kernels.jit import kernel
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import (
     cross,
     dot,

@@ -2,8 +2,7 @@
 
 import math
 
-from rockfrag.engines.kernels.jit import compiling_alone, entry_kernel, kernel
-
+from rockfrag.engines.kernels.jit import entry_kernel, kernel
 from rockfrag.engines.spatial._algebra import (
     cross,
     normalise,
@@ -19,9 +18,9 @@ from rockfrag.engines.spatial._body import (
     arm,
     energy,
     omega_of,
+    point_velocity,
     position_of_base,
     rim_contact,
-    point_velocity,
     rim_direction,
 )
 from rockfrag.engines.spatial._forces import REST, SLIDES, STICKS, kind_of, rates
@@ -45,8 +44,8 @@ from rockfrag.engines.spatial._modes import (
     count_touching,
     edge_margin,
     gap,
-    impact,
     hold,
+    impact,
     insist,
     jam,
     lay_flat,
@@ -78,8 +77,8 @@ HURRY = 1000
 """Steps in one interval after which errors of COARSE are allowed: slip that hardly begins is stiff [-]."""
 
 GIVE_UP = 2000
-"""Steps in one interval after which a body that is next to flat is laid flat; after twice as many more the interval
-ends.  Both are counted as paradoxes [-]."""
+"""Steps in one interval after which a body that is next to flat is laid flat; after twice as many more the
+interval ends.  Both are counted as paradoxes [-]."""
 
 PATIENCE = 30
 """Times that this may happen before an analysis ends as one that stood [-]."""

@@ -3,7 +3,6 @@
 import math
 
 from rockfrag.engines.kernels.jit import kernel
-
 from rockfrag.engines.spatial._algebra import (
     dot,
     plus,
@@ -97,7 +96,7 @@ def stand_on_feet(body, y, rows, s):
         u = (s.field[0], s.field[1], 0.0)
     front = to_body(rows, (u[0], u[1], 0.0))
     each = body.count // MOST
-    first = int(round(math.atan2(front[1], front[0]) / (2 * math.pi) * body.count)) % body.count
+    first = round(math.atan2(front[1], front[0]) / (2 * math.pi) * body.count) % body.count
     n = 0
     for k in range(MOST):
         i = (first + k * each) % body.count
@@ -514,7 +513,32 @@ def lift_at(body, y, rows, i, size):
 
 
 __all__ = [
-    "AMBIGUOUS", "AT_REST", "CHANGES", "CLOSE", "COUNTERS", "FLIGHTS", "IMPACTS", "JAMS", "PASSES", "SLIDINGS",
-    "SLIP_FLOOR", "TOUCH", "UNSOLVED", "anchor_all", "carried_flat", "choose_mode", "come_to_rest", "count_touching",
-    "edge_margin", "edge_normal", "impact", "jam", "plus", "rest_margin", "settle", "touching", "still", "topple_margin",
+    "AMBIGUOUS",
+    "AT_REST",
+    "CHANGES",
+    "CLOSE",
+    "COUNTERS",
+    "FLIGHTS",
+    "IMPACTS",
+    "JAMS",
+    "PASSES",
+    "SLIDINGS",
+    "SLIP_FLOOR",
+    "TOUCH",
+    "UNSOLVED",
+    "anchor_all",
+    "carried_flat",
+    "choose_mode",
+    "come_to_rest",
+    "count_touching",
+    "edge_margin",
+    "edge_normal",
+    "impact",
+    "jam",
+    "plus",
+    "rest_margin",
+    "settle",
+    "still",
+    "topple_margin",
+    "touching",
 ]  # fmt: skip

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from rockfrag.engines.kernels.jit import kernel
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import normalise, rotation
 from rockfrag.engines.spatial._body import (
     SIZE,
@@ -80,7 +80,7 @@ def attempt(body, tau, h, y, s):
 
 @kernel
 def attitude_weight(body, y):
-    """Return what errors of the attitude count over: near flat they turn the contact of a rim by one over the tilt."""
+    """Return what errors of the attitude count over: they turn the contact of a rim by one over the tilt."""
     if body.rim == 0.0:
         return 1.0
     up = rotation(y)[2]

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._forces import CASE
@@ -63,6 +64,8 @@ class SpatialOutcome:
         Energy lost in impacts, and by friction [J/kg].
     residual
         What the balance of energy does not close by [J/kg].
+    gained
+        Energy that events added, which they must not: rounding, and the tilt with which a rim leaves rest [J/kg].
     """
 
     overturned: bool
@@ -82,6 +85,7 @@ class SpatialOutcome:
     paradoxes: int
     dissipated: tuple[float, float]
     residual: float
+    gained: float
 
 
 def run_case(
@@ -134,9 +138,22 @@ def run_case(
     case: Any = np.zeros(1, CASE)[0]
     later = later_peaks(acceleration) if peaks is None else peaks
     extra = math.ceil(AFTER / dt)
-    kernel.integrate(
-        body, acceleration, later, scale, dt, g, extra, tolerance, cut_off, y, history, out, case
-    )
+    with compiling_alone(kernel.integrate):
+        kernel.integrate(
+            body,
+            acceleration,
+            later,
+            scale,
+            dt,
+            g,
+            extra,
+            tolerance,
+            cut_off,
+            y,
+            history,
+            out,
+            case,
+        )
     kept = ~np.isnan(history[:, 0])
     return _outcome(body, out, case["counters"], y), history[kept]
 
@@ -161,6 +178,7 @@ def _outcome(body: np.void, out: Array, counters: NDArray[np.int64], y: Array) -
         paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
         dissipated=(float(out[kernel.LOST]), float(y[14])),
         residual=float(out[kernel.LEDGER]),
+        gained=float(out[kernel.GAINED]),
     )
 
 
