@@ -3,7 +3,7 @@
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make torture  a small study killed, starved and misused; make fuzz damaged inputs
-#               (INPUTS=10000 for fewer) and random requests of assess (REQUESTS=200)
+#               (INPUTS=10000 for fewer), random requests of assess (REQUESTS=200) and studies (STUDIES=20)
 # make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
@@ -16,6 +16,7 @@ PYTHON ?= python3
 STUDY ?= config/thesis.yaml
 INPUTS ?= 1000000
 REQUESTS ?= 2000
+STUDIES ?= 500
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
@@ -55,16 +56,17 @@ lint: .venv/installed
 	@$(RUN) ruff format --check .
 	@$(RUN) mypy
 	@$(RUN) codespell_lib
-	@.venv/bin/python .venv/bin/snakefmt --check workflow
+	@.venv/bin/python .venv/bin/snakefmt --check workflow thesis/src
 	@$(RUN) snakemake --lint
 
 format: .venv/installed
 	@$(RUN) ruff format .
-	@.venv/bin/python .venv/bin/snakefmt workflow
+	@.venv/bin/python .venv/bin/snakefmt workflow thesis/src
 
 fuzz: .venv/installed
 	@$(RUN) tests.fuzz --inputs $(INPUTS)
 	@$(RUN) tests.fuzz.requests --requests $(REQUESTS)
+	@$(RUN) tests.fuzz.studies --studies $(STUDIES)
 
 torture: .venv/installed
 	@$(RUN) tests.fault_injection
@@ -80,11 +82,11 @@ bench: .venv/installed
 	@.venv/bin/python benchmarks/run.py
 	@.venv/bin/python benchmarks/waits.py
 
-.venv/installed: pyproject.toml constraints.txt $(wildcard hashes/*.txt)
+.venv/installed: pyproject.toml thesis/pyproject.toml constraints.txt $(wildcard hashes/*.txt)
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; name another with make PYTHON=…")'
 	@test -x .venv/bin/python || "$(PYTHON)" -m venv .venv
 	@echo "Installing into .venv (once)"
 	@if test -f "$(HASHES)"; then $(PIP) --require-hashes --no-deps --requirement "$(HASHES)" && \
-		$(PIP) --no-deps --no-build-isolation --editable .; \
-		else $(PIP) --constraint constraints.txt --editable ".[workflow,test,lint]"; fi
+		$(PIP) --no-deps --no-build-isolation --editable . --editable thesis; \
+		else $(PIP) --constraint constraints.txt --editable ".[workflow,test,lint]" --editable thesis; fi
 	@touch .venv/installed

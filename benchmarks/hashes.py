@@ -9,16 +9,21 @@ whole histories; ensembles on one and on two threads.
 """
 
 import hashlib
+import sys
 import warnings
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from cases import DT, blocks, cases, motions, stacks
 from numpy.typing import NDArray
 
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block, Body, Stack
+
+# the random cases and the other programs lie with the oracles of the tests
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from tests.oracle.cases import DT, blocks, cases, motions, stacks
 
 
 def digest(arrays: list[NDArray[Any]]) -> str:

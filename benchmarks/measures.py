@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from cases import Cases
 from numpy.typing import NDArray
+from tests.oracle.cases import Cases
 
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.kernels.lanes import block, scheduler, stack_one, stack_two

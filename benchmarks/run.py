@@ -17,8 +17,18 @@ import numba
 import numpy as np
 import pandas as pd
 import scipy
-from cases import Cases, cases, motions
-from competitors import mujoco_verdict, numpy_lone, scipy_lone
+
+from rockfrag.engines.steps import STEP
+from rockfrag.figure_style import save_figure
+from rockfrag.files import write_table, write_text
+from rockfrag.rocking.ensemble import overturns
+from rockfrag.rocking.parquet import stream_overturns
+from rockfrag.rocking.step_sensitivity import fragile_verdicts
+from rockfrag.system.blocks import Block, Body, Stack
+
+# the random cases and the other programs lie with the oracles of the tests
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from figure import draw_benchmark
 from measures import (
     all_cases,
     converged,
@@ -33,16 +43,9 @@ from measures import (
     vertical_ratio,
     wall_seconds,
 )  # fmt: skip
-from scipy_stack import scipy_stack
-
-from rockfrag.engines.steps import STEP
-from rockfrag.figure_style import save_figure
-from rockfrag.files import write_table, write_text
-from rockfrag.report.figures.benchmark import draw_benchmark
-from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.parquet import stream_overturns
-from rockfrag.rocking.step_sensitivity import fragile_verdicts
-from rockfrag.system.blocks import Block, Body, Stack
+from tests.oracle.cases import Cases, cases, motions
+from tests.oracle.competitors import mujoco_verdict, numpy_lone, scipy_lone
+from tests.oracle.scipy_stack import scipy_stack
 
 BEGIN, END = "<!-- results of make bench -->", "<!-- end of results -->"
 NAMES = {"lone": "single block", "stack": "two blocks"}

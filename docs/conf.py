@@ -225,7 +225,10 @@ def _plain(text: str) -> str:
 
 def _schema_tables() -> str:
     """Every key of every file with what it may hold, from the schema itself."""
-    schemas = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))["$defs"]
+    from rockfrag.schema import read_schema
+
+    kinds = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))["$defs"]
+    schemas = {kind: read_schema(kind) for kind in kinds}
     parts = ["", "## All keys, from the schema", ""]
     for name, schema in schemas.items():
         parts += [f"### {schema.get('title', name)}", "", "| key | expected |", "|---|---|"]

@@ -5,16 +5,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from rockfrag import guests
 from rockfrag.report import stages as reports
 from rockfrag.stages import (
     campaign,
-    explanation,
     fragility,
     measured_tests,
     motions,
     pedestal,
-    sensitivity,
     sweep,
     tests,
 )
@@ -22,7 +19,8 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import AnyStudy
 from rockfrag.study.study import Study
-from rockfrag.thesis import stages as thesis
+from rockfrag_thesis.settings import settings_of
+from rockfrag_thesis.stages import explanation, sensitivity, statements
 
 Stage = Callable[[Job], Results]
 
@@ -35,11 +33,11 @@ def stages_of(study: AnyStudy) -> list[Stage]:
         return [reports.measured_table]
     optional = (
         (pedestal.run, study.has_pairs),
-        (explanation.run, study.more.explanation),
-        (sensitivity.run, study.more.sensitivity),
+        (explanation.run, settings_of(study).explanation),
+        (sensitivity.run, settings_of(study).sensitivity),
         (measured_tests.run, study.more.measured_tests),
-        (thesis.run, study.compare_with == "thesis"),
-        (guests.report, True),
+        (statements.run, settings_of(study).compares),
+        (reports.report, True),
     )
     asked = [stage for stage, wanted in optional if wanted]
     return [motions.run, _swept, tests.run, fragility.run, *asked]

@@ -91,6 +91,21 @@ def test_a_statue_on_its_pedestal_is_drawn(
     assert picture.read_text().startswith("<?xml")
 
 
+def test_a_column_is_given_from_above(record: Path, capsys: pytest.CaptureFixture[str]):
+    below = ["--pedestal", "0.2", "0.1", "9", "--pedestal", "0.3", "0.1", "20"]
+    body = ["--body", "0.124", "0.372", "2.172", *below]
+    case = ["simulate", str(record), "--unit", "g", *body, "--pga", "0.6"]
+    assert main([*case, "--friction", "0.6", "0.5", "0.4", "--restitution", "0.9"]) == 0
+    assert (
+        len(capsys.readouterr().out.split("largest slip [mm]: ")[1].splitlines()[0].split(",")) == 3
+    )
+    assert main([*case, "--friction", "0.6", "0.5"]) == 2
+    assert "from below, got 2" in capsys.readouterr().err
+    page = ["play", str(record), "--unit", "g", *body, "--output", "x.html"]
+    assert main(page) == 2
+    assert "two bodies on each other at most" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [

@@ -9,6 +9,7 @@ import warnings
 import pytest
 
 import rockfrag
+import rockfrag_thesis
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
@@ -61,6 +62,10 @@ def test_help_shows_the_public_names():
 
 
 def test_every_module_says_what_it_is_for():
-    modules = pkgutil.walk_packages(rockfrag.__path__, "rockfrag.")
-    silent = [one.name for one in modules if not importlib.import_module(one.name).__doc__]
+    modules = [
+        one.name
+        for package in (rockfrag, rockfrag_thesis)
+        for one in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    ]
+    silent = [name for name in modules if not importlib.import_module(name).__doc__]
     assert not silent

@@ -7,16 +7,18 @@ from pathlib import Path
 import pytest
 
 SOURCE = Path(__file__).resolve().parents[1] / "src" / "rockfrag"
+THESIS = SOURCE.parents[1] / "thesis" / "src"
 ROOMS = (
     *("records", "motions", "building", "system", "outcomes", "engines", "rocking"),
     *("shaketable", "fragility", "campaign", "pedestal"),
-    *("study", "stages", "report", "assess", "survival", "thesis"),
+    *("study", "stages", "report", "assess", "survival"),
 )
 """From left to right; a room imports from those before it."""
 
 LIBRARY = ROOMS[: ROOMS.index("study")]
 SPECIMENS = {"T1", "T2", "T3", "P&T1", "P&T2", "P&T3"}
 FLOORS = {"GF", "F3", "F5"}
+TEXTS = (".py", ".pyi", ".json", ".j2", ".css", ".js")
 STATEMENT = re.compile(r"C[1-9]\d?")
 
 
@@ -61,9 +63,55 @@ def test_room_of_the_library_names_no_specimen_floor_or_statement_of_a_study(roo
     assert looked_at > 20
 
 
+def test_the_library_has_no_word_of_the_thesis():
+    files = [path for path in SOURCE.rglob("*") if path.suffix in TEXTS]
+    assert len(files) > 400
+    for path in files:
+        words = re.findall(r"[a-z]*thesis", path.read_text(encoding="utf-8").casefold())
+        assert set(words) <= {"hypothesis", "parenthesis"}, path
+
+
 def test_nothing_imports_snakemake():
     for path in SOURCE.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
             names += [a.name for a in node.names] if isinstance(node, ast.Import) else []
             assert not [name for name in names if name.split(".")[0] == "snakemake"], path
+
+
+ASKS = re.compile(r"isinstance\([^)]*\b(Block|Stack|Column)\b")
+ROLE = re.compile(r"[a-z0-9_]+_(pedestal|statue|ground|interface)(_(m|s|n|rad|rad_s|g))?")
+NO_BODY = {
+    *("was_ground", "before_ground", "per_ground"),  # acceleration of the ground, in kernels
+    *("with_pedestal", "with_and_without_pedestal"),  # sides of a comparison
+    *("simulated_ground", "shakes_as_ground", "on_ground"),  # places
+}
+"""Names that end like a role and say nothing of one of several bodies or contacts."""
+
+
+def test_nothing_outside_of_systems_asks_whether_a_thing_is_a_block_or_a_stack():
+    asking = [
+        f"{path.name}: {found[0]}"
+        for path in [*SOURCE.rglob("*.py"), *THESIS.rglob("*.py")]
+        if path.parent.name not in ("system", "reference")
+        for found in [ASKS.search(path.read_text(encoding="utf-8"))]
+        if found
+    ]
+    assert not asking
+
+
+def test_no_field_or_column_is_named_after_the_role_of_a_body():
+    looked_at = 0
+    for path in [*SOURCE.rglob("*.py"), *THESIS.rglob("*.py")]:
+        if path.parent.name == "reference":
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = []
+            if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+                names = [node.target.id]
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                names = [node.value]
+            named = [name for name in names if ROLE.fullmatch(name) and name not in NO_BODY]
+            assert not named, f"{path}:{node.lineno} names {named[0]}"
+            looked_at += len(names)
+    assert looked_at > 1000

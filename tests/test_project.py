@@ -2,9 +2,11 @@
 
 import importlib
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -30,6 +32,23 @@ def test_version_is_one():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "rockfrag.__version__"}
     assert rockfrag.__version__ == citation["version"]
+    thesis = tomllib.loads((ROOT / "thesis" / "pyproject.toml").read_text(encoding="utf-8"))
+    assert thesis["project"]["version"] == rockfrag.__version__
+
+
+@pytest.mark.slow
+def test_the_wheel_of_the_library_has_no_word_of_the_thesis(tmp_path):
+    # what is built leaves files beside the source, which later wheels would hold
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, tmp_path)
+    shutil.copytree(ROOT / "src", tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
+    subprocess.run([*command, "."], check=True, cwd=tmp_path)
+    with zipfile.ZipFile(next(tmp_path.glob("rockfrag-*.whl"))) as wheel:
+        assert len(wheel.namelist()) > 400
+        for name in wheel.namelist():
+            words = set(re.findall(rb"[a-z]*thesis", name.encode() + wheel.read(name).lower()))
+            assert words <= {b"hypothesis", b"parenthesis"}, name
 
 
 def test_every_dependency_is_pinned():
@@ -60,7 +79,7 @@ SUBPACKAGES = (
 @pytest.mark.parametrize("package", SUBPACKAGES)
 def test_every_public_name_is_listed_and_loads(package):
     module = importlib.import_module(f"rockfrag{package}")
-    assert len(module.__all__) >= 7
+    assert len(module.__all__) >= 6
     assert set(module.__all__) <= set(dir(module))
     for name in module.__all__:
         # functions, classes and subpackages; a few are constants, which have no name of their own
@@ -163,3 +182,25 @@ def test_what_only_the_owner_can_fill_in_is_listed_and_still_missing():
         assert key in words
     for name in re.findall(r"`([A-Za-z_]+\.(?:md|toml|cff))`", words):
         assert (ROOT / name).is_file(), name
+
+
+def test_what_an_addition_costs_stands_where_the_table_says():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = text.split("## What an addition costs")[1].split("\n\n")[1].splitlines()[2:]
+    rows = {row.split("|")[1].strip().split(" ", 1)[1]: row for row in table}
+    assert len(rows) == len(table) >= 8
+    for row in table:
+        for name in re.findall(r"`(rockfrag\.[a-z_.]+)`", row):
+            importlib.import_module(name)
+    # a file a law, a package or module an engine, and nothing beside them
+    files = {path.stem for path in (ROOT / "src/rockfrag/laws").glob("[!_]*.py")}
+    assert files == set(importlib.import_module("rockfrag.laws").BUILT_IN)
+    for name in importlib.import_module("rockfrag.engines.contract").BUILT_IN:
+        assert importlib.import_module(name).ENGINE.name
+    # a declaration a measure, beside its function
+    source = (ROOT / "src/rockfrag/motions/intensity.py").read_text(encoding="utf-8")
+    declared = importlib.import_module("rockfrag.motions.declared").declared()
+    assert source.count("@intensity_measure(") == len(declared) > 15
+    states = (ROOT / "src/rockfrag/outcomes/limit_states.py").read_text(encoding="utf-8")
+    known = importlib.import_module("rockfrag.outcomes.limit_states").limit_states()
+    assert states.count("\n@limit_state(") == len(known) == 3

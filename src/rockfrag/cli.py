@@ -17,6 +17,7 @@ from rockfrag.units import quantity
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
     from rockfrag.rocking import Block, Body, Response
+    from rockfrag.rocking.options import FrictionInput
 
 MOST_EVENTS = 30
 """Lines of the pattern history that are printed unless all are asked for."""
@@ -70,7 +71,7 @@ def make_parser() -> argparse.ArgumentParser:
     one.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
     one.add_argument(
         "--friction", nargs="+", type=float, metavar="MU",
-        help="coefficient of friction of all contacts, or of the ground and of the interface",
+        help="coefficient of friction of all contacts, or of each from the ground up",
     )  # fmt: skip
     one.add_argument(
         "--vertical", metavar="RECORD", help="file with the vertical component of the record"
@@ -89,7 +90,7 @@ def make_parser() -> argparse.ArgumentParser:
     play.set_defaults(run=_play)
 
     check = commands.add_parser("check-config", help="check the configuration of a study")
-    check.add_argument("file", metavar="FILE", help="configuration, such as config/thesis.yaml")
+    check.add_argument("file", metavar="FILE", help="configuration, such as config/config.yaml")
     check.add_argument("--quiet", action="store_true", help="say only what is wrong or doubtful")
     check.set_defaults(run=_check_config)
     return parser
@@ -104,7 +105,8 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
         "kg; without a mass a square block of stone",
     )  # fmt: skip
     parser.add_argument(
-        "--pedestal", nargs="+", metavar="SIZE", help="the block it stands on, in the same way",
+        "--pedestal", nargs="+", action="append", metavar="SIZE",
+        help="the block it stands on, in the same way; again for what that stands on",
     )  # fmt: skip
     parser.add_argument("--unit", help="unit of a record that does not state its own")
     parser.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
@@ -129,7 +131,7 @@ def _simulate(options: argparse.Namespace) -> int:
     up = _vertical(options, acceleration.max() / motion.acceleration.max())
     restitution = options.restitution
     if restitution is not None and options.pedestal:
-        restitution = (restitution, restitution)
+        restitution = (restitution,) * len(body.blocks)
     with warnings.catch_warnings():
         # what `simulate` doubts of the acceleration has been said
         warnings.simplefilter("ignore", UserWarning)
@@ -159,17 +161,17 @@ def _simulate(options: argparse.Namespace) -> int:
     return 0
 
 
-def _friction(options: argparse.Namespace) -> "dict[str, float] | float | None":
+def _friction(options: argparse.Namespace) -> "FrictionInput | None":
     """Return the friction that the options tell, of each contact by its name."""
     given = options.friction
     if given is None or len(given) == 1:
         return None if given is None else float(given[0])
-    if not options.pedestal or len(given) != 2:
+    if len(given) != 1 + len(options.pedestal or []):
         raise InputError(
-            f"--friction: expected one coefficient, or with --pedestal those of the ground and of the interface, "
-            f"got {len(given)}."
+            f"--friction: expected one coefficient, or one for the ground and for the interface under each block "
+            f"above a --pedestal, from below, got {len(given)}."
         )
-    return {"ground": given[0], "interface": given[1]}
+    return {"ground": given[0], "interface": list(given[1:])}
 
 
 def _vertical(options: argparse.Namespace, factor: float) -> "Motion | None":
@@ -199,10 +201,10 @@ def _contacts(response: "Response", loose: bool) -> list[str]:
 
 def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
     """Return the body and the motion that the options tell."""
-    from rockfrag.rocking import Stack
+    from rockfrag.system.blocks import stacked
 
-    statue = _block("--body", options.body)
-    body = Stack(_block("--pedestal", options.pedestal), statue) if options.pedestal else statue
+    below = [_block("--pedestal", one) for one in reversed(options.pedestal or [])]
+    body = stacked([*below, _block("--body", options.body)])
     return body, _motion(options.record, options, options.channel)
 
 
@@ -257,10 +259,10 @@ def _block(option: str, given: Sequence[str]) -> "Block":
 def _acceleration_doubt(peak: float, body: "Body") -> str:
     """Say that the motion looks as if it were in another unit, or return an empty text."""
     from rockfrag.plausibility import peak_warning
-    from rockfrag.rocking.inputs import least_uplift
+    from rockfrag.system.system import uplift_ratios
     from rockfrag.units import GRAVITY
 
-    return peak_warning(peak, least_uplift(body.system(), GRAVITY))
+    return peak_warning(peak, GRAVITY * min(uplift_ratios(body.system())))
 
 
 def _history(events, everything: bool) -> str:  # type: ignore[no-untyped-def]

@@ -7,8 +7,9 @@ The schemas of all files, of a study, a table of measured tests, a building and 
 import difflib
 import json
 import math
+import re
 import reprlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -17,6 +18,7 @@ from jsonschema import Draft202012Validator, ValidationError
 from jsonschema.validators import extend
 
 from rockfrag.errors import InputError
+from rockfrag.plugins import plugins
 from rockfrag.units import other_names, quantity, split_name
 
 LARGEST_WHOLE = 2**53
@@ -27,9 +29,12 @@ _Schema = Mapping[str, Any]
 
 @cache
 def read_schema(name: str) -> dict[str, Any]:
-    """Read the schema of one kind of file: ``study``, ``measured_table``, ``building`` or ``shaker``."""
+    """Read the schema of one kind of file, such as ``building``; of a ``study`` with the keys of plugins."""
     text = files("rockfrag").joinpath("schema.json").read_text(encoding="utf-8")
     schema: dict[str, Any] = json.loads(text)["$defs"][name]
+    if name == "study":
+        for plugin in plugins().values():
+            schema["properties"] |= plugin.schema
     return schema
 
 
@@ -76,10 +81,38 @@ def _validator(name: str) -> Draft202012Validator:
     types = Draft202012Validator.TYPE_CHECKER.redefine(
         "integer", lambda checker, value: isinstance(value, int) and not isinstance(value, bool)
     )
-    validator: Draft202012Validator = extend(Draft202012Validator, type_checker=types)(
+    keywords = {"registered": _registered}
+    validator: Draft202012Validator = extend(Draft202012Validator, keywords, type_checker=types)(
         read_schema(name)
     )
     return validator
+
+
+def registered(kind: str) -> tuple[str, ...]:
+    """Return the names that a registry has: what a file may name grows with what is declared."""
+    from rockfrag.laws import law_names
+    from rockfrag.motions.declared import measure_columns
+
+    names: dict[str, Callable[[], tuple[str, ...]]] = {
+        "law of impacts": law_names,
+        "intensity measure": measure_columns,
+        "growing intensity measure": lambda: measure_columns(growing=True),
+    }
+    return names[kind]()
+
+
+def _registered(
+    validator: Any, kind: str, value: Any, schema: _Schema
+) -> Iterator[ValidationError]:
+    """Keyword ``registered``: the name of something that is declared."""
+    if value not in registered(kind):
+        yield ValidationError(f"one of {', '.join(registered(kind))}")
+
+
+def _described(schema: _Schema, otherwise: str) -> str:
+    """What is expected, in words; ``{registry}`` of two words or more is its names."""
+    words = str(schema.get("description", otherwise))
+    return re.sub(r"\{(\w+ [\w ]+)\}", lambda found: ", ".join(registered(found[1])), words)
 
 
 def _with_text_keys(value: Any, key: str) -> Any:
@@ -95,6 +128,9 @@ def _with_text_keys(value: Any, key: str) -> Any:
 
 def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
     """Express every quantity in the unit of its usual key, whatever key it was given under."""
+    if isinstance(value, list):
+        items = schema.get("items", {})
+        return [_in_usual_units(one, items, f"{key}[{i}]") for i, one in enumerate(value)]
     if not isinstance(value, Mapping):
         return value
     properties = schema.get("properties", {})
@@ -150,11 +186,15 @@ def _importance(error: ValidationError) -> tuple[int, list[str]]:
     return rank, [str(part) for part in error.absolute_path]
 
 
+_WHOLES = ("type", "const", "enum", "registered")
+"""Keywords that say of a value as a whole that it is not what was meant."""
+
+
 def _deepest(error: ValidationError) -> ValidationError:
     """Of the alternatives of a oneOf, take the errors of the one whose type was meant."""
     if error.validator not in ("oneOf", "anyOf") or not error.context:
         return error
-    meant = [inner for inner in error.context if inner.validator not in ("type", "const", "enum")]
+    meant = [inner for inner in error.context if inner.validator not in _WHOLES]
     return _deepest(meant[0]) if meant else error
 
 
@@ -179,9 +219,9 @@ def _sentence(error: ValidationError) -> str:
     if error.validator == "required":
         missing = next(name for name in schema["required"] if name not in instance)
         wanted = schema.get("properties", {}).get(missing, {})
-        expected = wanted.get("description", "a value")
+        expected = _described(wanted, "a value")
         return f"key {_key(error, missing)} is missing; expected {expected}."
-    expected = schema.get("description", error.message)
+    expected = _described(schema, error.message)
     return f"key {_key(error)}: expected {expected}, found {_short(instance)}."
 
 

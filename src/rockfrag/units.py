@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from rockfrag.errors import InputError
 
 GRAVITY = 9.81
-"""Acceleration of gravity [m/s²] of the thesis, whose tables follow from it to the printed digit.
+"""Acceleration of gravity [m/s²] used throughout, as printed tables of ground motions use it.
 
 Standard gravity, which other programs mean by g, is 9.80665 m/s².
 """

@@ -125,5 +125,5 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
         # a tag such as !!bool stands before what is none
         raise InputError(f"{path}: is not valid YAML ({error}).") from error
     if not isinstance(content, dict):
-        raise InputError(f"{path}: expected a mapping of keys to values, as in config/thesis.yaml.")
+        raise InputError(f"{path}: expected a mapping of keys to values, as in config/config.yaml.")
     return content

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.conversion import OF_THE_SITE, UNKNOWN, spread_of_site
+from rockfrag.assess.conversion import OF_THE_SITE, UNKNOWN, VelocityRelation
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.page import page_of
 from rockfrag.assess.request import Records, make_request
@@ -43,23 +43,22 @@ def test_what_is_known_of_the_earthquakes_is_no_ignorance(noise, random):
     motions, about = set_of(60, random, noise)
     logs = 1.0 + about @ np.array([0.5, -0.2, -0.3])
     parts = np.array([0.5, -0.2, -0.3]) * list(UNKNOWN.values())
-    all_unknown = spread_of_site(logs, motions, Records())
-    assert all_unknown == pytest.approx(np.linalg.norm(parts))
-    known = spread_of_site(logs, motions, Records(magnitude=7.0, distance_km=10.0))
-    assert known == pytest.approx(abs(parts[2]))
+    relation = VelocityRelation.of(motions.about, logs)
+    assert relation.unknown(Records()) == pytest.approx(np.linalg.norm(parts))
+    known = Records(magnitude=7.0, distance_km=10.0)
+    assert relation.unknown(known) == pytest.approx(abs(parts[2]))
+    # the mean is that of such earthquakes on the ground of the set
+    there = [7.0, math.log(10.0), about[:, 2].mean()]
+    assert relation.mean(known) == pytest.approx(1.0 + there @ np.array([0.5, -0.2, -0.3]))
 
 
 def test_what_differs_between_motions_of_one_site_is_not_all_ignorance(noise, random):
     motions, _ = set_of(3000, random, noise)
     logs = 0.4 * random.standard_normal(3000)
-    assert spread_of_site(logs, motions, Records()) == pytest.approx(
-        0.4 * math.sqrt(OF_THE_SITE), rel=0.05
-    )
-    few = replace(motions, ground=motions.ground[:20])
-    spread = logs[:20].std(ddof=1)
-    assert spread_of_site(logs[:20], few, Records()) == pytest.approx(
-        spread * math.sqrt(OF_THE_SITE)
-    )
+    known = VelocityRelation.of(motions.about, logs).unknown(Records())
+    assert known == pytest.approx(0.4 * math.sqrt(OF_THE_SITE), rel=0.05)
+    few = VelocityRelation.of(motions.about[:20], logs[:20]).unknown(Records())
+    assert few == pytest.approx(logs[:20].std(ddof=1) * math.sqrt(OF_THE_SITE))
 
 
 def test_every_source_says_where_its_size_comes_from(motions):

@@ -70,12 +70,58 @@ def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
     assert 0.005 < found.lower < found.value < found.upper < 0.75
 
 
-def test_a_second_pedestal_is_refused_and_not_dropped(capsys):
-    said = refused(
-        capsys, "--width", "42cm", "--height", "1.65m",
-        "--pedestal", "60cm", "90cm", "700kg", "--pedestal", "80cm", "30cm",
-    )  # fmt: skip
-    assert "--pedestal is given twice" in said and "as one block" in said
+ON_TWO = (
+    *("--width", "42cm", "--height", "1.65m", "--mass", "410kg", "--pga", "0.4g"),
+    *("--pedestal", "60cm", "90cm", "700kg", "--pedestal", "80cm", "30cm"),
+)
+
+
+def test_pedestals_on_each_other_are_given_from_above(own_records, tmp_path, capsys):
+    records = str(own_records / "catalogue.csv")
+    options = ["--record", records, "--output", str(tmp_path), "--json"]
+    assert main(["assess", *ON_TWO, *options]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert list(answer["arrangements"]) == [
+        "on its pedestals",
+        "fixed to its pedestals",
+        "on the floor",
+    ]
+    page = next(tmp_path.glob("*.html")).read_text(encoding="utf-8")
+    assert (
+        "More than two bodies on each other are not simulated in the page: on its pedestals" in page
+    )
+    assert "pedestal 2 weighs" in page.lower()
+
+
+def test_each_joint_of_a_column_may_be_fixed(motions):
+    plinths = [{"width": "60 cm", "height": "90 cm"}, {"width": "80 cm", "height": "30 cm"}]
+    request = asked(**STATUE, pedestal=plinths, pga="0.5 g")
+    assert [block.width for block in request.objects.body.blocks] == [0.8, 0.6, 0.42]
+    few = replace(motions, ground=motions.ground[:6], base=motions.base[:6], pairs=())
+    found = assess_with(request, few)
+    names = {remedy.name for remedy in found.remedies}
+    assert {"fixing the object to pedestal 1", "fixing pedestal 1 to pedestal 2"} <= names
+    held = request.objects.body.rigidly_joined()
+    assert held.mass == pytest.approx(request.objects.body.mass)
+    assert found.share.lower <= found.share.value <= found.share.upper
+
+
+def test_friction_and_a_measured_restitution_go_together(motions):
+    few = replace(motions, ground=motions.ground[:6], base=motions.base[:6], pairs=())
+    request = asked(**STATUE, pga="0.9 g", friction=1.5, restitution=0.93)
+    found = assess_with(request, few)
+    assert abs(found.sliding_share - found.share.value) <= 0.34
+
+
+def test_what_a_list_of_pedestals_gets_wrong_is_named(capsys):
+    with pytest.raises(InputError, match=r"key pedestal\[1\]\.width"):
+        asked(**STATUE, pedestal=[{"width": "1 m", "height": "1 m"}, {"height": "1 m"}])
+    with pytest.raises(InputError, match=r"key pedestal\.width_m"):
+        asked(**STATUE, pedestal={"height": "1 m"})
+    assert "--pedestal: expected width" in refused(capsys, *ON_TWO, "--pedestal", "1m")
+
+
+def test_an_option_that_is_given_twice_is_refused(capsys):
     assert "--pga is given twice" in refused(capsys, "--pga", "0.2g", "--pga", "0.3g")
 
 
@@ -307,7 +353,6 @@ def test_an_italian_table_is_read(tmp_path):
     [
         ({"tolerances": {"mass": 0.1}}, "without a pedestal"),
         ({"tolerances": {"period": 0.1}}, "stands on the ground"),
-        ({"friction": 0.5, "restitution": 0.9, "pga": "0.2 g"}, "together"),
         ({"round": True, "depth": "30 cm"}, "diameter"),
         ({"cg_offset": "5 cm", "restitution": 0.999}, "gain energy"),
         ({"records": {"paths": ["a"]}, "distance_km": 10}, "chooses among the default motions"),

@@ -198,3 +198,40 @@ def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared: P
     (array,) = table_motions(folder / "table_accelerations.npz", ["100"], unit="g", dt=0.00125)
     assert text.dt == pytest.approx(array.dt)
     assert text.acceleration == pytest.approx(array.acceleration, abs=1e-5)
+
+
+def test_a_wrong_unit_stops_a_campaign_with_its_factor(tmp_path: Path, laboratory: Laboratory):
+    with pytest.raises(
+        InputError, match=r"are 1\d\.\d times the pga_g that the tests list .* unit"
+    ):
+        run(configured(tmp_path, laboratory, campaign__unit="g"), tmp_path)
+    assert not list(tmp_path.glob("*.parquet"))
+
+
+def test_the_headline_of_the_fragility_has_median_and_dispersion_by_majority_and_votes(
+    tmp_path: Path, laboratory: Laboratory
+):
+    fragility = run(configured(tmp_path, laboratory), tmp_path)["fragility"].set_index("who")
+    page = (tmp_path / "report.html").read_text()
+    assert re.search(
+        r"Simulated over measured PGA of overturning: median \d.*, dispersion \d", page
+    )
+    # votes that are split leave a wider curve than their majority
+    assert fragility.loc["rockfrag by votes", "beta"] > fragility.loc["rockfrag", "beta"]
+    assert "simulated, votes" in page
+
+
+def test_one_kind_of_outcome_or_one_input_motion_ends_in_a_page_or_a_sentence(
+    tmp_path: Path, laboratory: Laboratory
+):
+    table = laboratory.table.assign(overturned=0)
+    table.to_csv(tmp_path / "synthetic_survivors.csv", index=False)
+    path = configured(
+        tmp_path, laboratory, campaign__tests=str(tmp_path / "synthetic_survivors.csv")
+    )
+    run(path, tmp_path)
+    assert (tmp_path / "report.html").exists()
+    laboratory.table.assign(input="one").to_csv(tmp_path / "synthetic_group.csv", index=False)
+    path = configured(tmp_path, laboratory, campaign__tests=str(tmp_path / "synthetic_group.csv"))
+    with pytest.raises(InputError, match="single input motion; give those of two or more"):
+        run(path, tmp_path)

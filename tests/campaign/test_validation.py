@@ -1,16 +1,21 @@
 """Trials chosen by some motions and judged by others; rivals; intervals that know that tests share a motion."""
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from rockfrag.campaign.comparison import agreement_row, by_region, fragility_beside, paired_row
+from rockfrag.campaign.peaks import check_peaks, measured_peaks
 from rockfrag.campaign.thresholds import best_threshold, cross_validated_threshold
+from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import (
     clustered_error,
     cross_validate,
     folds_by_group,
     plausible_trials,
 )
+from rockfrag.errors import InputError
+from rockfrag.records.motion import Motion
 
 RNG = np.random.default_rng(11)
 
@@ -139,3 +144,39 @@ def test_regions_hold_every_test_once():
     regions = by_region(tests, "a", "b", fell, fell)
     assert regions["tests"].sum() == 90
     assert (regions["right"] == 1).all()
+
+
+def test_listed_peaks_show_a_time_step_that_is_four_times_too_long():
+    time = np.arange(0, 6, 0.01)
+    waves = [a * np.sin(2 * np.pi * time) * np.hanning(len(time)) for a in (1.0, 2.0, 3.0)]
+    motions = [Motion(wave, 0.01, "synthetic") for wave in waves]
+    tests = measured_peaks(motions)
+    check_peaks(tests, motions, "synthetic.npz")
+    tests = tests.assign(pgv_over_pga_s=tests["pgv_cm_s"] / tests["pga_g"] / 981).drop(
+        columns="pgv_cm_s"
+    )
+    check_peaks(tests, motions, "synthetic.npz")
+    slow = [Motion(wave, 0.04, "synthetic") for wave in waves]
+    with pytest.raises(InputError, match=r"are 4(\.0\d)? times the pgv_cm_s .* time step"):
+        check_peaks(tests, slow, "synthetic.npz")
+
+
+def test_an_end_of_a_range_that_tests_prefer_is_said_and_one_with_nothing_beyond_is_not():
+    random = np.random.default_rng(1)
+    trials = pd.DataFrame(
+        {
+            "contact_tolerance_mm": random.uniform(0.5, 20, 1000),
+            "edge_retreat_mm": random.uniform(0, 40, 1000),
+            "restitution": random.uniform(0.6, 1, 1000),
+        }
+    )
+    ranges = {
+        "contact_tolerance_mm": (0.5, 20.0),
+        "edge_retreat_mm": (0.0, 40.0),
+        "restitution": (0.6, 1.0),
+    }
+    low = trials.index[(trials.contact_tolerance_mm < 2) & (trials.edge_retreat_mm < 20)]
+    assert preferred_edges(trials, low, ranges) == {"contact_tolerance_mm": "low end"}
+    near_zero = trials.index[trials.edge_retreat_mm < 4]
+    assert preferred_edges(trials, near_zero, ranges) == {}
+    assert preferred_edges(trials, trials.index, ranges) == {}

@@ -6,11 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from rockfrag.rocking.contact.simulation import simulate_with_friction
-
 from ..oracle.contact_reference import simulate_reference
 from ..oracle.time_stepping import time_stepping
 from .cases import DT, as_friction, random_block, random_frictions, random_motion, random_stack
+from .with_friction import simulate_with_friction
 
 
 def case(rng: np.random.Generator, stacks: bool) -> tuple:

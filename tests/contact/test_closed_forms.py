@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rockfrag.rocking import Block, Stack
-from rockfrag.rocking.contact.simulation import simulate_with_friction
 
 from .cases import STILL, T1, P
+from .with_friction import simulate_with_friction
 
 G = 9.81
 DT = 0.001

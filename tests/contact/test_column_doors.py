@@ -7,7 +7,8 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.rocking import find_thresholds, overturns, simulate, stream_overturns
-from rockfrag.study.configurations import read_configurations, read_specimens
+from rockfrag.shaketable.swept import fallen_names, labels_of
+from rockfrag.study.configurations import read_configurations, read_counterparts, read_specimens
 from rockfrag.system import Block, Column, Stack
 
 from .cases import DT
@@ -67,13 +68,27 @@ def arrangements(folder: Path, row: str) -> list:
     return read_configurations(folder / "arrangements.csv", read_specimens(folder / "blocks.csv"))
 
 
+def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> None:
+    (tmp_path / "blocks.csv").write_text(
+        "name,width_m,height_m,mass_kg\nplinth,0.8,0.4,500\nvenus,0.3,1.0,100\n"
+    )
+    table, blocks = tmp_path / "arrangements.csv", read_specimens(tmp_path / "blocks.csv")
+    head = "name,object,pedestal,counterpart\nalone,venus,,\n"
+    table.write_text(head + "on,venus,plinth,alone\n")
+    assert len(read_configurations(table, blocks)) == 2
+    assert read_counterparts(table) == {"on": "alone"}
+    for wrong in ("on", "elsewhere"):
+        table.write_text(head + f"on,venus,plinth,{wrong}\n")
+        with pytest.raises(InputError, match="expected another arrangement"):
+            read_counterparts(table)
+
+
 @pytest.mark.parametrize("row", ["all,venus,base|plinth", "all,venus | base | plinth,"])
 def test_an_arrangement_names_its_blocks_from_above(tmp_path: Path, row: str) -> None:
     (found,) = arrangements(tmp_path, row)
-    assert found.object == "venus" and found.below == ("base", "plinth") and found.label == "P"
-    assert [block.width for block in found.body.blocks] == [0.8, 0.5, 0.3]
-    assert found.fallen_names == ("", "plinth", "base", "venus")
-    assert found.system.count == 3
+    assert labels_of(found) == {"configuration": "all", "object": "venus", "pedestal": "P"}
+    assert [body.width for body in found.bodies] == [0.8, 0.5, 0.3]
+    assert fallen_names(found) == ("", "plinth", "base", "venus")
 
 
 def test_an_arrangement_that_names_what_stands_below_twice_is_refused(tmp_path: Path) -> None:

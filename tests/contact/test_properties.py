@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from rockfrag import read_motion
 from rockfrag.rocking import Block, Response, Stack, overturns
-from rockfrag.rocking.contact.simulation import simulate_with_friction
 
 from .cases import (
     DT,
@@ -20,6 +19,7 @@ from .cases import (
     random_motion,
     random_stack,
 )
+from .with_friction import simulate_with_friction
 
 seeds = st.integers(0, 10**6)
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rockfrag.rocking import Block, Stack, overturns, simulate
-from rockfrag.rocking.contact.simulation import simulate_with_friction
 from rockfrag.rocking.ensemble import LIGHT, LightBodies
 
 from .cases import DT, random_block, random_motion, random_stack
+from .with_friction import simulate_with_friction
 
 SCALES = np.linspace(0.3, 1.5, 10)
 

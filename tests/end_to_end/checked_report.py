@@ -168,7 +168,7 @@ def check_first_page(results: Results) -> None:
         tables.append(results.table("pedestal/effects"))
     values = np.concatenate([one.select_dtypes("number").to_numpy(float).ravel() for one in tables])
     values = values[np.isfinite(values)]
-    known = {f"{value:.{digits}f}" for value in values for digits in (1, 2, 3)}
+    known = {f"{value:.{digits}f}" for value in values for digits in (0, 1, 2, 3)}
     known |= {f"{100 * abs(value - 1):.{digits}f}" for value in values for digits in (0, 1)}
     counts = {str(n) for n in range(1 + max(len(one) for one in tables))}
     levels = {f"{100 * results.study.fragility.confidence:g}", "95", "80", "50", "10"}

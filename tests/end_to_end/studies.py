@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from rockfrag.study.loading import load_study
+from rockfrag.study.loading import load_any
 
 from .. import stages_in_process
 
@@ -25,7 +25,7 @@ class Foreign:
     blocks
         Width [cm], height [cm] and mass [kg] of each block by name.
     configurations
-        Object and pedestal (or None) of each configuration by name.
+        Object and pedestal (or None) of each configuration by name, and with what it is compared, if that is said.
     records
         Event of each record by name.
     floors
@@ -35,7 +35,7 @@ class Foreign:
     """
 
     blocks: Mapping[str, tuple[float, float, float]]
-    configurations: Mapping[str, tuple[str, str | None]]
+    configurations: Mapping[str, tuple[str | None, ...]]
     records: Mapping[str, str]
     floors: Mapping[str, int] | None = None
     content: Mapping[str, Any] = field(default_factory=dict)
@@ -57,8 +57,11 @@ def write(study: Foreign, folder: Path) -> Path:
     )
     _table(
         folder / "configurations.csv",
-        "name,object,pedestal",
-        [(name, one, pedestal or "") for name, (one, pedestal) in study.configurations.items()],
+        "name,object,pedestal,counterpart",
+        [
+            (name, *(cell or "" for cell in (*cells, None)[:3]))
+            for name, cells in study.configurations.items()
+        ],
     )
     rows = []
     for number, (name, event) in enumerate(study.records.items()):
@@ -118,5 +121,5 @@ def run(study: Foreign, folder: Path) -> Path:
 
 def run_stages(path: Path) -> Path:
     """Run all stages of a configuration in this process, and return the folder of its results."""
-    study = load_study(path)
+    study = load_any(path)
     return stages_in_process.run_stages(study, path.parent / "results" / study.name)

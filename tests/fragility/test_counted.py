@@ -34,7 +34,8 @@ def parts(size: int) -> list[Swept]:
             about.iloc[i : i + size].reset_index(drop=True),
             AMPLITUDES,
             fell[i : i + size],
-            fell[i : i + size].astype(np.uint8),
+            fell[i : i + size].astype(np.intp),
+            ("", "statue"),
         )
         for i in range(0, MOTIONS, size)
     ]

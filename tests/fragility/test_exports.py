@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.curve_facts import BETA_MODEL
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.fragility.nrml import lognormal_moments, write_nrml
 from rockfrag.fragility.simcenter import write_simcenter
 from rockfrag.fragility.sweeps import (
@@ -61,7 +61,7 @@ def test_nrml_gives_back_median_and_dispersion_in_its_own_units(tmp_path):
     write_nrml(CURVES, path)
     space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
     root = ElementTree.parse(path).getroot()
-    assert root.find(".//n:limitStates", space).text == "overturned"
+    assert root.find(".//n:limitStates", space).text == "overturns"
     functions = {f.get("id"): f for f in root.findall(".//n:fragilityFunction", space)}
     for name, imt, theta, beta in (("T1", "PGA", 0.5, 0.4), ("P_T1", "PGV", 30.0, 0.5)):
         params = functions[name].find("n:params", space)
@@ -78,7 +78,7 @@ def states_of_one() -> pd.DataFrame:
     return pd.DataFrame(
         [
             {**one, "state": "rocks", "theta": 0.25, "beta": 1e-9},
-            {**one, "state": "overturned", "theta": 0.4, "beta": 0.4},
+            {**one, "state": "overturns", "theta": 0.4, "beta": 0.4},
         ]
     )
 
@@ -100,11 +100,11 @@ def test_nothing_that_does_not_rock_overturns_in_nrml(tmp_path):
     assert stats.norm.cdf(np.log(0.25 / 0.4) / 0.4) > 0.1
     write_nrml(curves, tmp_path / "model.xml")
     levels, chance = levels_of(tmp_path / "model.xml")
-    assert (chance["overturned"] <= chance["rocks"]).all()
-    assert (chance["overturned"][levels < 0.24] < 1e-6).all()
+    assert (chance["overturns"] <= chance["rocks"]).all()
+    assert (chance["overturns"][levels < 0.24] < 1e-6).all()
     high = levels > 0.26
     lognormal = stats.norm.cdf(np.log(levels[high] / 0.4) / 0.4)
-    assert chance["overturned"][high] == pytest.approx(lognormal, abs=1e-9)
+    assert chance["overturns"][high] == pytest.approx(lognormal, abs=1e-9)
     assert (np.diff(levels) > 0).all()
 
 
@@ -112,14 +112,14 @@ def test_rejected_curve_is_exported_as_its_points(tmp_path):
     points = pd.DataFrame(
         {
             "configuration": "urn",
-            "state": "overturned",
+            "state": "overturns",
             "x": [0.3, 0.5, 0.6, 0.8],
             "share": [0.0, 0.3, 0.4, 0.9],
         }
     )
     write_nrml(states_of_one(), tmp_path / "model.xml", shares=points)
     levels, chance = levels_of(tmp_path / "model.xml")
-    found = np.interp(points["x"], levels, chance["overturned"])
+    found = np.interp(points["x"], levels, chance["overturns"])
     assert found == pytest.approx(points["share"].to_numpy(), abs=1e-9)
     csv, story = tmp_path / "damage.csv", tmp_path / "damage.json"
     write_simcenter(states_of_one(), csv, story, shares=points)
@@ -218,7 +218,7 @@ def test_the_hash_of_a_record_set_sees_every_sample_and_no_order():
 def curves_of(sweep):
     """Curves in the amplitude as the ground's PGA, with a rocking state before overturning."""
     table = fragility_table(sweep, record_set="abc")
-    fallen = table[table.estimator == "mean_probability"].assign(state="overturned")
+    fallen = table[table.estimator == "mean_probability"].assign(state="overturns")
     rocks = fallen.assign(state="rocks", theta=0.2, beta=1e-6)
     return pd.concat([rocks, fallen], ignore_index=True)
 
@@ -235,7 +235,10 @@ def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_
     told = json.loads((tmp_path / "d.json").read_text())["ROCKFRAG.T1"]["Comments"]
     for text in (said, told):
         assert "4 motions of 3 earthquakes" in text
-        assert "90 % limits: theta" in text and "of the model 0.195" in text
+        assert (
+            "90 % limits: theta" in text and f"of the model {MODEL_ERRORS[CUT].blind:.3f}" in text
+        )
+        assert f"of a {CUT}: {MODEL_ERRORS[CUT].words}" in text
         assert "Goodness of fit p = " in text
         assert "based on only 4 motions" in text
     assert "<!-- T1: rocks:" in said
@@ -248,11 +251,11 @@ def test_limit_states_come_in_the_order_in_which_a_body_passes_them(tmp_path):
     write_nrml(curves.iloc[::-1], tmp_path / "model.xml")
     space = {"n": "http://openquake.org/xmlns/nrml/0.5"}
     root = ElementTree.parse(tmp_path / "model.xml").getroot()
-    assert root.find(".//n:limitStates", space).text == "rocks overturned"
+    assert root.find(".//n:limitStates", space).text == "rocks overturns"
     function = root.find(".//n:fragilityFunction", space)
     kinds = ("n:params", "n:poes")
     states = [one.get("ls") for kind in kinds for one in function.findall(kind, space)]
-    assert states == ["rocks", "overturned"]
+    assert states == ["rocks", "overturns"]
     write_simcenter(curves.iloc[::-1], tmp_path / "d.csv", tmp_path / "d.json")
     row = pd.read_csv(tmp_path / "d.csv").iloc[0]
     # an exact threshold is written as steep as the formats take it
@@ -267,16 +270,16 @@ def test_uncertainties_of_motions_estimate_and_model_add_as_squares():
     row = table[table.estimator == "first_overturning"].iloc[0]
     half = np.log(row.theta_upper / row.theta_lower) / 2
     assert row.beta_statistical == pytest.approx(half / stats.norm.ppf(0.95))
-    squares = row.beta**2 + row.beta_statistical**2 + BETA_MODEL**2
+    squares = row.beta**2 + row.beta_statistical**2 + MODEL_ERRORS[CUT].blind ** 2
     assert row.beta_total == pytest.approx(np.sqrt(squares))
 
 
 def test_a_small_tail_below_the_threshold_is_no_probability_to_overturn_either(tmp_path):
     """A lognormal tail of 6e-4 at a level that starts nothing: small, and still impossible."""
     curves = states_of_one()
-    curves.loc[curves["state"] == "overturned", "theta"] = 0.25 * np.exp(0.4 * 3.24)
+    curves.loc[curves["state"] == "overturns", "theta"] = 0.25 * np.exp(0.4 * 3.24)
     assert 1e-4 < stats.norm.cdf(-3.24) < 1e-3
     write_nrml(curves, tmp_path / "model.xml")
     levels, chance = levels_of(tmp_path / "model.xml")
-    assert (chance["overturned"] <= chance["rocks"]).all()
-    assert (chance["overturned"][levels < 0.24] < 1e-9).all()
+    assert (chance["overturns"] <= chance["rocks"]).all()
+    assert (chance["overturns"][levels < 0.24] < 1e-9).all()

@@ -13,7 +13,7 @@ from rockfrag.fragility.simcenter import write_simcenter
 
 pytestmark = pytest.mark.peers
 
-STATES = ("rocks", "overturned")
+STATES = ("rocks", "overturns")
 CURVES = pd.DataFrame(
     {
         "configuration": ["urn", "urn", "bust", "bust"],
@@ -27,7 +27,7 @@ CURVES = pd.DataFrame(
 POINTS = pd.DataFrame(
     {
         "configuration": "urn",
-        "state": "overturned",
+        "state": "overturns",
         "x": [0.30, 0.34, 0.60, 0.70, 0.95],
         "share": [0.0, 0.45, 0.55, 0.9, 1.0],
     }
@@ -36,7 +36,7 @@ POINTS = pd.DataFrame(
 
 def expected(name: str, level: float) -> float:
     """Probability to overturn at a level, which is never above that to rock."""
-    row = CURVES[(CURVES["configuration"] == name) & (CURVES["state"] == "overturned")].iloc[0]
+    row = CURVES[(CURVES["configuration"] == name) & (CURVES["state"] == "overturns")].iloc[0]
     rocks = CURVES[CURVES["configuration"] == name].iloc[0]["theta"]
     if level < rocks * 0.95:
         return 0.0

@@ -76,7 +76,8 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
     m = 4 * n
     points, axes, gaps = np.zeros((m, 2)), np.zeros(m), np.zeros(m)
     below = np.zeros(m, np.int64)
-    jn, jt = np.zeros((m, 3 * n)), np.zeros((m, 3 * n))
+    # of each contact: what it takes of the body below (3) and of the one above (3)
+    jn, jt = np.zeros((m, 6)), np.zeros((m, 6))
     wn, wt = np.zeros(m), np.zeros(m)
     pn, pt = np.zeros(m), np.zeros(m)
     inverse = np.zeros(3 * n)
@@ -107,44 +108,45 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
                 jn[c, :] = 0.0
                 jt[c, :] = 0.0
                 wn[c] = wt[c] = 0.0
-                for k, sign in ((below[c], 1.0), (below[c] - 1, -1.0)):
-                    if k < 0:
-                        continue
+                first, low = 3 * below[c] - 3, 3 if below[c] == 0 else 0
+                for at in range(low, 6, 3):
+                    k, sign = below[c] - 1 + at // 3, -1.0 if at == 0 else 1.0
                     rx, ry = points[c, 0] - q[3 * k], points[c, 1] - q[3 * k + 1]
-                    jt[c, 3 * k], jt[c, 3 * k + 1] = sign * tx, sign * ty
-                    jt[c, 3 * k + 2] = sign * (tx * ry - ty * rx)
-                    jn[c, 3 * k], jn[c, 3 * k + 1] = -sign * ty, sign * tx
-                    jn[c, 3 * k + 2] = sign * (-ty * ry - tx * rx)
-                for d in range(3 * n):
-                    wn[c] += jn[c, d] ** 2 * inverse[d]
-                    wt[c] += jt[c, d] ** 2 * inverse[d]
-                for d in range(3 * n):
-                    v[d] += inverse[d] * (jn[c, d] * pn[c] + jt[c, d] * pt[c])
+                    jt[c, at], jt[c, at + 1] = sign * tx, sign * ty
+                    jt[c, at + 2] = sign * (tx * ry - ty * rx)
+                    jn[c, at], jn[c, at + 1] = -sign * ty, sign * tx
+                    jn[c, at + 2] = sign * (-ty * ry - tx * rx)
+                for d in range(low, 6):
+                    wn[c] += jn[c, d] ** 2 * inverse[first + d]
+                    wt[c] += jt[c, d] ** 2 * inverse[first + d]
+                for d in range(low, 6):
+                    v[first + d] += inverse[first + d] * (jn[c, d] * pn[c] + jt[c, d] * pt[c])
             for _ in range(2000):
                 change = 0.0
                 largest = 1e-300
                 for c in range(count):
+                    first, low = 3 * below[c] - 3, 3 if below[c] == 0 else 0
                     speed = 0.0
-                    for d in range(3 * n):
-                        speed += jn[c, d] * v[d]
+                    for d in range(low, 6):
+                        speed += jn[c, d] * v[first + d]
                     new = max(0.0, pn[c] - (speed + gaps[c] / h) / wn[c])
                     delta = new - pn[c]
                     pn[c] = new
                     change = max(change, abs(delta))
                     largest = max(largest, new)
-                    for d in range(3 * n):
-                        v[d] += inverse[d] * jn[c, d] * delta
+                    for d in range(low, 6):
+                        v[first + d] += inverse[first + d] * jn[c, d] * delta
                     speed = 0.0
-                    for d in range(3 * n):
-                        speed += jt[c, d] * v[d]
+                    for d in range(low, 6):
+                        speed += jt[c, d] * v[first + d]
                     limit = friction[below[c]] * pn[c]
                     new = min(max(pt[c] - speed / wt[c], -limit), limit)
                     delta = new - pt[c]
                     pt[c] = new
                     change = max(change, abs(delta))
-                    for d in range(3 * n):
-                        v[d] += inverse[d] * jt[c, d] * delta
-                if change <= 1e-10 * largest:
+                    for d in range(low, 6):
+                        v[first + d] += inverse[first + d] * jt[c, d] * delta
+                if change <= 1e-8 * largest:
                     break
             moving = 0.0
             for d in range(3 * n):

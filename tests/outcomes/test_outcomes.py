@@ -11,6 +11,8 @@ from rockfrag.outcomes.limit_states import (
     limit_states,
 )
 from rockfrag.outcomes.outcomes import columns, empty_outcomes, merge_outcomes
+from rockfrag.rocking.options import system_of
+from rockfrag.system.blocks import Block
 
 ROLES = ("pedestal", "statue", "ground", "interface")
 
@@ -59,7 +61,7 @@ def test_answers_of_several_engines_are_put_together():
 
 
 def test_a_limit_state_is_one_declaration():
-    @limit_state("leans far", order=50, label="leaning far")
+    @limit_state("leans_far", order=50, label="leaning far")
     def _(outcomes):
         with np.errstate(invalid="ignore"):
             return (outcomes.peak_rotation > 0.3).any(axis=-1)
@@ -68,21 +70,28 @@ def test_a_limit_state_is_one_declaration():
         assert [state.name for state in limit_states()] == [
             "rocks",
             "slides",
-            "leans far",
+            "leans_far",
             "overturns",
         ]
-        reached = limit_state_named("leans far").reached(shaken())
+        reached = limit_state_named("leans_far").reached(shaken())
         assert reached.tolist() == [[[False, True]], [[False, True]]]
         with pytest.raises(InputError, match="declared twice"):
-            limit_state("leans far", order=1, label="")(_)
+            limit_state("leans_far", order=1, label="")(_)
     finally:
-        forget_limit_state("leans far")
+        forget_limit_state("leans_far")
     with pytest.raises(InputError, match="choose one of rocks"):
-        limit_state_named("leans far")
+        limit_state_named("leans_far")
 
 
 def test_built_in_states():
     made = shaken()
     assert limit_state_named("rocks").reached(made).tolist() == [[[False, True]], [[False, True]]]
-    assert not limit_state_named("slides").reached(made).any()
+    slides = limit_state_named("slides")
+    assert slides.reached(made).sum() == 1, "what fell is displaced"
+    made.peak_slip[0, 0, 0, 0] = 0.0004
+    assert slides.reached(made).sum() == 1, "a hair's breadth at an impact is not seen"
+    made.peak_slip[0, 0, 0, 0] = 0.002
+    assert slides.reached(made).sum() == 2
+    held, loose = Block(0.3, 1.2, 100.0).system(), system_of(Block(0.3, 1.2, 100.0), 0.5)
+    assert [slides.counted(one) for one in (held, loose)] == [False, True]
     assert limit_state_named("overturns").reached(made).sum() == 1

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.pedestal.paired_tests import pair_tests, with_counterparts
 
 
 def test_thesis_design_gives_36_pairs_in_12_motions_of_4_events(tests_table):
@@ -13,7 +13,6 @@ def test_thesis_design_gives_36_pairs_in_12_motions_of_4_events(tests_table):
     assert len(pairs.table) == 36
     assert pairs.table["motion"].nunique() == 12
     assert pairs.table["event"].nunique() == 4
-    assert pairs.balanced
     assert pairs.notes() == []
 
 
@@ -26,6 +25,23 @@ def test_d_is_log_ratio_with_over_without(tests_table):
     assert pairs.loc[("T2", "Kobe-F3"), "d"] == pytest.approx(np.log(p / np_), abs=1e-14)
 
 
+def test_an_arrangement_is_paired_with_the_one_that_it_names(tests_table):
+    alone = tests_table(1).query("pedestal == 'NP'")
+    arranged = {
+        name: alone.assign(configuration=name, pedestal=side, amplitude_g=f * alone["amplitude_g"])
+        for name, side, f in (("alone", "NP", 1.0), ("plinth", "P", 2.0), ("base", "P", 6.0))
+    }
+    tests = pd.concat(
+        [rows[rows["object"] == "T1"] for rows in arranged.values()], ignore_index=True
+    ).drop(columns=["lower_g", "upper_g"], errors="ignore")
+    named, origin = with_counterparts(tests, {"base": "plinth"})
+    assert origin == {"base against plinth": "T1"}
+    pairs = pair_tests(named, {"T1": 3.0, "base against plinth": 3.0}).table
+    ratio = np.exp(pairs.groupby("object")["d"].agg(["min", "max"]))
+    np.testing.assert_allclose(ratio.loc["T1"], 2.0)
+    np.testing.assert_allclose(ratio.loc["base against plinth"], 3.0)
+
+
 def test_order_of_rows_does_not_matter(tests_table):
     tests = tests_table(1)
     shuffled = tests.sample(frac=1, random_state=3)
@@ -35,7 +51,7 @@ def test_order_of_rows_does_not_matter(tests_table):
 def test_missing_partner_is_left_out_and_named(tests_table):
     tests = tests_table(1).iloc[1:]
     pairs = pair_tests(tests)
-    assert len(pairs.table) == 35 and not pairs.balanced
+    assert len(pairs.table) == 35
     assert pairs.unpaired["missing"].tolist() == ["NP"]
     assert "T1/Friuli-GF without NP" in pairs.notes()[0]
 

@@ -1,11 +1,9 @@
-"""The whole study of a table, its degenerate cases, and the explanation study."""
+"""The whole study of a table, and its degenerate cases."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
-from rockfrag.pedestal import explain, study_pedestal
+from rockfrag.pedestal import study_pedestal
 
 FAST = dict(seed=1)
 
@@ -27,8 +25,6 @@ def test_known_effect_is_recovered_by_every_estimator(tests_table):
         tests_table(3, effect=0.2, sd_event=0, sd_motion=0, sd_pair=0.02), **FAST
     )
     assert study.whole["estimate"].to_numpy() == pytest.approx(np.exp(0.2), rel=0.02)
-    intercept = study.mixed[study.mixed["formula"] == "d ~ 1"]["estimate"].item()
-    assert intercept == pytest.approx(0.2, abs=0.02)
 
 
 def test_pedestal_that_never_moves_gives_one_up_to_the_steps(tests_table):
@@ -61,61 +57,6 @@ def test_all_pairs_censored_gives_empty_tables_and_says_why(tests_table):
     study = study_pedestal(tests, **FAST)
     assert study.effects.empty and "ratio" in study.effects
     assert "no pair has a known ratio" in study.notes[-1]
-
-
-def explanation_table(effect=0.15):
-    rng = np.random.default_rng(2)
-    rows = []
-    for level, shift in ((0.85, 0.0), (0.80, effect), (0.75, 2 * effect)):
-        for object_name in ("T1", "T2", "T3"):
-            for event in "ABCD":
-                for floor in ("GF", "F3", "F5"):
-                    sign = 1 if floor == "GF" else -0.5
-                    for replicate in range(3):
-                        d = sign * shift + rng.normal(0, 0.02)
-                        rows.append(
-                            (
-                                "restitution",
-                                level,
-                                level == 0.85,
-                                object_name,
-                                event,
-                                floor,
-                                replicate,
-                                d,
-                            )
-                        )
-    names = ["factor", "level", "reference", "object", "event", "floor", "replicate", "d"]
-    table = pd.DataFrame(rows, columns=names)
-    return table.assign(ratio=np.exp(table["d"])).drop(columns="d")
-
-
-def test_explanation_recovers_the_effect_of_a_level_by_floor():
-    result = explain(explanation_table(0.15)).set_index(["level", "floor"])
-    for level, factor in ((0.80, 1), (0.75, 2)):
-        for floor, sign in (("GF", 1), ("F3", -0.5)):
-            row = result.loc[(level, floor)]
-            assert row["effect_lower"] < np.exp(sign * 0.15 * factor) < row["effect_upper"]
-    assert result.loc[(0.80, "GF"), "judgement"] == "changes P/NP"
-    assert result.loc[(0.85, "all"), "effect"] == 1.0
-
-
-def test_explanation_pairs_with_the_reference_and_counts_what_is_left_out():
-    table = explanation_table()
-    gone = (table["level"] == 0.80) & (table["event"] == "A") & (table["object"] == "T1")
-    table.loc[gone, "ratio"] = np.nan
-    row = explain(table).set_index(["level", "floor"]).loc[(0.80, "all")]
-    assert (row["pairs"], row["left_out"]) == (33, 3)
-
-
-def test_explanation_needs_one_reference_and_positive_ratios():
-    table = explanation_table()
-    with pytest.raises(InputError, match="0 reference levels"):
-        explain(table.assign(reference=False))
-    with pytest.raises(InputError, match=r"row 1: ratio is 0\.0"):
-        explain(table.assign(ratio=0.0))
-    with pytest.raises(InputError, match="floor missing"):
-        explain(table.drop(columns="floor"))
 
 
 def test_a_method_whose_limits_are_the_steps_says_so(tests_table):

@@ -18,7 +18,10 @@ from rockfrag.report.play_page import write_play_page
 from rockfrag.rocking import Block, Stack, overturns
 
 STATUE = Block(0.3, 1.2, 110.0)
-BODIES = {"figure": STATUE, "figure </script> on plinth": Stack(Block(0.5, 0.6, 350.0), STATUE)}
+BODIES = {
+    "figure": STATUE.system(),
+    "figure </script> on plinth": Stack(Block(0.5, 0.6, 350.0), STATUE).system(),
+}
 
 
 def motion(name: str = "wave", samples: int = 600) -> Motion:
@@ -75,7 +78,7 @@ def test_a_page_carries_no_more_motions_than_it_has_room_for():
 
 @pytest.mark.parametrize("theta", [0.2, -0.2])
 def test_a_block_is_drawn_on_the_edge_on_which_it_rocks(theta: float):
-    (corners,) = outlines(STATUE, [theta])
+    (corners,) = outlines(STATUE.system(), [theta])
     low = min(corners, key=lambda one: one.y)
     assert low.y == pytest.approx(0, abs=1e-12)
     assert low.x == pytest.approx(math.copysign(0.15, theta))
@@ -98,7 +101,7 @@ def test_a_statue_is_drawn_on_its_pedestal(theta: tuple[float, float]):
 
 def test_frames_say_what_becomes_of_the_body():
     one = motion()
-    drawing, words = frames_svg(STATUE, one, [0.05, 0.5, 2.0])
+    drawing, words = frames_svg(STATUE.system(), one, [0.05, 0.5, 2.0])
     assert "at 0.050 g it stays at rest" in words
     assert drawing.count("<polygon") == 3
     assert "overturns at" in words or "rocks to" in words

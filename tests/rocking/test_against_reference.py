@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, overturns, simulate
-from rockfrag.rocking.reference import simulate_reference
+
+from ..oracle.rocking_integrator import simulate_reference
 
 DT = 0.01
 MARGIN = 0.02

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from cases import cases
-from competitors import numpy_lone, scipy_lone
-from measures import over_limit
-from scipy_stack import scipy_stack
 
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Block, Stack
+
+from ..oracle.competitors import numpy_lone, scipy_lone
+from ..oracle.scipy_stack import scipy_stack
 
 DT = 0.01
 STATUE = Block(0.3, 1.2, 200.0)
@@ -36,10 +35,3 @@ def test_numpy_gives_nearly_the_same_verdicts_with_small_steps():
     theirs = numpy_lone(bodies, [pulse], scales, 0.001)
     ours = overturns(bodies, pulse, 0.001, scales).overturned
     assert (theirs.reshape(ours.shape) != ours).mean() < 0.05
-
-
-def test_the_time_between_the_steps_is_measured():
-    for kind in ("lone", "stack"):
-        over, steps = over_limit(kind, cases(kind, 40))
-        assert over > 1.0
-        assert steps > 100

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import cases as benchmark_cases
 import numpy as np
 import pytest
 
@@ -12,6 +11,8 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block, Stack
+
+from ..oracle import cases as benchmark_cases
 
 MOTIONS = [motion[:2500] for motion in benchmark_cases.motions(4, seed=11)]
 SCALES = np.array([[0.15, 0.4, 0.9], [0.2, 0.5, 1.0], [0.25, 0.6, 0.8], [0.0, 0.35, 0.7]])

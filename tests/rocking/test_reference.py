@@ -9,10 +9,10 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.rocking import Block, Stack, simulate
 from rockfrag.rocking.closed_forms import next_amplitude, quarter_period
-from rockfrag.rocking.reference import simulate_reference
-from rockfrag.rocking.reference.model import Model, largest_restitution
-from rockfrag.rocking.reference.response import ReferenceResponse
 
+from ..oracle.rocking_integrator import simulate_reference
+from ..oracle.rocking_model import Model, largest_restitution
+from ..oracle.rocking_response import ReferenceResponse
 from .reference_bodies import T2, TOWERS, P, random_motion, random_stack, uniform
 
 STILL = np.zeros(2)

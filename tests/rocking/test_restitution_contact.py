@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 
 from rockfrag import Block, Stack
 from rockfrag.rocking import MeasuredRestitution
-from rockfrag.rocking.reference.model import Model
+
+from ..oracle.rocking_model import Model
 
 G = 9.81
 

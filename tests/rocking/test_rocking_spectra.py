@@ -9,7 +9,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions.pulses import one_sine
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import simulate
-from rockfrag.rocking.spectra import rocking_spectrum, spectra, uniform_block
+from rockfrag.rocking.spectra import rocking_spectrum, uniform_block
 
 ALPHA = math.atan(1 / 4)
 PERIODS = np.linspace(0.8, 4.0, 9)
@@ -64,15 +64,6 @@ def test_pulses_of_similar_blocks_share_one_curve() -> None:
     for other in found[1:]:
         assert other.rotation == pytest.approx(found[0].rotation, rel=1e-8)
         assert other.velocity == pytest.approx(found[0].velocity, rel=1e-8)
-
-
-def test_response_and_rocking_spectra_stand_side_by_side(motion: Motion) -> None:
-    linear, rocking = spectra(motion, PERIODS, [ALPHA, 0.3], dampings=(0.02, 0.1))
-    assert [one.damping for one in linear] == [0.02, 0.1]
-    assert (linear[0].displacement > linear[1].displacement).mean() > 0.9
-    assert rocking.rotation.shape == (2, PERIODS.size)
-    alone = rocking_spectrum(motion, PERIODS, [0.3])
-    assert (rocking.rotation[1] == alone.rotation[0]).all()
 
 
 @pytest.mark.parametrize(

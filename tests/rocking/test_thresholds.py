@@ -2,7 +2,6 @@
 
 import math
 
-import cases as benchmark_cases
 import numpy as np
 import pytest
 
@@ -12,6 +11,8 @@ from rockfrag.rocking.ensemble import Options, overturns, prepared
 from rockfrag.rocking.step_sensitivity import fragile_verdicts
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block
+
+from ..oracle import cases as benchmark_cases
 
 G = 9.81
 

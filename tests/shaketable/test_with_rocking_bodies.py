@@ -12,10 +12,11 @@ from rockfrag.rocking import overturns
 from rockfrag.shaketable.high_pass import filter_effect
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.readings import tests_from_sweep as read_sweep
-from rockfrag.shaketable.sensitivity import Specimen, building_sensitivity, building_variants
 from rockfrag.shaketable.shaker import Shaker, limits_g
 from rockfrag.shaketable.steps import GeometricSteps
-from rockfrag.system.blocks import Block, Stack
+from rockfrag.study.configurations import configuration_of, each_alone
+from rockfrag.system.blocks import Block
+from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
 
 BUILDING = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
 TOWERS = {
@@ -24,7 +25,8 @@ TOWERS = {
     "T3": Block(0.124, 0.620, 3.456),
 }
 PEDESTAL = Block(0.184, 0.208, 2.300)
-SPECIMENS = [Specimen(name, name, "NP", body) for name, body in TOWERS.items()]
+BLOCKS = {**TOWERS, "P": PEDESTAL}
+SPECIMENS = each_alone(TOWERS)
 
 
 def amplitudes(lowest, highest, step):
@@ -96,9 +98,7 @@ def wave(frequency, name):
 
 
 def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):
-    stacks = [
-        Specimen(f"P&{name}", name, "P", Stack(PEDESTAL, body)) for name, body in TOWERS.items()
-    ]
+    stacks = [configuration_of(f"P&{name}", ("P", name), BLOCKS) for name in TOWERS]
     tests = building_sensitivity(
         building_variants(settings, {"first_period_s": [0.35, 0.9]}),
         [wave(1.5, "one"), wave(3.0, "two")],

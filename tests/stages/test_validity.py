@@ -1,5 +1,7 @@
 """Forces of a sample of tests: those that each simulated by itself has, evenly among all."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -8,7 +10,6 @@ from rockfrag import Block, simulate
 from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.stages import validity
-from rockfrag.study.configurations import Configuration
 
 BODY = Block(0.2, 0.8, 50.0)
 
@@ -27,7 +28,7 @@ def readings_of(names: list[str]) -> pd.DataFrame:
 
 def test_forces_are_those_of_one_history():
     known = motions(3)
-    configuration = Configuration("T", "T", "", BODY)
+    configuration = replace(BODY.system(), name="T")
     table = validity.validity_table(readings_of([*known]), [configuration], known)
     for row in table.to_dict("records"):
         response = simulate(BODY, scale_to_pga(known[row["motion"]], 0.4))
@@ -39,6 +40,6 @@ def test_forces_are_those_of_one_history():
 def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(validity, "MOST_TESTED", 4)
     known = motions(10)
-    configuration = Configuration("T", "T", "", BODY)
+    configuration = replace(BODY.system(), name="T")
     table = validity.validity_table(readings_of([*known]), [configuration], known)
     assert list(table["motion"]) == ["m0", "m2", "m5", "m7"]

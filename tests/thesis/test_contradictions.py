@@ -2,9 +2,9 @@
 
 import itertools
 
-from rockfrag.thesis.statements import Evidence, contradictions
-from rockfrag.thesis.statements.contradictions import orderings_of_floor_means
-from rockfrag.thesis.statements.slenderness import stack_slenderness
+from rockfrag_thesis.statements import Evidence, contradictions
+from rockfrag_thesis.statements.contradictions import orderings_of_floor_means
+from rockfrag_thesis.statements.slenderness import stack_slenderness
 
 
 def test_no_order_of_the_four_means_satisfies_all_four_statements():

@@ -5,10 +5,10 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.thesis.statements import COLUMNS, STATEMENTS, Evidence, Finding, ledger
-from rockfrag.thesis.statements.earthquakes import rank_correlation
-from rockfrag.thesis.statements.orders import ORDERS, margin
-from rockfrag.thesis.statements.statement import Kind, statement, verdict
+from rockfrag_thesis.statements import COLUMNS, STATEMENTS, Evidence, Finding, ledger
+from rockfrag_thesis.statements.earthquakes import rank_correlation
+from rockfrag_thesis.statements.orders import ORDERS, margin
+from rockfrag_thesis.statements.statement import Kind, statement, verdict
 
 FOR, AGAINST, OPEN = Finding.FOR, Finding.AGAINST, Finding.OPEN
 

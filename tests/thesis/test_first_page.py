@@ -5,17 +5,17 @@ import re
 import pandas as pd
 import pytest
 
-from rockfrag.pedestal.explanation import explain
-from rockfrag.pedestal.simulated_explanation import REFERENCE
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer
 from rockfrag.shaketable.readings import READING
 from rockfrag.stages.pedestal import pedestal_tables
-from rockfrag.thesis import pattern
-from rockfrag.thesis.first_page import first_page
-from rockfrag.thesis.pattern import departures_by_floor
-from rockfrag.thesis.specimens import SLENDERNESS
-from rockfrag.thesis.statements import Evidence, ledger
+from rockfrag_thesis import pattern
+from rockfrag_thesis.explanation.explain import explain
+from rockfrag_thesis.explanation.simulated import REFERENCE
+from rockfrag_thesis.first_page import first_page
+from rockfrag_thesis.pattern import departures_by_floor
+from rockfrag_thesis.specimens import THESIS_BODIES
+from rockfrag_thesis.statements import Evidence, ledger
 
 from ..end_to_end.checked_report import open_words
 from .conftest import build
@@ -35,7 +35,8 @@ WORDS_WITH_DIGITS = (
 
 
 def effects_of(tests: pd.DataFrame) -> pd.DataFrame:
-    return pedestal_tables(tests.assign(reading=READING), 1, SLENDERNESS)["effects"]
+    slenderness = {name: body.slenderness for name, body in THESIS_BODIES.items()}
+    return pedestal_tables(tests.assign(reading=READING), 1, slenderness)["effects"]
 
 
 def claims_of(tests: pd.DataFrame) -> pd.DataFrame:

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.thesis.floor_order import STATEMENTS, floor_margins
-from rockfrag.thesis.statements.floors import FLOORS
+from rockfrag_thesis.floor_order import STATEMENTS, floor_margins
+from rockfrag_thesis.statements.floors import FLOORS
 
 TOWERS = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
 

@@ -12,8 +12,8 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.thesis.statements import Evidence, ledger
-from rockfrag.thesis.statements.statement import EXCLUDED
+from rockfrag_thesis.statements import Evidence, ledger
+from rockfrag_thesis.statements.statement import EXCLUDED
 
 from .conftest import EVENTS, STEP, TOWERS, build
 

@@ -1,8 +1,8 @@
 """The ledger as the report shows it."""
 
-from rockfrag.thesis.ledger_html import ledger_html, verdicts_by_kind
-from rockfrag.thesis.sections.statements import words_on_verdicts
-from rockfrag.thesis.statements import Evidence, ledger
+from rockfrag_thesis.ledger_html import ledger_html, verdicts_by_kind
+from rockfrag_thesis.sections.statements import words_on_verdicts
+from rockfrag_thesis.statements import Evidence, ledger
 
 
 def test_the_ledger_shows_kind_verdict_rule_and_error_rate(made):

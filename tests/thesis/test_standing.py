@@ -1,11 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 
 from rockfrag import Block, Stack
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.steps import GeometricSteps
-from rockfrag.study.configurations import Configuration
-from rockfrag.thesis.standing import SIZES, standing_readings
+from rockfrag_thesis.standing import SIZES, standing_readings
 
 TOWER = Block(0.124, 0.372, 2.172)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
@@ -20,7 +21,7 @@ def shaking(seed):
 
 
 def test_readings_of_a_sweep_stand_or_fall_with_small_differences():
-    chosen = [Configuration("T1", "T1", "", TOWER), Configuration("P&T1", "T1", "P", STACK)]
+    chosen = [replace(TOWER.system(), name="T1"), replace(STACK.system(), name="P&T1")]
     motions = [shaking(seed) for seed in range(4)]
     table = standing_readings(chosen, motions, LADDER, PROTOCOL, seed=1)
     assert len(table) == 2 * 4 * 3

@@ -9,13 +9,13 @@ import pytest
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import Block, Stack, simulate
-from rockfrag.thesis.specimens import THESIS_BODIES
-from rockfrag.thesis.statements import STATEMENTS, Undecidable, theory_ledger
-from rockfrag.thesis.statements.blocks import perturbed
-from rockfrag.thesis.statements.ledger import THEORY
-from rockfrag.thesis.statements.setting import bisect, make_setting, moves, starts_at
-from rockfrag.thesis.statements.spectra import dispersion_ratio, exchanges
-from rockfrag.thesis.statements.stacks import LIFTED, SETTLES, STILL, after_landings, free_fall
+from rockfrag_thesis.specimens import THESIS_BODIES
+from rockfrag_thesis.statements import STATEMENTS, Undecidable, theory_ledger
+from rockfrag_thesis.statements.blocks import perturbed
+from rockfrag_thesis.statements.ledger import THEORY
+from rockfrag_thesis.statements.setting import bisect, make_setting, moves, starts_at
+from rockfrag_thesis.statements.spectra import dispersion_ratio, exchanges
+from rockfrag_thesis.statements.stacks import LIFTED, SETTLES, STILL, after_landings, free_fall
 
 
 def made_motion(seed: int) -> Motion:

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from rockfrag.errors import InputError
-from rockfrag.study.loading import load_study, study_from
+from rockfrag.study.loading import load_any, study_from
 
 from .conftest import SPECIMENS, study_content, write_study
 
@@ -19,7 +19,7 @@ Change = Callable[[dict], object]
 def refusal(folder: Path, content: dict) -> str:
     path = write_study(folder, content)
     with pytest.raises(InputError) as caught:
-        load_study(path)
+        load_any(path)
     message = str(caught.value)
     assert "\n" not in message
     assert message.startswith(str(folder))
@@ -29,11 +29,11 @@ def refusal(folder: Path, content: dict) -> str:
 def test_the_studies_of_the_project_are_right():
     root = Path(__file__).resolve().parents[2]
     for name in ("thesis", "smoke", "wide"):
-        assert load_study(root / "config" / f"{name}.yaml").name == name
+        assert load_any(root / "config" / f"{name}.yaml").name == name
 
 
 def test_the_thesis_has_72_tests():
-    study = load_study(Path(__file__).resolve().parents[2] / "config" / "thesis.yaml")
+    study = load_any(Path(__file__).resolve().parents[2] / "config" / "thesis.yaml")
     assert len(study.catalogue) * 3 * len(study.configurations) == 72
 
 
@@ -124,7 +124,7 @@ def test_what_is_not_a_mapping_is_refused(study_folder: Path, text: str, words: 
     path = study_folder / "study.yaml"
     path.write_text(text)
     with pytest.raises(InputError) as caught:
-        load_study(path)
+        load_any(path)
     assert "\n" not in str(caught.value)
     for word in words:
         assert word in str(caught.value)
@@ -133,11 +133,11 @@ def test_what_is_not_a_mapping_is_refused(study_folder: Path, text: str, words: 
 def test_bytes_that_are_no_text_and_absent_files_are_refused(study_folder: Path):
     (study_folder / "study.yaml").write_bytes(b"study: K\xf6ln")
     with pytest.raises(InputError, match="UTF-8"):
-        load_study(study_folder / "study.yaml")
+        load_any(study_folder / "study.yaml")
     with pytest.raises(InputError, match="cannot be read"):
-        load_study(study_folder / "absent.yaml")
+        load_any(study_folder / "absent.yaml")
     with pytest.raises(InputError, match="cannot be read"):
-        load_study(study_folder)
+        load_any(study_folder)
 
 
 ANYTHING = st.recursive(

@@ -7,7 +7,7 @@ import pytest
 
 from rockfrag.cli import main
 from rockfrag.processes import in_processes
-from rockfrag.study.loading import load_study
+from rockfrag.study.loading import load_any
 
 from ..stages_in_process import run_stages, stages_of
 from .conftest import study_content, write_study
@@ -53,7 +53,7 @@ def test_the_study_goes_on_and_says_what_is_missing(damaged: Path, monkeypatch: 
     done = snakemake(damaged, "--cores", "2", "results/tiny/left_out.csv")
     assert done.returncode == 0, done.stderr[-3000:]
     monkeypatch.chdir(damaged)
-    study = load_study(path)
+    study = load_any(path)
     results = run_stages(study, damaged / "results" / "tiny", stages_of(study)[1:])
     left_out = pd.read_csv(results / "left_out.csv")
     assert list(left_out["motion"]) == [

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.rocking import MeasuredRestitution
 from rockfrag.study.loading import study_from
+from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
 from rockfrag.yaml_file import read_yaml
 
 SMOKE = Path(__file__).parents[2] / "config" / "smoke.yaml"
@@ -21,16 +21,18 @@ def study_with(restitution):
 
 def test_each_block_brings_what_was_measured_of_it():
     study = study_with({"law": "ratio", "blocks": {"T1": 0.9, "P": [0.3, 0.35]}})
-    found = {one.name: one.restitution for one in study.configurations}
-    assert found["T1"] == MeasuredRestitution(0.9, "ratio")
-    assert found["P&T1"] == MeasuredRestitution(((0.3, 0.35), 0.9), "ratio")
-    assert found["T3"] is None
-    assert found["P&T3"] == MeasuredRestitution(((0.3, 0.35), None), "ratio")
+    found = {one.name: [under.law for under in one.contacts] for one in study.configurations}
+    pedestal, tower = ImpactLaw("ratio", 0.3, 0.35), ImpactLaw("ratio", 0.9, 0.9)
+    assert found["T1"] == [tower]
+    assert found["P&T1"] == [pedestal, tower]
+    assert found["T3"] == [BY_MOMENTUM]
+    assert found["P&T3"] == [pedestal, BY_MOMENTUM]
 
 
 def test_without_the_key_momentum_is_conserved():
-    content = read_yaml(SMOKE)
-    assert {one.restitution for one in study_from(content, SMOKE).configurations} == {None}
+    configurations = study_from(read_yaml(SMOKE), SMOKE).configurations
+    laws = {under.law.name for one in configurations for under in one.contacts}
+    assert laws == {"momentum"}
 
 
 @pytest.mark.parametrize(
@@ -38,7 +40,7 @@ def test_without_the_key_momentum_is_conserved():
     [
         ({"blocks": {"X": 0.9}}, "blocks: expected names of the specimens T1, .*, found X"),
         ({"blocks": {"T1": 1.1}}, "1.1 would gain energy"),
-        ({"law": "newton", "blocks": {"T1": 0.9}}, "expected position, couple or ratio"),
+        ({"law": "newton", "blocks": {"T1": 0.9}}, "expected one of position, couple, ratio"),
         ({"blocks": {"T1": "a"}}, "blocks.T1: expected a ratio"),
         ({}, "restitution"),
     ],

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.study.loading import load_study
+from rockfrag.study.loading import load_any
 
 from .conftest import study_content, write_study
 from .running import ROOT, snakemake
@@ -86,7 +86,7 @@ def test_a_wrong_optional_part_is_named(study_folder: Path, change: dict, words:
     path = full_study(study_folder)
     content = {**yaml.safe_load(path.read_text()), **change}
     with pytest.raises(InputError) as caught:
-        load_study(write_study(study_folder, {k: v for k, v in content.items() if v is not None}))
+        load_any(write_study(study_folder, {k: v for k, v in content.items() if v is not None}))
     assert "\n" not in str(caught.value)
     for word in words:
         assert word in str(caught.value)

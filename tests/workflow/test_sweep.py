@@ -1,5 +1,7 @@
 """The sweep: every amplitude of every motion, the same whatever the threads."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -8,7 +10,6 @@ from rockfrag.records.motion import Motion
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.stages.sweep import sweep_table
 from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.configurations import Configuration
 from rockfrag.system.blocks import Block, Stack
 
 TOWER = Block(0.124, 0.372, 2.172)
@@ -40,14 +41,14 @@ def test_amplitudes_grow_by_the_step_up_to_the_highest():
 
 @pytest.mark.parametrize("body", [TOWER, STACK])
 def test_a_sweep_does_not_depend_on_threads_or_on_the_batch(body: Block | Stack):
-    configuration = Configuration("X", "T", "P" if isinstance(body, Stack) else "", body)
-    whole = sweep(configuration, motions(), AMPLITUDES, threads=2)
-    parts = [sweep(configuration, [motion], AMPLITUDES, threads=1) for motion in motions()]
+    configuration = replace(body.system(), name="X")
+    whole = sweep(configuration, motions(), AMPLITUDES.values_g, threads=2)
+    parts = [sweep(configuration, [motion], AMPLITUDES.values_g, threads=1) for motion in motions()]
     pd.testing.assert_frame_equal(whole, pd.concat(parts, ignore_index=True), check_exact=True)
 
 
 def test_below_its_threshold_a_block_never_moves():
-    table = sweep(Configuration("X", "T", "", TOWER), motions(), AMPLITUDES)
+    table = sweep(TOWER.system(), motions(), AMPLITUDES.values_g)
     low = table["amplitude_g"] < 1 / 3
     assert (table.loc[low, "peak_rotation_body_1"] == 0).all()
     assert table.loc[~low, "peak_rotation_body_1"].iloc[-1] > 0
@@ -68,6 +69,9 @@ def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
                     "motion": f"motion {number}",
                     "amplitude_g": amplitude,
                     "reading": "step_protocol",
+                    "censored": "none",
+                    "lower_g": amplitude,
+                    "upper_g": amplitude,
                 }
             )
     found = pedestal_tables(pd.DataFrame(rows), seed=1, slenderness={"T1": 3.0})

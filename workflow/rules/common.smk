@@ -8,6 +8,7 @@ from snakemake.logging import logger
 from snakemake.utils import update_config
 
 from rockfrag.errors import InputError
+from rockfrag.plugins import plugins_of
 from rockfrag.stages.digest import package_digest
 from rockfrag.stages.job import memory_mb
 from rockfrag.stages.running import RUN, prepared
@@ -37,8 +38,14 @@ except InputError as error:
     sys.exit(str(error))
 
 KIND = type(STUDY).__name__
+PLUGINS = plugins_of(STUDY)
+# what the report shows of the outputs of their rules, which stand elsewhere and need whole paths
+ADDED = []
+RUN_STAGE = workflow.source_path("../scripts/run_stage.py")
+ENVIRONMENT = workflow.source_path("../envs/rockfrag.yaml")
 RESULTS = str(FOLDER)
 MEMORY_MB = memory_mb(STUDY)
+PACKAGE = package_digest(*(plugin.rules.parent for plugin in PLUGINS))
 # a cluster's profile says how many threads a job may have at most
 CORES = workflow.resource_settings.cores or 64
 
@@ -60,7 +67,7 @@ def read(*names):
 
 def settings(*keys):
     """What a stage depends on beside its files, these keys of the configuration and the package itself."""
-    return {key: config.get(key) for key in keys} | {"package": package_digest()}
+    return {key: config.get(key) for key in keys} | {"package": PACKAGE}
 
 
 def captions(figure):

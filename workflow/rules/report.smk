@@ -10,10 +10,8 @@ rule report:
         rules.tests.output,
         rules.fragility.output,
         rules.pedestal.output if STUDY.has_pairs else [],
-        rules.explanation.output if STUDY.more.explanation else [],
-        rules.building_sensitivity.output if STUDY.more.sensitivity else [],
         rules.measured_tests.output if STUDY.more.measured_tests else [],
-        rules.thesis.output if STUDY.compare_with == "thesis" else [],
+        ADDED,
         bodies=STUDY.body_files,
     output:
         figures=report(
@@ -41,11 +39,12 @@ rule report:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.guests:report",
+        stage="rockfrag.report.stages:report",
         study=STUDY_FILE,
         settings=settings(
             *("title", "bodies", "amplitudes", "protocol", "fragility", "seed"),
-            *("compare_with", "friction", "vertical"),
+            *("friction", "vertical"),
+            *(key for plugin in PLUGINS for key in plugin.schema),
         ),
     script:
         "../scripts/run_stage.py"

@@ -65,7 +65,7 @@ rule pedestal:
         read("tests"),
         bodies=STUDY.body_files,
     output:
-        table("pedestal/pairs", "pedestal/effects", "pedestal/whole", "pedestal/mixed"),
+        table("pedestal/pairs", "pedestal/effects", "pedestal/whole"),
         table("pedestal/without_event", "pedestal/ranks", "pedestal/notes"),
     log:
         f"{RESULTS}/logs/pedestal.log",
@@ -99,70 +99,5 @@ rule measured_tests:
         stage="rockfrag.stages.measured_tests:run",
         study=STUDY_FILE,
         settings=settings("measured_tests", "fragility", "seed", "bodies"),
-    script:
-        "../scripts/run_stage.py"
-
-
-rule building_sensitivity:
-    """Repeat the tests on the floors of other buildings, one assumption changed at a time."""
-    input:
-        read("motions/ground"),
-        bodies=STUDY.body_files,
-        building=STUDY.building_file or [],
-    output:
-        table("building_sensitivity/tests", "building_sensitivity/means"),
-    log:
-        f"{RESULTS}/logs/building_sensitivity.log",
-    conda:
-        "../envs/rockfrag.yaml"
-    threads: CORES
-    resources:
-        mem_mb=MEMORY_MB,
-        runtime=120,
-    params:
-        stage="rockfrag.stages.sensitivity:run",
-        study=STUDY_FILE,
-        settings=settings(
-            *("building_sensitivity", "building", "bodies", "amplitudes"),
-            *("protocol", "friction"),
-        ),
-    script:
-        "../scripts/run_stage.py"
-
-
-EXPLAINED = STUDY.more.explanation
-
-
-rule explanation:
-    """Simulate what could produce an effect of the pedestal, one departure from the ideal model at a time."""
-    input:
-        read("motions/floors"),
-        bodies=STUDY.body_files,
-    output:
-        table("explanation/ratios", "explanation/effects"),
-        friction=(
-            table("explanation/friction_ratios", "explanation/friction")
-            if EXPLAINED and EXPLAINED.friction
-            else []
-        ),
-        inversion=(
-            table("explanation/inversion")
-            if EXPLAINED and EXPLAINED.wanted_percent
-            else []
-        ),
-    log:
-        f"{RESULTS}/logs/explanation.log",
-    priority: 3
-    conda:
-        "../envs/rockfrag.yaml"
-    # half of the cores, so that tests and fragility need not wait for it
-    threads: max(1, CORES // 2)
-    resources:
-        mem_mb=MEMORY_MB,
-        runtime=120,
-    params:
-        stage="rockfrag.stages.explanation:run",
-        study=STUDY_FILE,
-        settings=settings("explanation", "bodies", "amplitudes", "protocol", "seed"),
     script:
         "../scripts/run_stage.py"

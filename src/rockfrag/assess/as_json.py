@@ -4,6 +4,8 @@ import json
 import math
 from typing import Any
 
+import numpy as np
+
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.risk import LEVEL, Estimate
@@ -50,6 +52,7 @@ def as_json(found: Assessment) -> str:
             "share": verdicts.shares().tolist(),
             **_curve(found),
         },
+        "two_measures": _two_measures(found),
         "hazard": found.hazard
         and {
             "source": found.hazard.source,
@@ -79,6 +82,27 @@ def _estimate(estimate: Estimate | None) -> dict[str, Any] | None:
         "lower": estimate.lower,
         "upper": estimate.upper,
         "standard_deviations": dict(estimate.sources),
+    }
+
+
+def _two_measures(found: Assessment) -> dict[str, Any] | None:
+    """Fragility in the measure and PGV over it [s], and what is known of that at the site."""
+    about = found.conversion
+    if about is None or found.level is None:
+        return None
+    surface = about.fragility.surface
+    known = about.known and {
+        "log_ratio": float(about.known.log_ratio(np.array([found.level.value]))[0]),
+        "sd_between_earthquakes": about.known.spread,
+    }
+    return {
+        "measures": [f"{about.measure.name} [{about.measure.unit}]", "PGV over it [s]"],
+        "coefficients": surface.coefficients,
+        "covariance": surface.covariance,
+        "weight": about.weight,
+        "at_the_site": known,
+        "sd_of_mean": about.spread,
+        "warnings": about.fragility.warnings,
     }
 
 

@@ -37,17 +37,8 @@ class _Once(argparse.Action):
     ) -> None:
         """Keep the value, or end with a sentence where there is one already."""
         if getattr(namespace, self.dest, None) not in (None, self.default):
-            raise InputError(f"{option_string} is given twice; {_ADVICE.get(self.dest, _ONE)}")
+            raise InputError(f"{option_string} is given twice; give it once.")
         setattr(namespace, self.dest, values)
-
-
-_ONE = "give it once."
-_ADVICE = {
-    "pedestal": "one block under the object is simulated. Where two are fixed to each other, or so broad and "
-    "low that "
-    "they cannot part, give them as one block with the width of the lower base and the height of both; otherwise "
-    "assess the upper two parts and, as one object, what stands on the lowest."
-}
 
 
 def add_assess_commands(commands: Any) -> None:
@@ -128,11 +119,17 @@ def _add_object(about: Any) -> None:
         "--friction", action=_Once, type=float, help="coefficient: it may slide at that level"
     )
     about.add_argument(
-        "--pedestal",
+        "--pad-friction",
         action=_Once,
+        type=float,
+        help="coefficient of a pad under the object, tried as a mitigation",
+    )
+    about.add_argument(
+        "--pedestal",
+        action="append",
         nargs="+",
         metavar="SIZE",
-        help="width, height and, if known, mass of the block it stands on",
+        help="width, height and, if known, mass of the block it stands on; again for what that stands on",
     )
 
 
@@ -163,7 +160,12 @@ def _add_place(place: Any) -> None:
         help="of the building: its period follows from that and its height",
     )
     place.add_argument("--pga", action=_Once, metavar="ACCELERATION", help="of the ground: 0.25g")
-    place.add_argument("--pgv", action=_Once, metavar="VELOCITY", help="of the ground: 20cm/s")
+    place.add_argument(
+        "--pgv",
+        action=_Once,
+        metavar="VELOCITY",
+        help="of the ground, alone or beside the other: 20cm/s",
+    )
     place.add_argument(
         "--sa", action=_Once, nargs=2, metavar=("PERIOD", "ACCELERATION"), help="0.3s 0.6g"
     )
@@ -305,8 +307,9 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
         "round": options.round or None,
         "restitution": options.restitution,
         "friction": options.friction,
+        "pad_friction": options.pad_friction,
         "mesh": _mesh(options),
-        "pedestal": _pedestal(options.pedestal),
+        "pedestal": _pedestals(options.pedestal),
         "floor": options.floor,
         "building": options.building or _building(options),
         "sa": options.sa,
@@ -357,19 +360,27 @@ def _building(options: argparse.Namespace) -> dict[str, Any] | None:
     return known or None
 
 
-def _pedestal(given: Sequence[str] | None) -> dict[str, str] | None:
+def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
+    """The pedestal as a file would have it, or several from above."""
     if given is None:
         return None
-    if len(given) not in (2, 3):
-        raise InputError(
-            "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
-            f"{' '.join(given)}."
-        )
-    return dict(zip(("width", "height", "mass"), given, strict=False))
+    for one in given:
+        if len(one) not in (2, 3):
+            raise InputError(
+                "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
+                f"{' '.join(one)}."
+            )
+    found = [dict(zip(("width", "height", "mass"), one, strict=False)) for one in given]
+    return found if len(found) > 1 else found[0]
 
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
-    from rockfrag.assess.inventory import assess_inventory, inventory_lines, write_inventory
+    from rockfrag.assess.inventory import (
+        assess_inventory,
+        inventory_lines,
+        joint_lines,
+        write_inventory,
+    )
 
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:
@@ -377,7 +388,7 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     found = assess_inventory(options.file, shared, options.records, keep_going=options.keep_going)
     for fault in found.faults:
         print(f"warning: left out: {fault}", file=sys.stderr)
-    print("\n".join(inventory_lines(found)))
+    print("\n".join([*inventory_lines(found), *joint_lines(found)]))
     place = write_inventory(found, options.output, pages=options.pages)
     print(f"{place}", file=sys.stderr)
     return 0

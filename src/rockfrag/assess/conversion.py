@@ -1,70 +1,39 @@
-"""What hazard in PGA or Sa leaves open where velocity decides.
+"""Two measures: what is known of the ground velocity that comes with a level of PGA or Sa at a site.
 
-A vector fragility P(topple | IM, PGV) says how much of the amplitude is told by each.  If ln PGV has the
-weight c in it, a site whose motions have a PGV/IM larger by a factor r topples the object at levels of IM
-smaller by r^c.
+P(topples | IM, PGV/IM) is fitted to the simulated motions (:func:`rockfrag.fragility.fit_vector`).  A motion whose
+PGV/IM is larger by a factor r topples the object at levels of IM smaller by r^w, with w the effect of ln PGV/IM
+over that of ln IM.  So each motion says what one like it, with the velocity of the site, would do, and fractions
+of motions are still counted; no curve is assumed.
 
-That motions of one IM have velocities of their own is no ignorance: it stands in the set and in the shares
-counted with it.  Not known is how far the *mean* of ln PGV/IM at the site is from that of the set.  It follows
-magnitude, distance and ground, by a regression on the records of the set; what of these is not known at the
-site counts with its spread. About that relation half of the variance is taken for the site's own, which all its
-earthquakes share.
+What differs from one earthquake to the next belongs into these fractions: the spread of ln PGV/IM at the site.
+What is not known belongs into the interval: its mean.
+
+- Nothing known: the motions keep their velocities.  The mean at the site may be away from that of the set, by
+  magnitude, distance, ground and site.
+- Magnitude or distance: the mean follows a regression on the records of the set.
+- PGV too: of two hazard curves the mean follows at each level, and only how both occur together is not known; of
+  two levels the ratio is given.
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from scipy import special
 
-from rockfrag.assess.hazard.measure import PGV, Measure
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G, Measure
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.request import Records
+from rockfrag.assess.request import Level, Records
 from rockfrag.assess.verdicts import Verdicts
 from rockfrag.errors import InputError
-from rockfrag.fragility.surface import fit_surface
+from rockfrag.fragility.intervals import jackknife_error
+from rockfrag.fragility.vector import VectorFragility, fit_vector
 
-
-@dataclass(frozen=True)
-class Conversion:
-    """What is lost by knowing a measure instead of PGV.
-
-    Attributes
-    ----------
-    measure
-        The measure that is known.
-    weight
-        Share of velocity in what tells survival from toppling, 0 to 1 [-].
-    ratio
-        Median PGV over the measure in the set [cm/s per unit].
-    spread
-        Standard deviation of the mean of ln (PGV over the measure) at the site about that of the set [-].
-    """
-
-    measure: Measure
-    weight: float
-    ratio: float
-    spread: float
-
-    @property
-    def shift(self) -> float:
-        """Standard deviation of ln level that follows [-]."""
-        return self.weight * self.spread
-
-    @property
-    def words(self) -> str:
-        """A sentence for the page."""
-        governs = "velocity governs" if self.weight > 0.5 else "velocity matters less"
-        return (
-            f"The hazard is in {self.measure.name}, while {governs} for this object (weight {self.weight:.2f}). "
-            "The "
-            f"motions have a PGV of {self.ratio:.3g} cm/s per {self.measure.unit} on average; that of the site "
-            "may "
-            f"differ by a factor of {math.exp(self.spread):.2f} (standard deviation), which widens the interval."
-        )
-
+Floats = NDArray[np.float64]
 
 UNKNOWN = {"magnitude": 0.5, "ln_distance": 0.7, "ln_vs30": 0.45}
 """Standard deviations of what is not known of the earthquakes and the ground of a site: estimates of ours, half a
@@ -76,11 +45,154 @@ OF_THE_SITE = 0.5
 FEWEST_RECORDS = 30
 """Records from which three coefficients are fitted; with fewer, all of their spread counts."""
 
+TOGETHER = 0.25
+"""Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of
+ours."""
+
+NODES = 11
+"""Values of equal probability that stand for the spread of ln PGV/IM."""
+
+MOST_LEVELS = 8
+"""Levels of a motion that are fitted; tests under one motion depend on each other."""
+
+
+@dataclass(frozen=True)
+class SiteVelocity:
+    """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal.
+
+    Attributes
+    ----------
+    log_ratio
+        Mean of ln ratio at levels of the measure.
+    spread
+        Its standard deviation from one earthquake to the next [-].
+    """
+
+    log_ratio: Callable[[Floats], Floats]
+    spread: float
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """What is known of the velocity at a site whose shaking is given in another measure.
+
+    Attributes
+    ----------
+    measure
+        The measure that is known.
+    fragility
+        P(topples | measure, PGV over the measure), columns ``im`` and ``ratio_s``.
+    weight
+        Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1 where it says
+        all [-].
+    logs
+        ln (PGV over the measure [s]) of each motion, shape (motions,).
+    known
+        What is known of the site; None if nothing is.
+    spread
+        Standard deviation of the mean of ln ratio at the site [-].
+    shift
+        Standard deviation of ln level that follows, with the error of the weight [-].
+    by_statics
+        Whether the level alone decides what rocks, as PGA does on the ground.
+    words
+        A sentence for the page.
+    """
+
+    measure: Measure
+    fragility: VectorFragility
+    weight: float
+    logs: Floats
+    known: SiteVelocity | None
+    spread: float
+    shift: float
+    by_statics: bool
+    words: str
+
+    def of(self, motions: MotionSet) -> "Conversion":
+        """The same for other motions of the set."""
+        return replace(self, logs=motions.log_ratios(self.measure))
+
+    def beyond(self, level: Level | None) -> str:
+        """What to say where the velocity of the site is unlike that of any motion; empty where it is not.
+
+        Parameters
+        ----------
+        level
+            Level of shaking at the site.
+        """
+        if self.known is None or level is None:
+            return ""
+        mean = float(self.known.log_ratio(np.array([level.value]))[0])
+        if self.logs.min() <= mean <= self.logs.max():
+            return ""
+        ends = " to ".join(
+            f"{VELOCITY_PER_G * math.exp(x):.3g}" for x in (self.logs.min(), self.logs.max())
+        )
+        return f"A PGV of {_per_unit(mean, self.measure)} is that of no motion ({ends}); check both levels."
+
+    def at_site(self, verdicts: Verdicts) -> Verdicts:
+        """Outcomes under motions with the velocity of the site; as they are where nothing is known of it.
+
+        Parameters
+        ----------
+        verdicts
+            Outcomes under the motions as recorded.
+        """
+        return verdicts if self.known is None else self._moved(verdicts, self.known)
+
+    def sides(self, verdicts: Verdicts) -> tuple[Verdicts, Verdicts] | None:
+        """The same with less and more spread of velocities at a given level; None where that is not open."""
+        if not isinstance(self.known, OfTwoCurves):
+            return None
+        lower, upper = (
+            self._moved(verdicts, self.known.with_spread(self.known.spread * factor))
+            for factor in (1 - TOGETHER, 1 + TOGETHER)
+        )
+        return lower, upper
+
+    def _moved(self, verdicts: Verdicts, site: SiteVelocity) -> Verdicts:
+        """Each motion at the level at which it is as strong for the object as with the velocity of the site."""
+        ladder = verdicts.ladder
+        x = np.log(ladder.levels)
+        count = NODES if site.spread > 0 else 1
+        nodes = special.ndtri((np.arange(count) + 0.5) / count)
+        nodes *= site.spread / nodes.std() if count > 1 else 0.0
+        wanted = site.log_ratio(ladder.levels) + nodes[:, np.newaxis]
+        # (motions, nodes, levels), then a row for each motion at each node
+        moved = x + self.weight * (wanted - self.logs[:, np.newaxis, np.newaxis])
+        moved = moved.reshape(-1, x.size)
+        row = np.repeat(np.arange(self.logs.size), count)[:, np.newaxis]
+        place = np.rint(np.interp(moved, x, np.arange(x.size))).astype(np.intp)
+        inside = (moved >= x[0]) & (moved <= x[-1])
+        overturned = verdicts.overturned[row, place]
+        rocked = np.repeat(verdicts.rocked, count, axis=0)
+        if self.by_statics:
+            overturned &= rocked
+        return replace(
+            verdicts,
+            ladder=replace(
+                ladder,
+                scales=ladder.scales[row, place],
+                allowed=ladder.allowed[row, place] & inside,
+            ),
+            overturned=overturned,
+            rocked=rocked | overturned,
+            events=np.repeat(verdicts.events, count),
+        )
+
 
 def find_conversion(
-    verdicts: Verdicts, motions: MotionSet, known: Records | None = None
+    verdicts: Verdicts,
+    motions: MotionSet,
+    given: Records | None = None,
+    *,
+    level: Level | None = None,
+    curves: Sequence[HazardCurve] = (),
+    by_statics: bool = False,
+    brief: bool = False,
 ) -> Conversion | None:
-    """Fit the vector fragility of measure and PGV.
+    """Fit the fragility in two measures, and gather what is known of the velocity at the site.
 
     Parameters
     ----------
@@ -88,74 +200,258 @@ def find_conversion(
         Of the object, in the measure that is known.
     motions
         The motions.
-    known
+    given
         What is known of the earthquakes of the site; nothing if None.
+    level
+        Level of shaking, perhaps with its PGV.
+    curves
+        Hazard in the measure and, if known, in PGV; empty if there is none.
+    by_statics
+        Whether the level alone decides what rocks.
+    brief
+        Fit without an interaction, as for one of many objects.
 
     Returns
     -------
-    The conversion; None in PGV, or where the verdicts allow no fit.
+    The conversion; None in PGV, or where the outcomes allow no fit.
     """
     measure = verdicts.ladder.measure
     if measure == PGV:
         return None
-    ratios = motions.values(PGV) / motions.values(measure)
-    motion, level = np.nonzero(verdicts.ladder.allowed)
-    im = verdicts.ladder.levels[level]
-    table = pd.DataFrame(
-        {"im": im, "pgv": im * ratios[motion], "overturned": verdicts.overturned[motion, level]}
-    )
-    try:
-        _, of_measure, of_velocity = fit_surface(table, ["im", "pgv"]).coefficients
-    except InputError:
+    logs = motions.log_ratios(measure)
+    fit = _fitted(verdicts, logs, brief)
+    if fit is None:
         return None
-    weight = float(np.clip(of_velocity / (of_measure + of_velocity), 0.0, 1.0))
-    spread = spread_of_site(np.log(ratios), motions, known or Records())
-    return Conversion(measure, weight, float(np.median(ratios)), spread)
+    weight, error = _weight(fit, float(np.median(logs)))
+    if not math.isfinite(weight):
+        return None
+    known, spread = _known(measure, motions, given or Records(), level, curves)
+    away = 0.0
+    if known is not None:
+        x = verdicts.ladder.levels
+        away = float(np.abs(known.log_ratio(x) - np.median(logs)).mean())
+    return Conversion(
+        measure,
+        fit,
+        weight,
+        logs,
+        known,
+        spread,
+        math.hypot(weight * spread, error * away),
+        by_statics,
+        _words(measure, weight, logs, known, spread, level),
+    )
 
 
-def spread_of_site(logs: NDArray[np.float64], motions: MotionSet, known: Records) -> float:
-    """Standard deviation of the mean of ln (PGV over a measure) at a site about that of a set [-].
-
-    Parameters
-    ----------
-    logs
-        ln (PGV over the measure) of each motion, shape (motions,).
-    motions
-        The motions, with what is known of their records.
-    known
-        What is known of the earthquakes of the site.
-    """
-    about = [motion.metadata for motion in motions.ground]
+def _fitted(verdicts: Verdicts, logs: Floats, brief: bool) -> VectorFragility | None:
+    ladder = verdicts.ladder
+    step = -(-ladder.levels.size // MOST_LEVELS)
+    motion, level = np.nonzero(ladder.allowed[:, ::step])
+    level *= step
     table = pd.DataFrame(
         {
-            "record": [
-                f"{one.get('event')} {one.get('station', i)}" for i, one in enumerate(about)
-            ],
-            "magnitude": [_number(one, "magnitude") for one in about],
-            "ln_distance": [math.log(_number(one, "distance_km")) for one in about],
-            "ln_vs30": [math.log(_number(one, "vs30_m_s")) for one in about],
-            "log": logs,
+            "im": ladder.levels[level],
+            "ratio_s": np.exp(logs[motion]),
+            "overturned": verdicts.overturned[motion, level].astype(np.float64),
+            "event": verdicts.events[motion],
         }
     )
-    records = table.groupby("record").mean().dropna()
-    if len(records) < FEWEST_RECORDS:
-        by_record = table.groupby("record")["log"].mean()
-        spread = float(by_record.std(ddof=1)) if len(by_record) > 1 else 0.0
-        return math.sqrt(OF_THE_SITE) * spread
-    x = np.column_stack([np.ones(len(records)), *(records[name] for name in UNKNOWN)])
-    fit, *_ = np.linalg.lstsq(x, records["log"].to_numpy(), rcond=None)
-    rest = records["log"].to_numpy() - x @ fit
-    own = OF_THE_SITE * float(rest @ rest) / (len(records) - x.shape[1])
-    given = {"magnitude": known.magnitude, "ln_distance": known.distance_km}
-    unknown = sum(
-        (slope * spread) ** 2
-        for slope, (name, spread) in zip(fit[1:], UNKNOWN.items(), strict=True)
-        if math.isnan(given.get(name, math.nan))
-    )
-    return math.sqrt(own + float(unknown))
+    try:
+        return fit_vector(table, ("im", "ratio_s"), try_interaction=not brief)
+    except InputError:
+        return None
+
+
+def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
+    """Effect of ln ratio over that of ln measure at half toppling, from 0 to 1, and its standard error."""
+
+    def weight(c: Floats, log_level: float) -> Floats:
+        more = c[:, 3] if c.shape[1] > 3 else 0.0
+        return np.asarray((c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio))
+
+    middle, *_ = fit.contour(0.5, math.exp(log_ratio))
+    log_level = float(np.log(middle[0]))
+    own = float(weight(np.array([fit.surface.coefficients]), log_level)[0])
+    error = 0.0
+    if len(fit.replicates) > 1:
+        error = float(jackknife_error(weight(fit.replicates, log_level)))
+    return float(np.clip(own, 0.0, 1.0)), error if math.isfinite(error) else 0.0
+
+
+def _known(
+    measure: Measure,
+    motions: MotionSet,
+    given: Records,
+    level: Level | None,
+    curves: Sequence[HazardCurve],
+) -> tuple[SiteVelocity | None, float]:
+    """What is known of the velocity at a site, and the standard deviation of the mean of ln ratio."""
+    relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
+    own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
+    if len(curves) > 1:
+        return OfTwoCurves.of(curves[0], curves[1], relation.scatter), 0.0
+    if level is not None and math.isfinite(level.pgv):
+        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
+        # of a hazard curve other levels count too, with velocities of their own
+        return _constant(ratio, own if curves else 0.0), 0.0
+    spread = relation.unknown(given)
+    if math.isnan(given.magnitude) and math.isnan(given.distance_km):
+        return None, spread
+    return _constant(relation.mean(given), own), spread
+
+
+def _constant(log_ratio: float, spread: float) -> SiteVelocity:
+    return SiteVelocity(lambda levels: np.full(levels.shape, log_ratio), spread)
+
+
+@dataclass(frozen=True)
+class OfTwoCurves(SiteVelocity):
+    """PGV at levels of a measure that agrees with the hazard curves of both.
+
+    If ln PGV is normal about a line in ln measure with the standard deviation s, and the rate of PGV falls with
+    the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level of that
+    rate.
+
+    Attributes
+    ----------
+    first, velocity
+        Hazard curves of the measure and of PGV.
+    """
+
+    first: HazardCurve
+    velocity: HazardCurve
+
+    @classmethod
+    def of(cls, first: HazardCurve, velocity: HazardCurve, spread: float) -> "OfTwoCurves":
+        """What two curves say with a standard deviation of ln PGV at a given level."""
+
+        def log_ratio(levels: Floats) -> Floats:
+            rates = first.rate(levels)
+            logs = [
+                np.log([velocity.level(rate * factor) for rate in rates])
+                for factor in (1.0, math.exp(-1), math.e)
+            ]
+            slope = 2.0 / (logs[1] - logs[2])
+            mean = logs[0] - slope * spread**2 / 2
+            return np.asarray(mean - np.log(levels * VELOCITY_PER_G))
+
+        return cls(log_ratio, spread, first, velocity)
+
+    def with_spread(self, spread: float) -> "OfTwoCurves":
+        """What they say with another standard deviation."""
+        return OfTwoCurves.of(self.first, self.velocity, spread)
+
+
+@dataclass(frozen=True)
+class VelocityRelation:
+    """How ln (PGV over a measure) follows magnitude, ln distance and ln Vs30 among the records of a set.
+
+    Attributes
+    ----------
+    coefficients
+        Of 1 and the three; only the mean where fewer than ``FEWEST_RECORDS`` records are known so well.
+    middle
+        Mean of the three in the set.
+    scatter
+        Standard deviation about the relation [-].
+    """
+
+    coefficients: tuple[float, ...]
+    middle: tuple[float, ...]
+    scatter: float
+
+    @classmethod
+    def of(cls, about: Sequence[Mapping[str, object]], logs: Floats) -> "VelocityRelation":
+        """Fit it to records.
+
+        Parameters
+        ----------
+        about
+            What is known of the record of each motion.
+        logs
+            ln ratio of each motion, shape (motions,).
+        """
+        table = pd.DataFrame(
+            {
+                "record": [f"{a.get('event')} {a.get('station', i)}" for i, a in enumerate(about)],
+                "magnitude": [_number(a, "magnitude") for a in about],
+                "ln_distance": [math.log(_number(a, "distance_km")) for a in about],
+                "ln_vs30": [math.log(_number(a, "vs30_m_s")) for a in about],
+                "log": logs,
+            }
+        )
+        records = table.groupby("record").mean()
+        known = records.dropna()
+        if len(known) < FEWEST_RECORDS:
+            spread = float(records["log"].std(ddof=1)) if len(records) > 1 else 0.0
+            return cls((float(records["log"].mean()),), (), spread)
+        facts = known[list(UNKNOWN)].to_numpy()
+        x = np.column_stack([np.ones(len(known)), facts])
+        fit, *_ = np.linalg.lstsq(x, known["log"].to_numpy(), rcond=None)
+        rest = known["log"].to_numpy() - x @ fit
+        scatter = math.sqrt(float(rest @ rest) / (len(known) - x.shape[1]))
+        return cls(tuple(map(float, fit)), tuple(map(float, facts.mean(axis=0))), scatter)
+
+    def mean(self, given: Records) -> float:
+        """Mean of ln ratio for what is known of the earthquakes; the rest as in the set."""
+        slopes = zip(self.coefficients[1:], self.middle, _facts(given), strict=False)
+        return self.coefficients[0] + sum(
+            slope * (middle if math.isnan(fact) else fact) for slope, middle, fact in slopes
+        )
+
+    def unknown(self, given: Records) -> float:
+        """Standard deviation of the mean at a site, for what is not known of its earthquakes and ground."""
+        slopes = zip(self.coefficients[1:], UNKNOWN.values(), _facts(given), strict=False)
+        parts = [(slope * spread) ** 2 for slope, spread, fact in slopes if math.isnan(fact)]
+        return math.sqrt(OF_THE_SITE * self.scatter**2 + sum(parts))
+
+
+def _facts(given: Records) -> tuple[float, float, float]:
+    """Magnitude, ln distance and ln Vs30 of a site; NaN where not known."""
+    return given.magnitude, math.log(max(given.distance_km, 1.0)), math.nan
 
 
 def _number(about: Mapping[str, object], key: str) -> float:
     """A number that is known of a record and above 0, NaN where none is."""
     value = about.get(key)
     return float(value) if isinstance(value, int | float) and value > 0 else math.nan
+
+
+def _per_unit(log_ratio: float, measure: Measure) -> str:
+    return f"{VELOCITY_PER_G * math.exp(log_ratio):.3g} cm/s per {measure.unit}"
+
+
+def _words(
+    measure: Measure,
+    weight: float,
+    logs: Floats,
+    known: SiteVelocity | None,
+    spread: float,
+    level: Level | None,
+) -> str:
+    """A sentence for the page."""
+    governs = "velocity governs" if weight > 0.5 else "velocity matters less"
+    of_set = _per_unit(float(np.median(logs)), measure)
+    if known is None:
+        return (
+            f"The hazard is in {measure.name}, while {governs} for this object (weight {weight:.2f}). The motions "
+            f"have a PGV of {of_set} on average; that of the site may differ by a factor of "
+            f"{math.exp(spread):.2f} (standard deviation), which widens the interval."
+        )
+    at = level.value if level is not None else 1.0
+    site = _per_unit(float(known.log_ratio(np.array([at]))[0]), measure)
+    counted = (
+        f"; that it differs from one earthquake to the next by a factor of {math.exp(known.spread):.2f} (standard "
+        "deviation) is counted in the result"
+        if known.spread > 0
+        else ""
+    )
+    rest = (
+        f". The mean at the site may differ by a factor of {math.exp(spread):.2f}, which widens the interval."
+        if spread > 0
+        else "."
+    )
+    return (
+        f"Toppling is counted in two measures, {measure.name} and PGV over it; {governs} (weight {weight:.2f}). A "
+        f"PGV of {site} comes with that level at the site, {of_set} in the motions{counted}{rest}"
+    )

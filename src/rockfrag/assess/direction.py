@@ -8,7 +8,7 @@ from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.verdicts import Ladder, believable_scales, simulated
 from rockfrag.motions.rotation import rotate
-from rockfrag.system.blocks import Body, Stack
+from rockfrag.system.system import System
 
 STEP_DEG = 15
 """Angle between directions that are tried [degrees]."""
@@ -60,8 +60,8 @@ def find_directions(
     """
     if not motions.pairs:
         return None
-    body = objects.body
-    angles = range(0, 180 if _is_symmetric(body) else 360, STEP_DEG)
+    system = objects.system_of(objects.body)
+    angles = range(0, 180 if _is_symmetric(system) else 360, STEP_DEG)
     values = motions.values(ladder.measure)
     shaking, scales = [], []
     for pair in motions.pairs:
@@ -70,12 +70,8 @@ def find_directions(
         for angle in angles:
             shaking.append(rotate(one, other, angle))
             scales.append(ladder.levels / middle)
-    found, _ = simulated(
-        [body],
-        shaking,
-        np.minimum(np.array(scales), believable_scales(shaking)),
-        [objects.restitution_of(body)],
-    )
+    believable = np.minimum(np.array(scales), believable_scales(shaking))
+    found, _ = simulated([system], shaking, believable)
     fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
@@ -97,8 +93,7 @@ def _half(x: np.ndarray, share: np.ndarray) -> float:
     return float(np.interp(0.5, share[i - 1 : i + 1], x[i - 1 : i + 1]))
 
 
-def _is_symmetric(body: Body) -> bool:
-    """Whether opposite directions are alike to a body."""
-    blocks = (body.pedestal, body.statue) if isinstance(body, Stack) else (body,)
-    offset = body.offset if isinstance(body, Stack) else 0.0
-    return offset == 0 and all(block.cg_offset == 0 and block.lean == 0 for block in blocks)
+def _is_symmetric(system: System) -> bool:
+    """Whether opposite directions are alike to a system."""
+    level = all(contact.tilt == contact.offset[0] == 0 for contact in system.contacts)
+    return level and all(shape.x == 0 for shape in system.shapes)

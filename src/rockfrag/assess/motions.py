@@ -1,7 +1,7 @@
 """The motions of an assessment: a default set of ordinary and pulse-like ones, or the user's own."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.assess.hazard.measure import Measure
+from rockfrag.assess.hazard.measure import PGV, VELOCITY_PER_G, Measure
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
 from rockfrag.errors import InputError
@@ -57,6 +57,10 @@ class MotionSet:
     worst
         Whether each record comes from its worst direction: both of its components stand for the record, their
         level is the geometric mean of theirs, and it topples an object if it does from any direction.
+    library
+        Motions of the set among which these were chosen; empty where all were taken.
+    measured
+        ln (PGV over a measure) of the library that were needed before.
     """
 
     ground: tuple[Motion, ...]
@@ -67,6 +71,30 @@ class MotionSet:
     floors: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
     halves: dict[object, tuple[Motion, ...]] = field(default_factory=dict)
     worst: bool = False
+    library: tuple[Motion, ...] = ()
+    measured: dict[Measure, Floats] = field(default_factory=dict)
+
+    @property
+    def about(self) -> list[Mapping[str, object]]:
+        """What is known of the records among which the motions were chosen."""
+        return [motion.metadata for motion in self.library or self.ground]
+
+    def log_ratios(self, measure: Measure, *, of_all: bool = False) -> Floats:
+        """Return ln (PGV over a measure [s]) of each ground motion.
+
+        Parameters
+        ----------
+        measure
+            PGA or Sa.
+        of_all
+            Of all motions among which these were chosen.
+        """
+        if not (of_all and self.library):
+            return np.log(self.values(PGV) / self.values(measure) / VELOCITY_PER_G)
+        if measure not in self.measured:
+            ratios = np.array([PGV.of(motion) / measure.of(motion) for motion in self.library])
+            self.measured[measure] = np.log(ratios / VELOCITY_PER_G)
+        return self.measured[measure]
 
     @cached_property
     def events(self) -> NDArray[np.object_]:
@@ -82,11 +110,15 @@ class MotionSet:
             self._values[measure] = values
         return self._values[measure]
 
+    def median(self, measure: Measure) -> float:
+        """Median of the components in a measure, the same for records in their worst direction."""
+        return float(np.median(replace(self, worst=False).values(measure)))
+
     def in_worst_direction(self) -> "MotionSet":
         """The same records, each from its worst direction; one without a second component as it is."""
         words = self.words
         if self.pairs:
-            words += f", {len(self.pairs)} records each in its worst direction"
+            words += f", {len(self.pairs)} records each with both components"
         return replace(self, worst=True, words=words)
 
     def turned(self, step_deg: int) -> list[tuple[int, list[Motion]]]:
@@ -189,7 +221,8 @@ def _default(records: Records, folder: Path) -> MotionSet:
                 f"smallest is {lowest:g}.",
             )
     places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
-    return MotionSet(motions, motions, places, words, warnings)
+    library = tuple(motion for pair in pairs for motion in pair) if len(chosen) < len(pairs) else ()
+    return MotionSet(motions, motions, places, words, warnings, library=library)
 
 
 def _nearest(

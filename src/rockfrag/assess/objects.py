@@ -1,7 +1,7 @@
-"""The object and its pedestal as blocks, what was assumed of them, and what is not known to the digit."""
+"""The object and what it stands on as blocks, what was assumed of them, and what is not known to the digit."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -11,10 +11,11 @@ from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
-from rockfrag.rocking.measured_restitution import Measured, largest_restitution
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.rocking.options import system_of
+from rockfrag.system import geometry
+from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.mesh import Shape, read_shape
-from rockfrag.system.system import diagonal, round_inertia
+from rockfrag.system.system import System, diagonal, round_inertia, uplift_ratios
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
@@ -35,8 +36,8 @@ _RETREATS = (1.0, 0.75, 0.5, 0.25)
 ROLLING = 1.0
 """Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
 
-ALONE, ON_PEDESTAL, JOINED = "on the floor", "on its pedestal", "fixed to its pedestal"
-"""Ways in which an object can stand."""
+ALONE = "on the floor"
+"""How an object stands without a pedestal."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,8 @@ class Objects:
     ----------
     statue
         The object.
-    pedestal
-        Its pedestal; None if it stands on the floor.
+    pedestals
+        What it stands on, from below; empty if it stands on the floor.
     restitution
         Measured ratio of angular velocities at an impact [-]; None conserves momentum.
     friction
@@ -67,10 +68,12 @@ class Objects:
         What was not given.
     doubts
         Sentences, one for each thing that looks wrong.
+    pad_friction
+        Coefficient of friction of a pad that is tried under the object [-]; None to try none.
     """
 
     statue: Block
-    pedestal: Block | None
+    pedestals: tuple[Block, ...]
     restitution: float | None
     friction: float | None
     tolerances: Mapping[str, float]
@@ -80,55 +83,68 @@ class Objects:
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
     doubts: tuple[str, ...] = ()
+    pad_friction: float | None = None
 
     @property
     def body(self) -> Body:
         """The object as it stands."""
-        return self.statue if self.pedestal is None else Stack(self.pedestal, self.statue)
+        return stacked((*self.pedestals, self.statue))
+
+    @property
+    def many(self) -> bool:
+        """Whether more than two bodies stand on each other, each of whose simulations takes milliseconds."""
+        return len(self.pedestals) > 1
+
+    @property
+    def stand(self) -> str:
+        """What it stands on in a word."""
+        return "pedestals" if self.many else "pedestal"
 
     @property
     def arrangements(self) -> dict[str, Body]:
         """The ways in which it can stand, as it stands now first."""
-        if self.pedestal is None:
-            return {ALONE: self.statue}
-        stack = Stack(self.pedestal, self.statue)
-        return {ON_PEDESTAL: stack, JOINED: stack.rigidly_joined(), ALONE: self.statue}
+        body = self.body
+        if len(body.blocks) == 1:
+            return {ALONE: body}
+        joined = body.rigidly_joined()
+        return {
+            f"on its {self.stand}": body,
+            f"fixed to its {self.stand}": joined,
+            ALONE: self.statue,
+        }
 
     @property
     def least_uplift(self) -> float:
         """Least peak acceleration of what it stands on at which any contact opens [g]: b/h of a uniform block."""
-        body = self.body
-        arms = [body.common_arm, body.statue_arm] if isinstance(body, Stack) else [body.arm]
-        return min(abs(arm(pole).x) / arm(pole).y for arm in arms for pole in (1, -1))
+        return min(uplift_ratios(self.body.system()))
 
-    def restitution_of(self, body: Body) -> Sequence[Measured] | None:
-        """Restitution of a body as the simulations take it: of a block (right, left), of a stack a pair of them.
+    def system_of(self, body: Body) -> System:
+        """Return what is shaken: a body whose impacts lose what was measured or assumed, and gain no energy.
 
         Parameters
         ----------
         body
-            An arrangement of the object, with or without changes; no impact of it gains energy.
+            An arrangement of the object, with or without changes.
         """
+        system = body.system()
         if self.restitution is None and self.livelier == 1 and not self.round:
-            return None
-        if isinstance(body, Stack):
-            return [
-                self._ratios(body.pedestal, rolls=False),
-                self._ratios(body.contact_statue, self.round),
-            ]
+            return system
         # on the floor it stands on its own base, fixed to its pedestal on that of the pedestal
-        return self._ratios(body, self.round and body.height == self.statue.height)
+        rolls = self.round and body.blocks[-1].height == self.statue.height
+        *below, top = system.carried
+        each = [*(self._ratios(shape, rolls=False) for shape in below), self._ratios(top, rolls)]
+        return system_of(system, restitution=each if below else each[0])
 
-    def _ratios(self, block: Block, rolls: bool) -> tuple[float, float]:
-        right, left = (self._ratio(block, pole, rolls) for pole in (1, -1))
+    def _ratios(self, shape: geometry.Shape, rolls: bool) -> tuple[float, float]:
+        right, left = (self._ratio(shape, pole, rolls) for pole in (1, -1))
         return right, left
 
-    def _ratio(self, block: Block, pole: int, rolls: bool) -> float:
+    def _ratio(self, shape: geometry.Shape, pole: int, rolls: bool) -> float:
         measured = ROLLING if rolls else self.restitution
-        e = block.momentum_restitution(pole) if measured is None else measured
-        return min(max(e, 0.0) * self.livelier, largest_restitution(block, pole))
+        e = geometry.momentum_restitution(shape, pole) if measured is None else measured
+        return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pole))
 
-    def rolling(self, body: Body) -> Block | None:
+    def rolling(self, body: Body) -> System | None:
         """The round object in space where it is free to roll in an arrangement; None where there is none.
 
         Parameters
@@ -136,12 +152,12 @@ class Objects:
         body
             An arrangement of the object, with or without changes; under it a pedestal stays where it is.
         """
-        top = body.statue if isinstance(body, Stack) else body
+        top = body.blocks[-1]
         if not self.round or top.height != self.statue.height:
             return None
         across = top.centroidal_inertia
         along = top.mass * top.width**2 / 8
-        return replace(top, round=True, inertia=diagonal(across, across, along))
+        return replace(top, round=True, inertia=diagonal(across, across, along)).system()
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
@@ -151,7 +167,7 @@ class Objects:
         }
         if not self.round:
             moves["restitution"] = partial(_livelier, self)
-        if self.pedestal is not None:
+        if self.pedestals:
             moves["mass"] = partial(_heavier, self)
         if self.scan is not None:
             moves["contact"] = partial(_carried_by, self, self.scan)
@@ -212,7 +228,7 @@ def _wider(objects: Objects, factor: float) -> Objects:
     return replace(
         objects,
         statue=wider(objects.statue, factor),
-        pedestal=None if objects.pedestal is None else wider(objects.pedestal, factor),
+        pedestals=tuple(wider(block, factor) for block in objects.pedestals),
     )
 
 
@@ -245,7 +261,7 @@ def _heavier(objects: Objects, factor: float) -> Objects:
 
 
 def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
-    """Make the object and its pedestal of checked settings.
+    """Make the object and what it stands on of checked settings.
 
     Parameters
     ----------
@@ -267,22 +283,20 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         scan, statue, plane = _from_mesh(settings, folder, assumed)
     else:
         statue, plane = _from_dimensions(settings, assumed, doubts)
-    pedestal = None
-    if "pedestal" in settings:
-        pedestal = _pedestal(settings["pedestal"], settings, assumed)
-        try:
-            Stack(pedestal, statue)
-        except InputError as error:
-            raise InputError(f"key pedestal: {error}") from None
-    for block in (statue, pedestal):
-        if block is not None and (doubt := size_warning(block.width, block.height)):
+    pedestals = _pedestals(settings, assumed)
+    try:
+        stacked((*pedestals, statue))
+    except InputError as error:
+        raise InputError(f"key pedestal: {error}") from None
+    for block in (statue, *pedestals):
+        if doubt := size_warning(block.width, block.height):
             doubts.append(doubt + ".")
     first = [_of_the_base(is_round, "mesh" in settings)]
     if not is_round and "restitution" not in settings:
         first.append(_RESTITUTION)
     objects = Objects(
         statue=statue,
-        pedestal=pedestal,
+        pedestals=pedestals,
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),
         tolerances=_tolerances(settings),
@@ -291,7 +305,10 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         scan=scan,
         assumed=(*first, *assumed),
         doubts=tuple(doubts),
+        pad_friction=settings.get("pad_friction"),
     )
+    if objects.round and objects.pad_friction is not None:
+        raise InputError("key pad_friction: is not simulated under a round base; leave it out.")
     _check_restitution(objects)
     return objects
 
@@ -339,22 +356,16 @@ def _tolerances(settings: Mapping[str, Any]) -> Mapping[str, float]:
 
 
 def _check_restitution(objects: Objects) -> None:
-    """Refuse a restitution that goes with nothing else, or with which an impact would gain energy."""
+    """Refuse a restitution that has no effect, or with which an impact would gain energy."""
     e = objects.restitution
-    if objects.friction is not None and (e is not None or objects.round):
-        other = "a round base" if objects.round else "a measured restitution"
-        raise InputError(
-            f"key friction: sliding is not simulated together with {other}; leave one out."
-        )
     if e is None:
         return
     if objects.round:
         raise InputError(
             "key restitution: a round base rolls on its rim and is taken to lose nothing; leave it out."
         )
-    body = objects.body
-    blocks = [body.pedestal, body.contact_statue] if isinstance(body, Stack) else [body]
-    most = min(largest_restitution(block) for block in blocks)
+    shapes = objects.body.system().carried
+    most = min(geometry.largest_restitution(shape, pole) for shape in shapes for pole in (1, -1))
     if e > most:
         raise InputError(
             f"key restitution: with {e:g} an impact of this object would gain energy, as its centre of gravity "
@@ -512,10 +523,20 @@ def _in_keys(words: str) -> str:
     return words.replace("'.", ".") if "mesh.up" in words else words
 
 
+def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[Block, ...]:
+    """What the object stands on, from below."""
+    given = settings.get("pedestal", [])
+    found = [
+        _pedestal(one, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
+        for i, one in enumerate(given, start=1)
+    ]
+    return tuple(reversed(found))
+
+
 def _pedestal(
-    given: Mapping[str, Any], settings: Mapping[str, Any], assumed: list[Assumption]
+    given: Mapping[str, Any], settings: Mapping[str, Any], assumed: list[Assumption], name: str
 ) -> Block:
-    """The pedestal in the plane in which the statue rocks."""
+    """A pedestal, called by a name, in the plane in which the statue rocks."""
     width, height = float(given["width_m"]), float(given["height_m"])
     depth = float(given.get("depth_m", width))
     across = settings.get("depth_m", math.inf) < settings.get("width_m", math.inf)
@@ -526,8 +547,8 @@ def _pedestal(
         mass = STONE * width * depth * height
         assumed.append(
             Assumption(
-                f"the pedestal weighs {mass:.3g} kg",
-                f"The pedestal weighs {mass:.3g} kg, as a box of stone ({STONE:g} kg/m³).",
+                f"{name} weighs {mass:.3g} kg",
+                f"{name[0].upper()}{name[1:]} weighs {mass:.3g} kg, as a box of stone ({STONE:g} kg/m³).",
                 ("mass",),
             )
         )

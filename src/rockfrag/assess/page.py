@@ -98,13 +98,14 @@ def _live(found: Assessment) -> Markup:
     """
     if found.request.objects.round:
         return Markup("")
-    order = np.argsort(found.verdicts.first_levels(), kind="stable")
+    order = np.argsort(found.counted.first_levels(), kind="stable")
     places = dict.fromkeys(int(order[int(part * (order.size - 1))]) for part in LIVE)
     chosen = [replace(found.motions.base[i], name=_name_of(found, i)) for i in places]
     motions = carried([motion for motion in chosen if motion.pga > 0])
     if not motions:
         return Markup("")
-    return live_kernel(found.request.objects.arrangements, motions)
+    bodies = found.request.objects.arrangements
+    return live_kernel({name: body.system() for name, body in bodies.items()}, motions)
 
 
 def _name_of(found: Assessment, i: int) -> str:
@@ -221,7 +222,8 @@ def _arrangements(found: Assessment) -> Section:
             "components at once are not simulated either."
         )
     if len(found.by_arrangement) > 1:
-        words.append("On the floor is also what remains if the pedestal is fixed to it.")
+        stand = found.request.objects.stand
+        words.append(f"On the floor is also what remains with the {stand} fixed to it.")
     message = positions(found)
     return Section(
         "arrangements",
@@ -416,7 +418,7 @@ def _glossary(found: Assessment) -> Section:
 
 
 def _motions(found: Assessment) -> Section:
-    first = found.verdicts.first_levels()
+    first = found.counted.first_levels()
     order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
     table = pd.DataFrame(
         {

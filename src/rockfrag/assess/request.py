@@ -4,7 +4,7 @@ import math
 import os
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -35,15 +35,19 @@ class Level:
         The intensity measure.
     value
         Its value, in its unit.
+    pgv
+        Peak velocity that comes with it [cm/s]; NaN where it is not known, or the measure itself.
     """
 
     measure: Measure
     value: float
+    pgv: float = math.nan
 
     @property
     def words(self) -> str:
-        """Such as ``PGA 0.25 g``."""
-        return f"{self.measure.name} {self.value:.3g} {self.measure.unit}"
+        """Such as ``PGA 0.25 g``, or ``PGA 0.25 g and PGV 20 cm/s``."""
+        more = "" if math.isnan(self.pgv) else f" and PGV {self.pgv:.3g} cm/s"
+        return f"{self.measure.name} {self.value:.3g} {self.measure.unit}{more}"
 
 
 @dataclass(frozen=True)
@@ -90,6 +94,8 @@ class Request:
         Time for the probability [year].
     records
         Where the motions come from.
+    value
+        What the object is worth, in any unit; NaN if not given.
     """
 
     name: str
@@ -99,6 +105,7 @@ class Request:
     hazard: tuple[HazardCurve, ...] = ()
     years: float = YEARS
     records: Records = field(default_factory=Records)
+    value: float = math.nan
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
@@ -138,7 +145,7 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
     InputError
         If a key or value is not understood, or what they say does not fit together.
     """
-    known = checked(dict(settings), "statue", source)
+    known = _checked(settings, source)
     where = folder or Path()
     try:
         return Request(
@@ -154,23 +161,38 @@ def make_request(settings: Mapping[str, Any], source: str, folder: Path | None =
         raise InputError(f"{source}: {error}") from None
 
 
+def _checked(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """Check the keys; one pedestal is a list of one, which messages do not say."""
+    given = dict(settings)
+    single = isinstance(given.get("pedestal"), Mapping)
+    if single:
+        given["pedestal"] = [given["pedestal"]]
+    try:
+        return checked(given, "statue", source)
+    except InputError as error:
+        words = str(error)
+        raise InputError(words.replace("pedestal[0]", "pedestal") if single else words) from None
+
+
 def _level(settings: Mapping[str, Any]) -> Level | None:
-    given = [key for key in ("pga", "pgv", "sa") if key in settings]
-    if len(given) > 1:
+    if "pga" in settings and "sa" in settings:
         raise InputError(
-            f"key {given[0]} and key {given[1]} are both given; give one level of shaking."
+            "key pga and key sa are both given; give one of them, and key pgv beside it where it is known."
         )
-    if not given:
-        return None
-    if given == ["pgv"]:
-        return _sensible(
-            "pgv", Level(PGV, _of("pgv", settings["pgv"], "m_s") * CENTIMETRES_PER_METRE)
-        )
-    if given == ["pga"]:
-        return _sensible("pga", Level(PGA, _of("pga", settings["pga"], "m_s2") / GRAVITY))
-    period, value = settings["sa"]
-    measure = read_measure(f"SA({_of('sa', period, 's'):g})", "key sa")
-    return _sensible("sa", Level(measure, _of("sa", value, "m_s2") / GRAVITY))
+    velocity = None
+    if "pgv" in settings:
+        value = _of("pgv", settings["pgv"], "m_s") * CENTIMETRES_PER_METRE
+        velocity = _sensible("pgv", Level(PGV, value))
+    found = velocity
+    if "pga" in settings:
+        found = _sensible("pga", Level(PGA, _of("pga", settings["pga"], "m_s2") / GRAVITY))
+    if "sa" in settings:
+        period, acceleration = settings["sa"]
+        measure = read_measure(f"SA({_of('sa', period, 's'):g})", "key sa")
+        found = _sensible("sa", Level(measure, _of("sa", acceleration, "m_s2") / GRAVITY))
+    if found is None or velocity is None or found is velocity:
+        return found
+    return replace(found, pgv=velocity.value)
 
 
 def _of(key: str, given: str, unit: str) -> float:
@@ -226,7 +248,10 @@ def _hazard(settings: Mapping[str, Any], folder: Path) -> tuple[HazardCurve, ...
     if years is not None:
         if level is None:
             raise InputError("key return_period: give the level it belongs to, such as pga 0.25 g.")
-        return (curve_of_one_level(level.measure, level.value, years),)
+        curves = [curve_of_one_level(level.measure, level.value, years)]
+        if math.isfinite(level.pgv):
+            curves.append(curve_of_one_level(PGV, level.pgv, years))
+        return tuple(curves)
     if not files and "years" in settings:
         raise InputError(
             "key years: a probability in some years needs a hazard; give key hazard or key return_period too."

@@ -7,6 +7,8 @@ velocity that comes with a given PGA, is in the motions and so in the shares and
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rockfrag.fragility.model_error import MODEL_ERRORS
+
 SPACE = 0.13
 """Standard deviation of ln level of the second horizontal component, |ln(0.47 g / 0.54 g)|: the median level of
 a box of 0.35 × 0.35 × 1.2 m in space under both components of 25 records of FEMA P-695 over that along one of
@@ -91,7 +93,10 @@ SOURCES: Mapping[str, Source] = {
     ),
     "model": Source(
         "the error of the planar rocking model",
-        "ln(16.9/13.9) of the median level, seen on one measured rock to which the model had been fitted",
+        "Simulated against measured medians, "
+        + "; ".join(
+            f"{kind}: {one.blind:g} of ln level, {one.words}" for kind, one in MODEL_ERRORS.items()
+        ),
     ),
     "space": Source(
         "both horizontal components at once",
@@ -104,6 +109,11 @@ SOURCES: Mapping[str, Source] = {
         "How far the mean PGV of a site's motions may be from that of the set, by magnitude, distance, ground "
         "and site",
         Measurement("the ground velocity (PGV) of the site", 0.0),
+    ),
+    "together": Source(
+        "how peak acceleration and velocity occur together",
+        "± 25 % of the spread of ln PGV at a given level, of ours; two hazard curves do not say it, and about "
+        "magnitude, distance and ground it is that of the set",
     ),
     "hazard": Source(
         "the hazard curve",

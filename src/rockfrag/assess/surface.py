@@ -22,7 +22,9 @@ _OPTIONS = {
 """Options that are not called as their keys are."""
 
 _UNITS = ("_kg_m2", "_years", "_km", "_kg", "_m", "_s")
-_KEY = re.compile(r"(?<!\w)key ([a-z_][a-z0-9_.]*[a-z0-9_])(\[\d+\])?(: true\b|: (?=[xyz]\b))?")
+_KEY = re.compile(
+    r"(?<!\w)key ([a-z_][a-z0-9_.]*[a-z0-9_])(\[\d+\](?:\.[a-z_]+)?)?(: true\b|: (?=[xyz]\b))?"
+)
 
 
 def on_command_line(words: str, given: Collection[str] | None = None) -> str:

@@ -20,8 +20,9 @@ from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.rocking.inputs import checked_threads
-from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.system.blocks import Block, Body
+from rockfrag.system.blocks import Body
+from rockfrag.system.contact import Friction
+from rockfrag.system.system import System
 
 Floats = NDArray[np.float64]
 
@@ -30,6 +31,12 @@ LEVELS = 80
 
 FEW_LEVELS = 28
 """Levels for what is only compared, and for many objects."""
+
+FEWEST_LEVELS = 14
+"""Levels for what is only compared of many objects."""
+
+MOST_TESTS = 400_000
+"""Tests that are simulated at once, which bounds the memory of their results."""
 
 RANGE = (0.05, 8.0)
 """Lowest and highest level over the median of the motions as recorded."""
@@ -65,6 +72,10 @@ class Ladder:
     allowed: NDArray[np.bool_]
 
 
+AT_REST = 1e-9
+"""Factor of motions that are not counted: at rest costs nothing."""
+
+
 def believable_scales(base: Sequence[Motion]) -> Floats:
     """Largest factor on each motion at which it is still one that a floor may feel, shape (motions, 1)."""
     return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
@@ -87,7 +98,7 @@ def make_ladder(
         Number of other levels.
     """
     values = motions.values(measure)
-    middle = float(np.median(values))
+    middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
     scales = levels / values[:, np.newaxis]
@@ -212,10 +223,7 @@ def verdicts_of(
     ladder
         The levels.
     """
-    restitution = [objects.restitution_of(body) for body in bodies.values()]
-    rolling = [objects.rolling(body) for body in bodies.values()]
-    found = _shaken(list(bodies.values()), restitution, rolling, motions, ladder)
-    return dict(zip(bodies, found, strict=True))
+    return verdicts_of_each([objects], [bodies], motions, ladder)[0]
 
 
 def verdicts_of_all(
@@ -232,78 +240,92 @@ def verdicts_of_all(
     ladder
         The levels.
     """
-    bodies = [one.body for one in objects]
-    restitution = [one.restitution_of(one.body) for one in objects]
-    rolling = [one.rolling(one.body) for one in objects]
-    return _shaken(bodies, restitution, rolling, motions, ladder)
+    bodies = [{"": one.body} for one in objects]
+    return [found[""] for found in verdicts_of_each(objects, bodies, motions, ladder)]
+
+
+def verdicts_of_each(
+    objects: Sequence[Objects],
+    bodies: Sequence[Mapping[str, Body]],
+    motions: MotionSet,
+    ladder: Ladder,
+) -> list[dict[str, Verdicts]]:
+    """Shake several bodies of each of several objects by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        The objects.
+    bodies
+        Bodies of each by name.
+    motions
+        The motions.
+    ladder
+        The levels.
+    """
+    every = [
+        (one, body) for one, named in zip(objects, bodies, strict=True) for body in named.values()
+    ]
+    systems = [one.system_of(body) for one, body in every]
+    rolling = [one.rolling(body) for one, body in every]
+    most = max(1, MOST_TESTS // ladder.scales.size)
+    found: list[Verdicts] = []
+    for i in range(0, len(systems), most):
+        found += _shaken(systems[i : i + most], rolling[i : i + most], motions, ladder)
+    each = iter(found)
+    return [{name: next(each) for name in named} for named in bodies]
 
 
 def _shaken(
-    bodies: Sequence[Body],
-    restitution: Sequence[Restitution],
-    rolling: Sequence[Block | None],
+    systems: Sequence[System],
+    rolling: Sequence[System | None],
     motions: MotionSet,
     ladder: Ladder,
 ) -> list[Verdicts]:
-    """Verdicts of planar bodies; round ones that are free to roll are shaken in space.
+    """Outcomes of planar bodies; round ones that are free to roll are shaken in space.
 
     On a pedestal that may lift both answers count: what falls in either falls.
     """
-    if not bodies:
-        return []
     if motions.worst:
-        planar = [i for i, body in enumerate(bodies) if rolling[i] is None or body.blocks[1:]]
-        found = dict(
-            zip(
-                planar,
-                _shaken_from_all_sides(
-                    [bodies[i] for i in planar], [restitution[i] for i in planar], motions, ladder
-                ),
-                strict=True,
-            )
-        )
-        space = [i for i, one in enumerate(rolling) if one is not None]
-        rolled = _rolled([rolling[i] for i in space], motions, ladder)
-        for i, one in zip(space, rolled, strict=True):
-            found[i] = one if i not in found else found[i].joined(one)
-        return [found[i] for i in range(len(bodies))]
-    # what is beyond is not counted, and need not be simulated as it is
-    scales = np.minimum(ladder.scales, believable_scales(motions.base))
-    result, light = simulated(bodies, motions.base, scales, restitution)
+        planar = [i for i, one in enumerate(rolling) if one is None or systems[i].count > 1]
+        fallen = _shaken_from_all_sides([systems[i] for i in planar], motions, ladder)
+        found = dict(zip(planar, fallen, strict=True))
+        for i, one in enumerate(rolling):
+            if one is not None:
+                rolled = _rolled(one, motions, ladder)
+                found[i] = found[i].joined(rolled) if i in found else rolled
+        return [found[i] for i in range(len(systems))]
+    scales = np.where(ladder.allowed, ladder.scales, AT_REST)
+    scales = np.minimum(scales, believable_scales(motions.base))
+    result, light = simulated(systems, motions.base, scales)
     rocked = limit_state_named("rocks").reached(result)
     return [
         Verdicts(ladder, result.overturned[i], rocked[i], motions.events, light)
-        for i in range(len(bodies))
+        for i in range(len(systems))
     ]
 
 
 def simulated(
-    bodies: Sequence[Body],
-    shaking: Sequence[Motion],
-    scales: Floats,
-    restitution: Sequence[Restitution],
+    systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Simulated, bool]:
     """What happened, and whether a body may have left the ground, which an assessment says in its own words.
 
     Parameters
     ----------
-    bodies
+    systems
         What is shaken.
     shaking
         Motions of what it stands on.
     scales
         Factors on them, shape (motions, levels).
-    restitution
-        Of each body.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
         result = overturns(
-            bodies,
+            systems,
             [motion.acceleration for motion in shaking],
             [motion.dt for motion in shaking],
             scales,
-            restitution=restitution,
         )
     light = [issubclass(one.category, LightBodies) for one in caught]
     for one, known in zip(caught, light, strict=True):
@@ -312,56 +334,81 @@ def simulated(
     return result, any(light)
 
 
-def _rolled(bodies: Sequence[Block | None], motions: MotionSet, ladder: Ladder) -> list[Verdicts]:
-    """Verdicts of round bodies in space under both components of each record, where it has two."""
-    if not bodies:
-        return []
+def _rolled(body: System, motions: MotionSet, ladder: Ladder) -> Verdicts:
+    """Outcomes of a round body in space under both components of each record, where it has two."""
     paired = {i for pair in motions.pairs for i in pair}
     shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
     shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
     first = [pair[0] for pair in motions.pairs]
     first += [i for i in range(len(motions.base)) if i not in paired]
-    scales = np.minimum(ladder.scales[first], believable_scales(motions.base)[first])
-    result = run_in_space(
-        [body for body in bodies if body is not None],
-        shaking,
-        scales,
-        threads=checked_threads(None),
-    )
+    scales = np.where(ladder.allowed, ladder.scales, AT_REST)[first]
+    scales = np.minimum(scales, believable_scales(motions.base)[first])
+    result = run_in_space([body], shaking, scales, threads=checked_threads(None))
     moves = limit_state_named("rocks").reached(result)
     place = np.zeros(len(motions.base), dtype=np.intp)
     place[first] = np.arange(len(first))
     for one, other in motions.pairs:
         place[other] = place[one]
-    return [
-        Verdicts(ladder, result.overturned[i][place], moves[i][place], motions.events)
-        for i in range(len(bodies))
-    ]
+    fell, rocked = result.overturned[0][place], moves[0][place]
+    return Verdicts(ladder, fell, rocked, motions.events)
 
 
 def _shaken_from_all_sides(
-    bodies: Sequence[Body], restitution: Sequence[Restitution], motions: MotionSet, ladder: Ladder
+    systems: Sequence[System], motions: MotionSet, ladder: Ladder
 ) -> list[Verdicts]:
     """Verdicts by records, each in its worst direction; both components of a record get that of the record."""
-    if not bodies:
+    if not systems:
         return []
     records = motions.turned(WORST_STEP_DEG)
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
     scales = np.minimum(ladder.scales[of_row], believable_scales(shaking))
-    result, light = simulated(bodies, shaking, scales, restitution)
+    scales = np.where(ladder.allowed[of_row], scales, AT_REST)
+    result, light = simulated(systems, shaking, scales)
     # the place of the record that stands for each motion
     place = np.arange(len(motions.base))
     for first, second in motions.pairs:
         place[second] = first
     found = []
     moves = limit_state_named("rocks").reached(result)
-    for i in range(len(bodies)):
+    for i in range(len(systems)):
         fell, rocked = (np.zeros(ladder.scales.shape, dtype=bool) for _ in range(2))
         np.logical_or.at(fell, of_row, result.overturned[i])
         np.logical_or.at(rocked, of_row, moves[i])
         found.append(Verdicts(ladder, fell[place], rocked[place], motions.events, light))
     return found
+
+
+def on_pad(
+    objects: Objects, friction: float, motions: MotionSet, ladder: Ladder
+) -> tuple[Verdicts, Floats]:
+    """Outcomes of the object on a pad on which it may slide, and how far it does.
+
+    Parameters
+    ----------
+    objects
+        The object as it is.
+    friction
+        Coefficient of friction of the pad, which lies between the object and what it stands on [-].
+    motions
+        The motions.
+    ladder
+        The levels.
+
+    Returns
+    -------
+    outcomes, slip
+        The largest displacement on the pad [m] has the shape (motions, levels).
+    """
+    system = objects.system_of(objects.body)
+    *below, pad = system.contacts
+    pad = replace(pad, friction=Friction(friction, friction))
+    system = replace(system, contacts=(*below, pad))
+    scales = np.where(ladder.allowed, ladder.scales, AT_REST)
+    result = overturns(system, motions.base, scales=scales)
+    rocked = limit_state_named("rocks").reached(result)[0]
+    outcomes = Verdicts(ladder, result.overturned[0], rocked, motions.events)
+    return outcomes, result.peak_slip[0, ..., -1]
 
 
 def share_with_sliding(
@@ -383,14 +430,12 @@ def share_with_sliding(
     level
         The level, in the measure's unit.
     """
-    body = objects.body
     scales = level / motions.values(measure)
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
     fallen = overturns(
-        body,
+        objects.system_of(objects.body),
         motions.base,
         scales=np.minimum(scales[:, np.newaxis], believable_scales(motions.base)),
-        restitution=[objects.restitution_of(body)],
         friction=objects.friction,
     ).overturned[0, :, 0]
     return float(fallen[allowed].mean())

@@ -63,7 +63,12 @@ def estimate_words(estimate: Estimate) -> str:
 
 def _range(estimate: Estimate) -> str:
     """The limits of an interval, such as ``1.3 to 18 %``."""
-    return f"{_limit(estimate.lower)} to {_limit(estimate.upper)} %"
+    return range_words(estimate.lower, estimate.upper)
+
+
+def range_words(lower: float, upper: float) -> str:
+    """Two limits in per cent, such as ``1.3 to 18 %``."""
+    return f"{_limit(lower)} to {_limit(upper)} %"
 
 
 def _limit(share: float) -> str:
@@ -441,7 +446,7 @@ def assumptions(found: Assessment) -> list[str]:
         lines.append(found.conversion.words)
     if found.hazard:
         lines.append(f"Hazard: {found.hazard.source}, {found.hazard.measure.name}.")
-    factor = found.verdicts.ladder.allowed.mean()
+    factor = found.counted.ladder.allowed.mean()
     lines.append(
         f"Motions are scaled by {1 / LARGEST_FACTOR:g} to {LARGEST_FACTOR:g} at most, which admits "
         f"{100 * factor:.0f} % "
@@ -459,6 +464,8 @@ def doubts(found: Assessment) -> list[str]:
             lines.append(
                 f"{found.request.level.words} is exceeded {rate:.2g} times a year by this hazard; check both."
             )
+    if found.conversion and (beyond := found.conversion.beyond(found.level)):
+        lines.append(beyond)
     if found.hazard is not None:
         strong = float(found.hazard.level(1 / 475))
         least, most = {"PGA": (0.01, 2.0), "SA": (0.01, 6.0), "PGV": (0.5, 250.0)}[

@@ -10,7 +10,6 @@ in it shows an equilibrium that was missed.
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockfrag.building.hysteresis import (
     AIM_NEG,
@@ -28,8 +27,6 @@ from rockfrag.building.modes import damping_matrix, find_modes
 from rockfrag.building.response import BuildingResponse, EnergyLedger
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
-
-Floats = NDArray[np.float64]
 
 LONGEST_STEP = 2e-4
 """Longest step [s]: halving it changes floor peaks of the reference building by less than 0.1 %."""

@@ -1,6 +1,6 @@
 """Simulation against measurement as a referee wants it: shares with intervals, both errors, rivals, regions."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
@@ -81,7 +81,7 @@ def paired_row(
 def fragility_beside(
     measure: Floats,
     measured: Bools,
-    simulated: Mapping[str, Bools],
+    simulated: Mapping[str, Bools | Floats],
     groups: NDArray[np.int64],
     *,
     level: float,
@@ -95,7 +95,7 @@ def fragility_beside(
     measure
         Intensity measure of each test.
     simulated
-        Verdicts by name, shape (tests,) each.
+        Verdicts by name, or the part of votes to overturn, shape (tests,) each.
     groups
         Motions; the bootstrap draws them whole.
     level, replicates, seed
@@ -114,7 +114,7 @@ def fragility_beside(
     )
     weights = np.vstack([np.ones((1, len(measure))), weights])
     curves = {
-        name: _curves(measure, verdicts, weights)
+        name: curves_of(measure, verdicts, weights)
         for name, verdicts in {"measured": measured, **simulated}.items()
     }
     tails = [(1 - level) / 2, (1 + level) / 2]
@@ -123,20 +123,38 @@ def fragility_beside(
         row: dict[str, object] = {"who": name}
         for i, parameter in enumerate(("theta", "beta")):
             row[parameter] = curve[0, i]
-            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = np.nanquantile(
-                curve[1:, i], tails
-            )
+            row[f"{parameter}_lower"], row[f"{parameter}_upper"] = _limits(curve[1:, i], tails)
             if name != "measured":
                 ratio = curve[:, i] / curves["measured"][:, i]
                 row[f"{parameter}_ratio"] = ratio[0]
-                limits = np.nanquantile(ratio[1:], tails)
+                limits = _limits(ratio[1:], tails)
                 row[f"{parameter}_ratio_lower"], row[f"{parameter}_ratio_upper"] = limits
         rows.append(row)
     return pd.DataFrame(rows)
 
 
-def _curves(measure: Floats, verdicts: Bools, weights: Floats) -> Floats:
-    """θ and β for each row of weights, shape (rows, 2); NaN where no curve rises."""
+def _limits(values: Floats, tails: Sequence[float]) -> Floats:
+    """Quantiles of what is a number; NaN where no resample gives a curve, as of one kind of outcome."""
+    known = values[np.isfinite(values)]
+    return np.quantile(known, tails) if known.size else np.full(len(tails), np.nan)
+
+
+def curves_of(measure: Floats, verdicts: Bools | Floats, weights: Floats) -> Floats:
+    """Fit a lognormal curve for each row of weights.
+
+    Parameters
+    ----------
+    measure
+        Intensity measure of each test, shape (tests,).
+    verdicts
+        Whether, or in which part of its votes, each overturned, shape (tests,) or (rows, tests).
+    weights
+        Weight of each test, shape (rows, tests).
+
+    Returns
+    -------
+    θ and β, shape (rows, 2); NaN where no curve rises.
+    """
     design = np.column_stack([np.ones(len(measure)), np.log(measure)])
     coefficients = fit_batch(design, weights * verdicts, weights).coefficients
     slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)

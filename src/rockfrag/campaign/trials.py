@@ -8,6 +8,7 @@ evenly (scrambled Sobol points).
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,9 +16,11 @@ from scipy.stats import qmc
 
 from rockfrag.errors import InputError
 from rockfrag.rocking.measured_restitution import largest_restitution
+from rockfrag.rocking.options import system_of
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.system.mesh import Shape
+from rockfrag.system.system import System
 
 UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution")
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
@@ -36,17 +39,14 @@ class Trials:
     table
         One row a trial: the unknowns, ``left_m`` and ``right_m`` (edge distances from the centre of gravity)
         and ``alpha_deg`` (the smaller critical angle).
-    bodies
-        The planar block of each trial.
-    restitution
-        What each takes in impacts; None conserves momentum.
+    systems
+        What stood on the table in each trial.
     refused
         Guesses under which the object could not have stood.
     """
 
     table: pd.DataFrame
-    bodies: tuple[Block, ...]
-    restitution: tuple[float | None, ...]
+    systems: tuple[System, ...]
     refused: int
 
     __repr__ = short_repr
@@ -79,15 +79,16 @@ def sample_trials(
     """
     names = [name for name in UNKNOWNS if name in ranges]
     points = qmc.Sobol(len(names), scramble=True, rng=np.random.default_rng(seed)).random(count)
-    rows, bodies, restitution = [], [], []
+    rows, systems = [], []
     for point in points:
         guess = {name: _value(name, ranges[name], u) for name, u in zip(names, point, strict=True)}
         try:
-            block = _block(thing, guess)
+            block = block_of(thing, guess)
         except InputError:
             continue
-        bodies.append(block)
-        restitution.append(_possible(block, guess["restitution"]))
+        systems.append(
+            system_of(block, restitution=possible_restitution(block, guess["restitution"]))
+        )
         angle = min(block.critical_angle(+1), block.critical_angle(-1))
         rows.append(
             {
@@ -102,14 +103,67 @@ def sample_trials(
             f"unknowns: under none of {count} guesses could the object have stood; widen contact_tolerance_mm "
             "or lower edge_retreat_mm."
         )
-    return Trials(pd.DataFrame(rows), tuple(bodies), tuple(restitution), count - len(rows))
+    return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
 
 
-def _block(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
+OUTER, CROWDED = 0.1, 0.25
+"""An end of a range is preferred if its outer tenth holds more than a quarter of the plausible trials: ours."""
+
+
+_NOTHING_BEYOND = (("edge_retreat_mm", 0.0), ("restitution", 1.0))
+
+
+def preferred_edges(
+    trials: pd.DataFrame, plausible: Any, ranges: Mapping[str, tuple[float, float]]
+) -> dict[str, str]:
+    """Say at which ends of their ranges plausible trials crowd.
+
+    Parameters
+    ----------
+    trials
+        Table of :class:`Trials`.
+    plausible
+        Labels of its plausible rows.
+    ranges
+        Lowest and highest value of each unknown; directions all around have no end.
+
+    Returns
+    -------
+    dict
+        ``low end`` or ``high end`` by unknown.
+    """
+    found = {}
+    for name, limits in ranges.items():
+        if name == "direction_deg" and limits[1] - limits[0] >= 360:
+            continue
+        # by rank, so that where few trials can stand few are expected
+        rank = trials[name].rank(pct=True)[plausible]
+        ends = ((limits[0], "low end", rank <= OUTER), (limits[1], "high end", rank > 1 - OUTER))
+        for limit, edge, at in ends:
+            if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
+                found[name] = edge
+    return found
+
+
+def block_of(thing: Shape | Block, guess: Mapping[str, float]) -> Block:
+    """The planar block of a guess.
+
+    Parameters
+    ----------
+    thing
+        A shape, or the planar block itself.
+    guess
+        Its unknowns.
+
+    Raises
+    ------
+    InputError
+        If it could not stand.
+    """
     retreat = guess["edge_retreat_mm"] / 1e3
-    if isinstance(thing, Block):
-        return replace(thing, width=thing.width - 2 * retreat)
-    return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
+    if isinstance(thing, Shape):
+        return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
+    return replace(thing, width=thing.width - 2 * retreat)
 
 
 def _value(name: str, limits: tuple[float, float], share: float) -> float:
@@ -119,6 +173,14 @@ def _value(name: str, limits: tuple[float, float], share: float) -> float:
     return float(low + (high - low) * share)
 
 
-def _possible(block: Block, restitution: float) -> float | None:
-    """Restitution above the value that conserves momentum is that value."""
+def possible_restitution(block: Block, restitution: float) -> float | None:
+    """Restitution above the value that conserves momentum is that value, None.
+
+    Parameters
+    ----------
+    block
+        The block.
+    restitution
+        Ratio of angular velocities [-].
+    """
     return restitution if restitution < largest_restitution(block) else None

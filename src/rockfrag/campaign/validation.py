@@ -16,6 +16,9 @@ from rockfrag.short_repr import short_repr
 STANDARD_ERRORS = 2.0
 """A trial is plausible if its share of right verdicts is within this many standard errors of the best."""
 
+FEWEST_VOTERS = 10
+"""Plausible trials below which votes say little: with ten they are tenths."""
+
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 

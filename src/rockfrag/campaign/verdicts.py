@@ -24,7 +24,7 @@ def simulate_tests(
     Parameters
     ----------
     trials
-        Bodies and restitutions.
+        What stood on the table in each.
     motions
         Motion of the table in each test.
     threads
@@ -36,15 +36,10 @@ def simulate_tests(
     -------
     Whether the object overturns, and whether it rocks at all, each of shape (trials, tests).
     """
-    overturned, rocked = np.zeros((2, len(trials.bodies), len(motions)), dtype=bool)
+    overturned, rocked = np.zeros((2, len(trials.systems), len(motions)), dtype=bool)
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]
-        result = overturns(
-            trials.bodies,
-            batch,
-            restitution=trials.restitution,
-            threads=threads,
-        )
+        result = overturns(trials.systems, batch, threads=threads)
         overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
         rocked[:, first : first + len(batch)] = result.peak_rotation[:, :, 0, 0] > 0
         done(first + len(batch))

@@ -4,15 +4,13 @@ import numpy as np
 
 from rockfrag.engines.kernels.equations import BODY
 from rockfrag.input_checks import positive_number
+from rockfrag.laws import Told, law_named, momentum, ratio
 from rockfrag.system import geometry
 from rockfrag.system.contact import ImpactLaw
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-After = tuple[int, float]
-"""Law and number of the impacts that end on one pivot, as the kernels have them (``kernels.equations.AFTER``)."""
-
-BY_MOMENTUM: After = (geometry.MOMENTUM, 1.0)
+BY_MOMENTUM: Told = (momentum.NUMBER, 1.0)
 FIELDS = ("after1r", "after1l", "after2r", "after2l")
 
 
@@ -52,7 +50,7 @@ def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.
     return p
 
 
-def afters(system: System) -> tuple[After, ...]:
+def afters(system: System) -> tuple[Told, ...]:
     """Return how ground and interface come off impacts that end on their right and left pivots.
 
     Of a lone body, which the interface stands for, all laws are the same.
@@ -61,7 +59,7 @@ def afters(system: System) -> tuple[After, ...]:
         law = system.contacts[0].law
         if law.name == "momentum":
             return (BY_MOMENTUM,) * 4
-        return BY_MOMENTUM, BY_MOMENTUM, (geometry.RATIO, law.right), (geometry.RATIO, law.left)
+        return BY_MOMENTUM, BY_MOMENTUM, (ratio.NUMBER, law.right), (ratio.NUMBER, law.left)
     return tuple(
         after_impact(contact.law, shape, pivot)
         for contact, shape in zip(system.contacts, system.carried, strict=True)
@@ -69,13 +67,6 @@ def afters(system: System) -> tuple[After, ...]:
     )
 
 
-def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> After:
-    """Law and number of the impacts of a contact that end on a pivot of the body above it."""
-    if law.name == "momentum":
-        return BY_MOMENTUM
-    value = law.right if pivot > 0 else law.left
-    if law.name == "ratio":
-        return geometry.RATIO, value
-    if law.name == "position":
-        return geometry.by_position(shape, value, pivot)
-    return geometry.COUPLE, value / geometry.momentum_restitution(shape, pivot)
+def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> Told:
+    """What the kernels are told of the impacts of a contact that end on a pivot of the body above it."""
+    return law_named(law.name).tell(shape, law.right if pivot > 0 else law.left, pivot)

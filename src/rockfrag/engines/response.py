@@ -27,7 +27,7 @@ PATTERNS = {
     (0, 1): "4a",
     (0, -1): "4b",
 }
-"""Names of thesis Fig. 2.3 for the contact states (ground, interface)."""
+"""Names of the contact states (ground, interface): the modes of Psycharis (1990) to both sides."""
 
 FLIGHT = 2
 """Contact state of an interface that is open at both ends."""
@@ -48,7 +48,7 @@ LETTERS = {0: "0", +1: "R", -1: "L", FLIGHT: "F"}
 def pattern_name(states: Sequence[int]) -> str:
     """Name of a pattern, of the contact states from below.
 
-    Of one and two bodies that of the thesis, or "flight"; of more a letter per contact from below: 0 stands, R and
+    Of one and two bodies that of `PATTERNS`, or "flight"; of more a letter per contact from below: 0 stands, R and
     L rocks on its right and left end, F flies.
     """
     if len(states) > 2:

@@ -4,15 +4,13 @@ import math
 from collections.abc import Hashable, Mapping
 from typing import Any
 
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
+
 REJECTED = 0.05
 """A curve is said not to describe its data below this p value [-]."""
 
-BETA_MODEL = math.log(16.9 / 13.9)
-"""Uncertainty of the median that comes from the planar rocking model [-].
-
-The one comparison with tests at hand: a scanned granite rock shaken 490 times overturned at a median PGV of
-13.9 cm/s, simulated as a planar block at 16.9 cm/s.
-"""
+OF_THE_MODEL = MODEL_ERRORS[CUT]
+"""Error of the model in curves of studies, whose bodies are cut blocks."""
 
 
 def total_beta(beta: float, beta_statistical: float) -> float:
@@ -21,7 +19,7 @@ def total_beta(beta: float, beta_statistical: float) -> float:
     A statistical part that is not known (NaN) is left out.
     """
     known = beta_statistical if math.isfinite(beta_statistical) else 0.0
-    return math.sqrt(beta**2 + known**2 + BETA_MODEL**2)
+    return math.sqrt(beta**2 + known**2 + OF_THE_MODEL.blind**2)
 
 
 def curve_facts(row: Mapping[Hashable, Any]) -> str:
@@ -42,7 +40,8 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
         median = f"{statistical:.3f}" if math.isfinite(statistical) else "not known"
         parts.append(
             f"Beta of the motions {float(row['beta']):.3f}, of the estimated median {median}, of the model "
-            f"{BETA_MODEL:.3f}; together {total_beta(float(row['beta']), statistical):.3f}."
+            f"{OF_THE_MODEL.blind:.3f}; together {total_beta(float(row['beta']), statistical):.3f}. "
+            f"That of the model is of a {CUT}: {OF_THE_MODEL.words}."
         )
     if _known(row, "p_fit"):
         parts.append(f"Goodness of fit p = {float(row['p_fit']):.3f}.")

@@ -17,10 +17,10 @@ from rockfrag.fragility.checks import REJECTION
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.identifiers import identifiers
 from rockfrag.fragility.observations import Floats
+from rockfrag.motions.declared import declared, measure_labelled
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
 
 NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
-STATES = ("rocks", "slides", "overturned")
-"""Limit states in the order in which a body passes them."""
 
 STEP = 0.01
 """β with which an exact threshold, a step, is written [-]; the formats take no step."""
@@ -30,7 +30,8 @@ CROSSING = 1e-9
 _STEPS = np.linspace(-4.0, 4.0, 33)
 """Levels of a discrete function around each median, in standard deviations."""
 
-_SPECTRAL = re.compile(r"^SA\((?P<period>[\d.]+)s\)$")
+_FACTORS = {"g": {"g": 1.0, "m/s²": 1.0 / constants.g}, "cm/s": {"cm/s": 1.0, "m/s": 100.0}}
+"""Factors from units to that of OpenQuake."""
 
 
 def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
@@ -39,24 +40,21 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     Raises
     ------
     InputError
-        If OpenQuake has no such ground measure; only PGA, PGV, SA and AvgSA are written.
+        If OpenQuake has no such ground measure.
     """
-    spectral = _SPECTRAL.match(name)
-    if name in ("PGA", "AvgSA") or spectral:
-        factors = {"g": 1.0, "m/s²": 1.0 / constants.g}
-    elif name == "PGV":
-        factors = {"cm/s": 1.0, "m/s": 100.0}
-    else:
+    measure = measure_labelled(name)
+    if measure is None or not measure.openquake or name == measure.floor_label:
+        known = ", ".join(dict.fromkeys(one.openquake for one in declared() if one.openquake))
         raise InputError(
-            f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves "
-            "in PGA, PGV, SA or AvgSA."
+            f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves in one of {known}."
         )
+    factors = _FACTORS.get(measure.unit, {measure.unit: 1.0})
     if unit not in factors:
         raise InputError(
             f"NRML: {name} in {unit or 'no unit'} cannot be converted; use {' or '.join(factors)}."
         )
-    imt = f"SA({float(spectral['period']):g})" if spectral else name
-    return imt, factors[unit]
+    period = "" if measure.period is None else f"({measure.period:g})"
+    return measure.openquake + period, factors[unit]
 
 
 def lognormal_moments(theta: float, beta: float) -> tuple[float, float]:
@@ -83,8 +81,8 @@ def write_nrml(
     table
         One row per configuration and limit state (one estimator and one measure each), as
         :func:`rockfrag.fragility.sweeps.fragility_table` gives them; a column ``state`` names the limit
-        state (`STATES`), without it all are ``overturned``. A column ``floor`` must be empty: only
-        motions of the ground are known to OpenQuake.
+        state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be
+        empty: only motions of the ground are known to OpenQuake.
     path
         File to write.
     identifier
@@ -111,13 +109,14 @@ def write_nrml(
     for row in table.to_dict("records"):
         taxonomy = taxonomies[str(row[by])]
         states = rows.setdefault(taxonomy, {})
-        state = str(row.get("state", "overturned"))
+        state = limit_state_named(str(row.get("state", OVERTURNS))).name
         if state in states:
             raise InputError(
                 f"NRML: {taxonomy!r} has two curves; choose one estimator and one measure for each."
             )
         states[state] = row
-    known = [state for state in STATES if any(state in states for states in rows.values())]
+    used = {state for states in rows.values() for state in states}
+    known = [state.name for state in limit_states() if state.name in used]
     root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
     model = ElementTree.SubElement(
         root,

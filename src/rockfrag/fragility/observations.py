@@ -1,6 +1,5 @@
 """The observations that every fragility estimator starts from, checked once at the door."""
 
-import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,37 +8,11 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.errors import InputError
+from rockfrag.motions.declared import measure_of, split_column
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
 """An array of floating-point numbers."""
-
-_UNITS = {
-    "g": "g",
-    "cm_s": "cm/s",
-    "m_s": "m/s",
-    "m_s2": "m/s²",
-    "cm": "cm",
-    "m": "m",
-    "s": "s",
-    "1_s": "1/s",
-    "hz": "Hz",
-}
-_SUFFIX = re.compile(r"^(?P<name>.+?)_(?P<unit>g|cm_s|m_s2|m_s|cm|m|1_s|s|hz)$")
-
-_SPECTRAL = re.compile(r"^(?P<kind>sa|sv|sd)_(?P<whole>\d+)(_(?P<part>\d+))?s$")
-_NAMES = {
-    "arias": "Arias intensity",
-    "pgv_over_pga": "PGV/PGA",
-    "d5_75": "D5-75",
-    "d5_95": "D5-95",
-    "housner": "Housner intensity",
-    "avgsa": "AvgSA",
-    "pfa": "PFA",
-    "pfv": "PFV",
-    "uplift_ratio": "a/(g tan α)",
-    "velocity_ratio": "p PGV/(g tan α)",
-}
 
 
 @dataclass(frozen=True)
@@ -155,17 +128,11 @@ def name_and_unit(column: str) -> tuple[str, str]:
 
     A name without a known unit is returned whole, with an empty unit.
     """
-    found = _SUFFIX.match(column)
-    name, unit = (found["name"], _UNITS[found["unit"]]) if found else (column, "")
-    if name in {"amplitude", "input"}:
-        return "PGA", unit
-    spectral = _SPECTRAL.match(name)
-    if spectral:
-        period = f"{float(spectral['whole'] + '.' + (spectral['part'] or '0')):g}"
-        return f"{spectral['kind'].upper()}({period}s)", unit
-    if name in {"pga", "pgv", "pgd", "cav"}:
-        return name.upper(), unit
-    return _NAMES.get(name, name.replace("_", " ")), unit
+    found = measure_of(column)
+    if found is not None:
+        return found.label, found.unit
+    name, unit = split_column(column)
+    return name.replace("_", " "), unit
 
 
 def numbers(table: pd.DataFrame, column: str, source: str = "table") -> Floats:

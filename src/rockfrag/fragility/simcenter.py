@@ -13,23 +13,27 @@ from rockfrag.errors import InputError
 from rockfrag.files import write_table, write_text
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.identifiers import identifiers
-from rockfrag.fragility.nrml import STATES, STEP, points_of
+from rockfrag.fragility.nrml import STEP, points_of
 from rockfrag.fragility.observations import Floats
+from rockfrag.motions.declared import declared
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
 
-_DEMANDS = {
-    "PGA": ("Peak Ground Acceleration", {"g": "g", "m/s²": "mps2"}),
-    "PGV": ("Peak Ground Velocity", {"cm/s": "cmps", "m/s": "mps"}),
-    "PFA": ("Peak Floor Acceleration", {"g": "g", "m/s²": "mps2"}),
-    "PFV": ("Peak Floor Velocity", {"cm/s": "cmps", "m/s": "mps"}),
-}
+_UNITS = {"g": {"g": "g", "m/s²": "mps2"}, "cm/s": {"cm/s": "cmps", "m/s": "mps"}}
+"""What SimCenter calls the units of measures in these."""
+
 BEYOND = 2.0
 """Where a curve without a form that ends below 1 reaches it, as a multiple of its last level."""
 
-_REPAIR = {
-    "rocks": ("Rocks and may be displaced", "Inspect and put back"),
-    "slides": ("Slides and may be displaced", "Inspect and put back"),
-    "overturned": ("Overturned", "Restore or replace the object"),
-}
+
+def _demands() -> dict[str, tuple[str, dict[str, str]]]:
+    """Name and units of each demand, by what curves call the measure at the ground and on a floor."""
+    known = [one for one in declared() if one.demand]
+    return {
+        label: (f"Peak {place} {one.demand}", _UNITS[one.unit])
+        for one in known
+        for label, place in ((one.label, "Ground"), (one.floor_label, "Floor"))
+        if label
+    }
 
 
 def write_simcenter(
@@ -47,7 +51,7 @@ def write_simcenter(
     table
         One row per configuration and limit state (one estimator and one measure each), as
         :func:`rockfrag.fragility.sweeps.fragility_table` gives them; a column ``state`` names the limit
-        state (:data:`rockfrag.fragility.nrml.STATES`), without it all are ``overturned``. PGA and PGV
+        state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. PGA and PGV
         are demands of the ground, PFA and PFV of the floor on which the object stands.
     csv_path, json_path
         Files to write.
@@ -77,14 +81,14 @@ def write_simcenter(
     for row in table.to_dict("records"):
         identifier = f"ROCKFRAG.{known[str(row[by])]}"
         states = components.setdefault(identifier, {})
-        state = str(row.get("state", "overturned"))
+        state = limit_state_named(str(row.get("state", OVERTURNS))).name
         if state in states:
             raise InputError(
                 f"SimCenter: {identifier} has two curves; choose one estimator and one measure for each."
             )
         states[state] = row
     for name, states in components.items():
-        ordered = {state: states[state] for state in STATES if state in states}
+        ordered = {one.name: states[one.name] for one in limit_states() if one.name in states}
         line, notes[name] = _component(name, ordered, by, shares)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
@@ -101,6 +105,7 @@ def _component(
     limit_states: dict[str, object] = {}
     line: dict[str, object] = {}
     said = []
+    known = _demands()
     for number, (state, row) in enumerate(states.items(), start=1):
         name, im, unit = str(row[by]), str(row["im"]), str(row["unit"])
         theta, beta = float(str(row["theta"])), float(str(row["beta"]))
@@ -108,12 +113,12 @@ def _component(
             theta > 0 and beta > 0 and beta < math.inf
         ):
             raise InputError(f"SimCenter: {name!r} has no lognormal curve; leave the row out.")
-        if im not in _DEMANDS or unit not in _DEMANDS[im][1]:
+        if im not in known or unit not in known[im][1]:
             raise InputError(
                 f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "
                 "in g, PGV or PFV in cm/s."
             )
-        demand, units = _DEMANDS[im]
+        demand, units = known[im]
         demands.add((demand, units[unit]))
         levels, share = points_of(shares, by, name, state)
         family: str = "lognormal"
@@ -126,8 +131,9 @@ def _component(
             f"LS{number}-Theta_1": parameters[1],
             f"LS{number}-DamageStateWeights": "",
         }
-        words, repair = _REPAIR[state]
-        damage = {"Description": words, "RepairAction": repair}
+        reached = limit_state_named(state)
+        words = reached.damage or reached.label
+        damage = {"Description": words, "RepairAction": reached.repair}
         limit_states[f"LS{number}"] = {f"DS{number}": damage}
         facts = curve_facts(row)
         if levels.size and share[-1] < 1.0:

@@ -55,7 +55,7 @@ class ThreeStates:
     Attributes
     ----------
     threshold_g
-        Peak acceleration above which the body rocks [g], exact (thesis eq. 2.1: a > (b/h) g).
+        Peak acceleration above which the body rocks [g], exact (Kirkpatrick, 1927: a > (b/h) g).
     rock
         Curve of P(rock | IM); None where the measure is the peak acceleration itself, for which
         P(rock) steps from 0 to 1 at the threshold.
@@ -114,12 +114,8 @@ def fit_three_states(
         Column of the intensity measure of the curves.
     acceleration
         Column of the peak acceleration of the test [g].
-    motion
-        Column with the name of the motion; None where tests have none.
-    event
-        Column with the name of the event; None where it is not known.
-    level
-        Of the confidence limits [-], 0 to 1.
+    motion, event, level
+        As of :func:`rockfrag.fragility.fit_cloud`.
 
     Returns
     -------

@@ -146,7 +146,7 @@ def linearly_separable(design: Floats, verdict: Floats) -> bool:
     """Tell whether a plane parts overturned from survived tests (ties on the plane allowed).
 
     Solves for the direction c, |c| ≤ 1, that maximises Σ s x·c subject to s x·c ≥ 0, with s = ±1
-    the verdict; a maximum above zero means separation (Konis, 2007, thesis, Oxford, ch. 4).
+    the verdict; a maximum above zero means separation (Konis, 2007, ch. 4).
     """
     signed = np.where(verdict > 0, 1.0, -1.0)[:, None] * design
     found = optimize.linprog(

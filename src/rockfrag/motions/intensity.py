@@ -8,19 +8,30 @@ trapezoidal sum of a² is also the exact energy of the band-limited signal that 
 and steps that scale to a measure are named long before they are taken.
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.motions.checks import not_negative, positive
+from rockfrag.motions.declared import intensity_measure
 from rockfrag.records.integration import peak_displacement, peak_velocity
 from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY
 
+if TYPE_CHECKING:
+    from rockfrag.motions.pulse_extraction import StrongestPulse
+    from rockfrag.motions.spectra import ResponseSpectrum
+
 Floats = NDArray[np.float64]
 
 
+@intensity_measure(
+    "g", power=1, label="PGA", compared=True, decimals=3, openquake="PGA", demand="Acceleration", floor_label="PFA"
+)  # fmt: skip
 def pga(motion: Motion) -> float:
     """Peak absolute acceleration [m/s²].
 
@@ -36,8 +47,11 @@ def pga(motion: Motion) -> float:
     return motion.pga
 
 
+@intensity_measure(
+    "cm/s", power=1, label="PGV", compared=True, decimals=1, openquake="PGV", demand="Velocity", floor_label="PFV"
+)  # fmt: skip
 def pgv(motion: Motion) -> float:
-    """Peak absolute velocity from rest [m/s], between samples too; thesis Table 3.3.
+    """Peak absolute velocity from rest [m/s], between samples too.
 
     Parameters
     ----------
@@ -51,8 +65,9 @@ def pgv(motion: Motion) -> float:
     return peak_velocity(motion.acceleration, motion.dt)
 
 
+@intensity_measure("cm", power=1, label="PGD", compared=True, decimals=2)
 def pgd(motion: Motion) -> float:
-    """Peak absolute displacement from rest [m], between samples too; thesis Table 3.3.
+    """Peak absolute displacement from rest [m], between samples too.
 
     Parameters
     ----------
@@ -66,6 +81,7 @@ def pgd(motion: Motion) -> float:
     return peak_displacement(motion.acceleration, motion.dt)
 
 
+@intensity_measure("s", power=0, label="PGV/PGA", decimals=3)
 def pgv_over_pga(motion: Motion) -> float:
     """PGV/PGA [s]; NaN for a motion of zeros.
 
@@ -99,6 +115,7 @@ def cumulative_arias(motion: Motion) -> Floats:
     return np.asarray(energy * (math.pi / (2 * GRAVITY)))
 
 
+@intensity_measure("m/s", power=2, label="Arias intensity", compared=True, decimals=2)
 def arias(motion: Motion) -> float:
     """Arias intensity π/(2g) ∫ a² dt [m/s], by the trapezoidal rule on the samples.
 
@@ -117,6 +134,7 @@ def arias(motion: Motion) -> float:
     return float(cumulative_arias(motion)[-1])
 
 
+@intensity_measure("m/s", power=1, label="CAV")
 def cav(motion: Motion) -> float:
     """Cumulative absolute velocity ∫ |a| dt [m/s] by the trapezoidal rule (EPRI 1988, NP-5930).
 
@@ -178,6 +196,23 @@ def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.9
     return end - start
 
 
+@intensity_measure("s", power=0, label="D5-75", name="d5_75")
+def _d5_75(motion: Motion) -> float:
+    return significant_duration(motion, 0.05, 0.75)
+
+
+@intensity_measure(
+    "s",
+    power=0,
+    label="D5-95",
+    name="d5_95",
+    decimals=1,
+    title="Significant duration, 5–95 %",
+)
+def _d5_95(motion: Motion) -> float:
+    return significant_duration(motion, 0.05, 0.95)
+
+
 def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
     """First and last time at which |a| reaches ``threshold`` [m/s²] [s]; NaN where it never does.
 
@@ -200,6 +235,7 @@ def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
     return float(above[0] * motion.dt), float(above[-1] * motion.dt)
 
 
+@intensity_measure("s", power=0, label="mean period", decimals=2, title="Mean period")
 def mean_period(motion: Motion) -> float:
     """Mean period Tm = Σ C²/f / Σ C² over 0.25 ≤ f ≤ 20 Hz [s]; NaN where there is no such content.
 
@@ -229,6 +265,7 @@ PREDOMINANT_PERIODS = np.geomspace(0.02, 10.0, 541)
 """Periods searched for the predominant one [s]: 200 in a decade, 1.2 % apart."""
 
 
+@intensity_measure("s", power=0, label="predominant period")
 def predominant_period(motion: Motion) -> float:
     """Period Tp of the largest 5 % damped PSA [s]; NaN for a motion of zeros.
 
@@ -370,24 +407,18 @@ AVERAGE_PERIODS = np.linspace(0.2, 2.0, 10)
 """Periods over which the average spectral acceleration is taken [s]."""
 
 
-def average_spectral_acceleration(motion: Motion, damping: float = 0.05) -> float:
-    """Geometric mean of the pseudo-spectral acceleration at `AVERAGE_PERIODS`, AvgSA [m/s²].
-
-    Eads, Miranda and Lignos (2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no
-    period of its own, so the periods are those from which its overturning threshold feels the motion.
-    """
-    from rockfrag.motions.side_by_side import peak_displacements
-
-    return _average(peak_displacements(motion, AVERAGE_PERIODS, damping))
-
-
 def _average(displacement: Floats) -> float:
     spectrum = displacement * (2 * math.pi / AVERAGE_PERIODS) ** 2
     return float(np.prod(spectrum ** (1 / spectrum.size)))
 
 
 def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, float]:
-    """`housner_intensity` [m] and `average_spectral_acceleration` [m/s²] of one march of all oscillators."""
+    """`housner_intensity` [m] and AvgSA [m/s²], by one integration of all oscillators.
+
+    AvgSA is the geometric mean of the pseudo-spectral acceleration at `AVERAGE_PERIODS` (Eads, Miranda and
+    Lignos, 2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no period of its own, so the
+    periods are those from which its overturning threshold feels the motion.
+    """
     from rockfrag.motions.side_by_side import peak_displacements
 
     periods = np.concatenate([HOUSNER_PERIODS, AVERAGE_PERIODS])
@@ -397,8 +428,63 @@ def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, f
     )
 
 
+@intensity_measure(
+    "g", power=1, label="SA", name="sa", spectral=True, compared=True, openquake="SA"
+)
+def _sa(spectrum: ResponseSpectrum) -> Floats:
+    return spectrum.pseudo_acceleration
+
+
+@intensity_measure("cm/s", power=1, label="SV", name="sv", spectral=True)
+def _sv(spectrum: ResponseSpectrum) -> Floats:
+    return spectrum.velocity
+
+
+@intensity_measure("cm", power=1, label="SD", name="sd", spectral=True)
+def _sd(spectrum: ResponseSpectrum) -> Floats:
+    return spectrum.displacement
+
+
+@intensity_measure(
+    "g", power=1, label="AvgSA", shared=housner_and_average, compared=True, openquake="AvgSA"
+)
+def avgsa(found: tuple[float, float]) -> float:
+    """`average_spectral_acceleration` [m/s²] of what :func:`housner_and_average` found."""
+    return found[1]
+
+
+@intensity_measure(
+    "cm", power=1, label="Housner intensity", shared=housner_and_average, compared=True
+)
+def housner(found: tuple[float, float]) -> float:
+    """`housner_intensity` [m] of what :func:`housner_and_average` found."""
+    return found[0]
+
+
+def _pulse(motion: Motion, damping: float) -> StrongestPulse:
+    from rockfrag.motions.pulse_extraction import strongest_pulse
+
+    return strongest_pulse(motion)
+
+
+@intensity_measure("s", power=0, label="pulse period", name="pulse_period", shared=_pulse)
+def _pulse_period(pulse: StrongestPulse) -> float:
+    return pulse.period
+
+
+@intensity_measure("cm/s", power=1, label="pulse velocity", name="pulse_velocity", shared=_pulse)
+def _pulse_velocity(pulse: StrongestPulse) -> float:
+    return pulse.velocity
+
+
+@intensity_measure("", power=0, label="pulse explained", name="pulse_explained", shared=_pulse)
+def _pulse_explained(pulse: StrongestPulse) -> float:
+    return pulse.explained
+
+
+@intensity_measure("", power=1, label="a/(g tan α)", of_block=True)
 def uplift_ratio(motion: Motion, alpha: float) -> float:
-    """Peak acceleration over that which starts rocking, a/(g tan α) [-]; thesis eq. 2.1.
+    """Peak acceleration over that which starts rocking, a/(g tan α) [-] (Kirkpatrick, 1927).
 
     Parameters
     ----------
@@ -420,6 +506,7 @@ def uplift_ratio(motion: Motion, alpha: float) -> float:
     return pga(motion) / (GRAVITY * math.tan(alpha))
 
 
+@intensity_measure("", power=1, label="p PGV/(g tan α)", of_block=True)
 def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
     """Dimensionless velocity p PGV/(g tan α) [-].
 
@@ -433,7 +520,7 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
     alpha
         Critical angle of the block [rad].
     p
-        Frequency parameter of the block [1/s]; thesis eq. 2.16.
+        Frequency parameter of the block [1/s] (Housner, 1963).
 
     Returns
     -------
@@ -449,6 +536,7 @@ def velocity_ratio(motion: Motion, alpha: float, p: float) -> float:
     return p * pgv(motion) / (GRAVITY * math.tan(alpha))
 
 
+@intensity_measure("", power=0, label="frequency ratio", of_block=True)
 def frequency_ratio(pulse_period: float, p: float) -> float:
     """Pulse frequency over frequency parameter, ωp/p = 2π/(Tp p) [-].
 

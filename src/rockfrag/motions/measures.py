@@ -1,6 +1,5 @@
 """Tables of intensity measures, a row per motion, with the unit in the name of each column."""
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -11,15 +10,12 @@ from rockfrag.errors import InputError
 from rockfrag.keywords import named_keywords
 from rockfrag.motions import intensity
 from rockfrag.motions.checks import positive
+from rockfrag.motions.declared import SPECTRAL_PERIODS, declared, intensity_measures
 from rockfrag.motions.pulse_extraction import strongest_pulse
 from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.processes import in_processes
 from rockfrag.records.motion import Motion
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
-
-SPECTRAL_PERIODS = (0.3, 1.0)
-"""Periods at which a table gives the 5 % damped spectrum unless others are asked for [s]."""
 
 
 @named_keywords
@@ -51,31 +47,20 @@ def measure_motion(
     InputError
         If a period is not positive or the damping negative.
     """
-    pulse = strongest_pulse(motion)
-    pga, pgv = intensity.pga(motion), intensity.pgv(motion)
-    housner, average = intensity.housner_and_average(motion, damping)
-    cm = CENTIMETRES_PER_METRE
-    return {
+    values: dict[str, Any] = {
         "name": motion.name,
         "event": str(motion.metadata.get("event", "")),
         "floor": str(motion.metadata.get("floor", "")),
-        "pga_g": pga / GRAVITY,
-        "pgv_cm_s": pgv * cm,
-        "pgd_cm": intensity.pgd(motion) * cm,
-        "pgv_over_pga_s": pgv / pga if pga > 0 else math.nan,
-        "arias_m_s": intensity.arias(motion),
-        "cav_m_s": intensity.cav(motion),
-        "d5_75_s": intensity.significant_duration(motion, 0.05, 0.75),
-        "d5_95_s": intensity.significant_duration(motion, 0.05, 0.95),
-        "mean_period_s": intensity.mean_period(motion),
-        "predominant_period_s": intensity.predominant_period(motion),
-        **_spectral(motion, periods, damping),
-        "avgsa_g": average / GRAVITY,
-        "housner_cm": housner * cm,
-        "pulse_period_s": pulse.period,
-        "pulse_velocity_cm_s": pulse.velocity * cm,
-        "pulse_explained": pulse.explained,
     }
+    spectral = _spectral(motion, periods, damping)
+    shared: dict[Any, Any] = {None: motion}
+    for measure in intensity_measures(periods):
+        if measure.shared not in shared:
+            shared[measure.shared] = measure.shared(motion, damping)  # type: ignore[misc]
+        known = measure.period is not None
+        column = measure.column
+        values[column] = spectral[column] if known else measure.of(shared[measure.shared])
+    return values
 
 
 def measure_motions(
@@ -207,8 +192,7 @@ def measure_pair(
     def all_measures(motion: Motion) -> dict[str, float]:
         spectral = _spectral(motion, periods, damping)
         return {
-            "pga_g": intensity.pga(motion) / GRAVITY,
-            "pgv_cm_s": intensity.pgv(motion) * CENTIMETRES_PER_METRE,
+            **{one.column: one.of(motion) for one in declared() if one.name in ("pga", "pgv")},
             **{name: value for name, value in spectral.items() if name.startswith("sa_")},
         }
 
@@ -224,10 +208,9 @@ def _spectral(motion: Motion, periods: Sequence[float], damping: float) -> dict[
     if not periods:
         return {}
     spectrum = response_spectrum(motion, periods, damping)
-    values: dict[str, float] = {}
-    for i, period in enumerate(spectrum.period):
-        label = f"{period:.12g}".replace(".", "_") + ("" if period % 1 else "_0") + "s"
-        values[f"sa_{label}_g"] = float(spectrum.pseudo_acceleration[i]) / GRAVITY
-        values[f"sv_{label}_cm_s"] = float(spectrum.velocity[i]) * CENTIMETRES_PER_METRE
-        values[f"sd_{label}_cm"] = float(spectrum.displacement[i]) * CENTIMETRES_PER_METRE
-    return values
+    families = [one for one in declared() if one.spectral]
+    return {
+        one.at(period).column: float(one.of(spectrum)[i])
+        for i, period in enumerate(spectrum.period.tolist())
+        for one in families
+    }

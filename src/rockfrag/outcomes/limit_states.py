@@ -1,15 +1,26 @@
-"""Limit states: what may become of an object, each declared once, read by curves, exports and figures."""
+"""Limit states: what may become of an object, each declared once.
+
+Sweeps have a column for each that is counted; curves, exports, figures and assessments read them by name.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes
+from rockfrag.system.system import System
 
 Predicate = Callable[[Outcomes], NDArray[np.bool_]]
+
+OVERTURNS = "overturns"
+"""Name of the limit state that every sweep counts."""
+
+VISIBLE = 0.001
+"""Slip above which a body counts as having slid [m]: a displacement that one sees."""
 
 
 @dataclass(frozen=True)
@@ -26,18 +37,37 @@ class LimitState:
         What figures and reports call it.
     reached
         Which cases have reached it, shape (systems, motions, scales).
+    damage, repair
+        What it means for the object, and what is done then, for models of damage.
+    exact
+        Whether it is reached at a peak acceleration that is known exactly, so that sweeps do not count it.
+    slipping
+        Whether only systems with friction reach it.
     """
 
     name: str
     order: int
     label: str
     reached: Predicate
+    damage: str = ""
+    repair: str = ""
+    exact: bool = False
+    slipping: bool = False
+
+    @property
+    def column(self) -> str:
+        """Name of its column in the table of a sweep."""
+        return "overturned" if self.name == OVERTURNS else self.name
+
+    def counted(self, system: System) -> bool:
+        """Whether the sweep of a system has a column for it."""
+        return not self.exact and (system.loose or not self.slipping)
 
 
 _STATES: dict[str, LimitState] = {}
 
 
-def limit_state(name: str, order: int, label: str) -> Callable[[Predicate], Predicate]:
+def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Predicate], Predicate]:
     """Declare the function below as the predicate of a limit state.
 
     Parameters
@@ -48,19 +78,23 @@ def limit_state(name: str, order: int, label: str) -> Callable[[Predicate], Pred
         Its place among the others, the milder first.
     label
         What figures and reports call it.
+    more
+        As of :class:`LimitState`.
 
     Raises
     ------
     InputError
-        If the name is taken.
+        If the name is taken, or is not one word, as exports write several in a line.
     """
+    if not name.isidentifier():
+        raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")
 
     def declare(predicate: Predicate) -> Predicate:
         if name in _STATES:
             raise InputError(
                 f"limit state {name!r} is declared twice; give the second another name."
             )
-        _STATES[name] = LimitState(name, order, label, predicate)
+        _STATES[name] = LimitState(name, order, label, predicate, **more)
         return predicate
 
     return declare
@@ -90,18 +124,38 @@ def forget_limit_state(name: str) -> None:
     _STATES.pop(name, None)
 
 
-@limit_state("rocks", order=10, label="rocking")
+@limit_state(
+    "rocks",
+    order=10,
+    label="rocking",
+    damage="Rocks and may be displaced",
+    repair="Inspect and put back",
+    exact=True,
+)
 def _rocks(outcomes: Outcomes) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
         return np.asarray((outcomes.peak_rotation > 0).any(axis=-1))
 
 
-@limit_state("slides", order=20, label="sliding")
+@limit_state(
+    "slides",
+    order=20,
+    label="sliding",
+    damage="Slides and may be displaced",
+    repair="Inspect and put back",
+    slipping=True,
+)
 def _slides(outcomes: Outcomes) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
-        return np.asarray((outcomes.peak_slip > 0).any(axis=-1))
+        return np.asarray((outcomes.peak_slip > VISIBLE).any(axis=-1)) | outcomes.overturned
 
 
-@limit_state("overturns", order=90, label="overturning")
+@limit_state(
+    OVERTURNS,
+    order=90,
+    label="overturning",
+    damage="Overturned",
+    repair="Restore or replace the object",
+)
 def _overturns(outcomes: Outcomes) -> NDArray[np.bool_]:
     return outcomes.overturned

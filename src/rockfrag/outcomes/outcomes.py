@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.outcomes.columns import Column, Table, column
+from rockfrag.outcomes.columns import SUFFIXES, Column, Table, column
 from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]
@@ -161,6 +161,37 @@ class Outcomes:
         """Return a column of bodies or contacts of the uppermost one, shape (systems, motions, scales)."""
         values = getattr(self, name)
         return np.stack([values[i, ..., count - 1] for i, count in enumerate(self.counts)])
+
+    def of_any(self, name: str) -> NDArray[Any]:
+        """Return a column of bodies or contacts of the one in which it is largest, or least of least values.
+
+        The shape is (systems, motions, scales).
+        """
+        pick = np.fmin if name.startswith("least") else np.fmax
+        return np.asarray(pick.reduce(getattr(self, name), axis=-1))
+
+    def wide(self, system: int, columns_of: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """Return columns of one system with a number per case, the scale running fastest.
+
+        Parameters
+        ----------
+        system
+            Position of the system.
+        columns_of
+            Attributes; one of bodies or contacts becomes a column for each, numbered from below, such as
+            ``peak_slip_contact_1_m``.
+        """
+        found = {}
+        for one in (each for each in columns() if each.name in columns_of):
+            values = getattr(self, one.name)[system]
+            if one.table == "cases":
+                found[one.title] = values.ravel()
+                continue
+            part = "body" if one.table == "bodies" else "contact"
+            for k in range(self.counts[system]):
+                name = f"{one.name}_{part}_{k + 1}{SUFFIXES[one.unit]}"
+                found[name] = values[..., k].ravel()
+        return found
 
     def table(
         self, which: Table = "cases", columns_of: Sequence[str] | None = None

@@ -1,4 +1,3 @@
-from .explanation import explain as explain
 from .paired_tests import (
     Pairs as Pairs,
     check_tests as check_tests,

@@ -1,64 +1,17 @@
-"""Bootstrap over motions or events: intervals that bend with the data, and rank probabilities."""
+"""How often each level is the largest when motions or events are drawn again."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
-from scipy import special
 
-from rockfrag.pedestal.cluster_means import ROUNDING, Array
+from rockfrag.pedestal.cluster_means import Array
 
 DRAWS = 9_999
 
 DRAWN_AT_ONCE = 2_000_000
 """Numbers drawn at a time; the stream of random numbers does not depend on it."""
-
-
-def bca_interval(
-    values: npt.ArrayLike,
-    seed: int,
-    *,
-    statistic: Callable[[Array], Array] = lambda x: np.mean(x, axis=-1),
-    confidence: float = 0.95,
-    draws: int = DRAWS,
-) -> tuple[float, float]:
-    """Bias-corrected and accelerated bootstrap interval (Efron 1987).
-
-    Parameters
-    ----------
-    values
-        One value per independent unit (the mean of d of a motion), shape (n,).
-    seed
-        Of the resampling.
-    statistic
-        Function of an array, along its last axis.
-
-    Returns
-    -------
-    tuple of float
-        Lower and upper limit; NaN for one value, and where all values agree, for then there is
-        nothing to resample.
-    """
-    x = np.asarray(values, dtype=float)
-    n = x.size
-    if n < 2:
-        return np.nan, np.nan
-    if np.ptp(x) < ROUNDING:
-        return np.nan, np.nan
-    observed = float(statistic(x))
-    samples = _samples(np.random.default_rng(seed), n, draws)
-    drawn = np.sort(np.concatenate([statistic(x[chosen]) for chosen in samples]))
-    below = (np.sum(drawn < observed) + 0.5 * np.sum(drawn == observed)) / draws
-    bias = special.ndtri(np.clip(below, 0.5 / draws, 1 - 0.5 / draws))
-    left_out = np.array([float(statistic(np.delete(x, i))) for i in range(n)])
-    deviation = left_out.mean() - left_out
-    acceleration = float(np.sum(deviation**3) / (6 * np.sum(deviation**2) ** 1.5))
-    tail = (1 - confidence) / 2
-    z = bias + special.ndtri([tail, 1 - tail])
-    levels = special.ndtr(bias + z / (1 - acceleration * z))
-    lower, upper = np.quantile(drawn, levels)
-    return float(lower), float(upper)
 
 
 def rank_probabilities(
@@ -116,11 +69,6 @@ def rank_probabilities(
             "p_smallest": _share_of(drawn == drawn.min(axis=1, keepdims=True)),
         }
     )
-
-
-def share_largest(ranks: pd.DataFrame, level: str) -> float:
-    """Probability that a level of `rank_probabilities` has the largest mean [-]."""
-    return float(ranks.loc[ranks["level"] == level, "p_largest"].iloc[0])
 
 
 def _resampled(means: Array, rng: np.random.Generator, draws: int) -> Array:

@@ -276,41 +276,6 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
     return found
 
 
-def without_each_event(table: pd.DataFrame) -> dict[str, Estimate]:
-    """`mean_effect` of the rows of all events but one, for each event in turn."""
-    names = sorted(table["event"].unique())
-    if len(names) < 2:
-        return {}
-    if len(names) == 2:
-        # what is sampled of the one that is left are its motions
-        return {name: mean_effect(table[table["event"] != name]) for name in names}
-    d, known = table["d"].to_numpy(dtype=float), _resolution_of(table)
-    _different, place = np.unique(np.round(d, 9) + 0.0, return_inverse=True)
-    event = pd.Categorical(table["event"], names).codes.astype(np.intp)
-    count = np.bincount(place)
-    own, times = np.unique(event * count.size + place, return_counts=True)
-    begin = np.searchsorted(own, np.arange(len(names) + 1) * count.size)
-    work = table[["event", "motion", "d"]]
-
-    def by_event(work: pd.DataFrame) -> Array:
-        motions = work.groupby(["event", "motion"])["d"].mean()
-        return motions.groupby(level="event").mean().to_numpy()
-
-    d_means = by_event(work)
-    hidden_means: dict[int, Array] = {}
-    found = {}
-    for number, name in enumerate(names):
-        rest = count.copy()
-        mine = slice(begin[number], begin[number + 1])
-        rest[own[mine] % count.size] -= times[mine]
-        tied = int(rest.argmax())
-        if tied not in hidden_means:
-            hidden_means[tied] = by_event(work.assign(d=np.where(place == tied, known, 0.0)))
-        resolution = float(np.delete(hidden_means[tied], number).mean())
-        found[name] = t_estimate(np.delete(d_means, number), CONFIDENCE, resolution)
-    return found
-
-
 def slope_effect(
     table: pd.DataFrame, x: str = "s_c", value: str = "d", confidence: float = CONFIDENCE
 ) -> Estimate:

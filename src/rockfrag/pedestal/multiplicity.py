@@ -1,7 +1,5 @@
 """Many tests at once: Holm within a family, Benjamini-Hochberg across all."""
 
-from collections.abc import Callable
-
 import numpy as np
 import numpy.typing as npt
 
@@ -13,32 +11,25 @@ def holm(p: npt.ArrayLike) -> Array:
 
     NaN (a test that could not be made) stays NaN and does not count.
     """
-
-    def adjust(rising: Array) -> Array:
-        return np.maximum.accumulate(rising * np.arange(rising.size, 0, -1))
-
-    return _adjusted(p, adjust)
+    return _adjusted(p, "holm")
 
 
 def benjamini_hochberg(p: npt.ArrayLike) -> Array:
-    """Adjust p values so that the share of false rejections is held (Benjamini, Hochberg 1995).
+    """Adjust p values so that the fraction of false rejections is held (Benjamini, Hochberg 1995).
 
     NaN stays NaN and does not count.
     """
-
-    def adjust(rising: Array) -> Array:
-        shares = np.arange(1, rising.size + 1) / rising.size
-        return np.minimum.accumulate((rising / shares)[::-1])[::-1]
-
-    return _adjusted(p, adjust)
+    return _adjusted(p, "fdr_bh")
 
 
-def _adjusted(p: npt.ArrayLike, adjust: Callable[[Array], Array]) -> Array:
+def _adjusted(p: npt.ArrayLike, method: str) -> Array:
+    from statsmodels.stats.multitest import multipletests
+
     given = np.asarray(p, dtype=float)
-    known = np.flatnonzero(~np.isnan(given))
+    known = ~np.isnan(given)
     if np.any((given[known] < 0) | (given[known] > 1)):
         raise ValueError("a p value lies outside 0 to 1")
     result = np.full(given.shape, np.nan)
-    order = known[np.argsort(given[known])]
-    result[order] = np.minimum(adjust(given[order]), 1.0)
+    if known.any():
+        result[known] = multipletests(given[known], method=method)[1]
     return result

@@ -47,11 +47,6 @@ class Pairs:
 
     __repr__ = short_repr
 
-    @property
-    def balanced(self) -> bool:
-        """Whether every object met every floor of every event exactly once."""
-        return is_balanced(self.table)
-
     def notes(self) -> list[str]:
         """Say in words what is not among the complete pairs."""
         notes = []
@@ -100,13 +95,6 @@ def _some(names: Iterable[str]) -> str:
 
 def _counted(n: int, noun: str) -> str:
     return f"{n} {noun}" if n == 1 else f"{n} {noun}s"
-
-
-def is_balanced(table: pd.DataFrame) -> bool:
-    """Whether pairs fill the grid object x event x floor with one row per cell."""
-    counts = table.groupby(["object", "event", "floor"]).size()
-    cells = int(np.prod([table[name].nunique() for name in ("object", "event", "floor")]))
-    return len(counts) == cells and bool((counts == 1).all())
 
 
 def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
@@ -249,6 +237,38 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
             here = (rows["pedestal"] == "NP") | (rows["configuration"] == name)
             parts.append(rows[here].assign(object=name))
             origin[str(name)] = str(one)
+    return pd.concat(parts, ignore_index=True), origin
+
+
+def with_counterparts(
+    tests: pd.DataFrame, counterparts: Mapping[str, str]
+) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Let arrangements that name their counterpart be compared with it instead of with the object alone.
+
+    Parameters
+    ----------
+    tests
+        See `check_tests`, with the column ``configuration``.
+    counterparts
+        Arrangement with which each one is compared, both by name.
+
+    Returns
+    -------
+    tests
+        The rows; those of each such comparison stand for an object of their own, with the arrangement as P and
+        its counterpart as NP.
+    origin
+        Object by the name of each comparison.
+    """
+    parts = [tests[~tests["configuration"].isin(list(counterparts))]]
+    origin: dict[str, str] = {}
+    for name, other in counterparts.items():
+        label = f"{name} against {other}"
+        for side, configuration in (("P", name), ("NP", other)):
+            rows = tests[tests["configuration"] == configuration]
+            parts.append(rows.assign(object=label, pedestal=side, configuration=configuration))
+            if side == "P" and len(rows):
+                origin[label] = str(rows["object"].iloc[0])
     return pd.concat(parts, ignore_index=True), origin
 
 

@@ -70,16 +70,16 @@ def units_needed(effect: Estimate, power: float = POWER) -> float:
         return math.nan
     if abs(effect.mean) <= max(effect.resolution, 0.0):
         return math.inf
+    from statsmodels.stats.power import TTestPower
+
     if power_of_t(effect.ratio, effect.sd, MOST_UNITS) < power:
         return math.inf
-    low, high = 2, MOST_UNITS
-    while low < high:
-        middle = (low + high) // 2
-        if power_of_t(effect.ratio, effect.sd, middle) >= power:
-            high = middle
-        else:
-            low = middle + 1
-    return float(low)
+    if power_of_t(effect.ratio, effect.sd, 2) >= power:
+        return 2.0
+    found = TTestPower().solve_power(
+        abs(effect.mean) / effect.sd, alpha=LEVEL / 2, power=power, alternative="larger"
+    )
+    return float(math.ceil(found))
 
 
 def power_note(effect: Estimate, unit: str = "event") -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.bootstrap import bca_interval, rank_probabilities
+from rockfrag.pedestal.bootstrap import rank_probabilities
 from rockfrag.pedestal.censored import CensoredFit, fit_censored
 from rockfrag.pedestal.cluster_means import (
     ROUNDING,
@@ -19,22 +19,9 @@ from rockfrag.pedestal.cluster_means import (
     unit_means,
 )
 from rockfrag.pedestal.equivalence import equivalence
-from rockfrag.pedestal.mixed import (
-    AMPLITUDE,
-    EFFECT,
-    EFFECT_BY_FLOOR,
-    MixedFit,
-    fit_mixed,
-    long_rows,
-)
 from rockfrag.pedestal.multiplicity import benjamini_hochberg, holm
 from rockfrag.pedestal.paired_tests import Pairs, pair_tests
-from rockfrag.pedestal.permutation import (
-    WITHOUT_COLUMNS,
-    leave_one_event_out,
-    sign_flip_test,
-    wilcoxon_exact,
-)
+from rockfrag.pedestal.permutation import WITHOUT_COLUMNS, leave_one_event_out, sign_flip_test
 from rockfrag.pedestal.power import detectable_ratio
 from rockfrag.short_repr import short_repr
 
@@ -56,6 +43,8 @@ EFFECT_COLUMNS = [
     *("detectable_ratio", "resolution_ratio", "tied", "at_bound"),
 ]
 WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
+EQUIVALENCE_LEVEL = 0.05
+"""Equivalence is shown below this p value [-]."""
 _UNITS = {"event": "earthquake"}
 STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
 """Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""
@@ -78,8 +67,6 @@ class PedestalStudy:
         See `rockfrag.pedestal.permutation.leave_one_event_out`.
     ranks
         factor, level, mean ratio, p_largest, p_smallest.
-    mixed
-        Coefficients of the three mixed models, all checked.
     notes
         In words: population, what was left out, what could not be fitted.
     """
@@ -89,7 +76,6 @@ class PedestalStudy:
     whole: pd.DataFrame
     without_event: pd.DataFrame
     ranks: pd.DataFrame
-    mixed: pd.DataFrame
     notes: tuple[str, ...]
 
     __repr__ = short_repr
@@ -167,8 +153,8 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                     "p": effect.p,
                     "p_sign_flip": flips.p,
                     "smallest_p": flips.smallest_p,
-                    "p_equivalence": same.p,
-                    "equivalent": same.shown(),
+                    "p_equivalence": same,
+                    "equivalent": same < EQUIVALENCE_LEVEL,
                     "detectable_ratio": detectable_ratio(effect),
                     "resolution_ratio": math.exp(effect.resolution),
                     "tied": of["tied"],
@@ -182,14 +168,11 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
 
 
 def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -> pd.DataFrame:
-    events, motions = unit_means(table, "event"), unit_means(table, "motion")
-    effect = mean_effect(table)
-    ranks = wilcoxon_exact(motions)
-    flips = sign_flip_test(events, seed)
-    low, high = bca_interval(motions, seed)
+    effect, unit = mean_effect(table), sampled_unit(table)
+    flips = sign_flip_test(unit_means(table, "event"), seed)
     rows: list[tuple[str, float, float, float, float, float, int, str]] = [
         (
-            f"t on the means of {_UNITS.get(sampled_unit(table), sampled_unit(table))}s",
+            f"t on the means of {_UNITS.get(unit, unit)}s",
             effect.mean,
             effect.lower,
             effect.upper,
@@ -197,16 +180,6 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
             np.nan,
             effect.units,
             "keeps its level in the crossed design; the conclusions rest on it",
-        ),
-        (
-            "exact signed ranks and Hodges-Lehmann on motions",
-            ranks.estimate,
-            ranks.lower,
-            ranks.upper,
-            ranks.p,
-            ranks.smallest_p,
-            ranks.units,
-            "treats motions of one earthquake as independent",
         ),
         (
             "sign flips over earthquakes",
@@ -218,28 +191,18 @@ def _whole_tests(table: pd.DataFrame, censored: CensoredFit | None, seed: int) -
             flips.units,
             "exact" if flips.exact else f"drawn with seed {seed}",
         ),
-        (
-            "BCa bootstrap over motions",
-            float(motions.mean()),
-            low,
-            high,
-            np.nan,
-            np.nan,
-            len(motions),
-            f"seed {seed}; treats motions of one earthquake as independent",
-        ),
     ]
     if censored is not None:
-        one = censored.effect
+        likely = censored.effect
         rows.append(
             (
                 "interval likelihood with a random effect of the pair",
-                one.mean,
-                one.lower,
-                one.upper,
-                one.p,
+                likely.mean,
+                likely.lower,
+                likely.upper,
+                likely.p,
                 np.nan,
-                one.units,
+                likely.units,
                 f"{censored.tests} tests, {censored.censored} censored; jackknife over earthquakes",
             )
         )
@@ -277,35 +240,8 @@ def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True).rename(columns={"mean": "ratio"})
 
 
-def _mixed_fits(table: pd.DataFrame) -> tuple[pd.DataFrame, list[str]]:
-    """Fit the models that the design supports; what the data cannot support is said and left out."""
-    frames: list[pd.DataFrame] = []
-    notes: list[str] = []
-    models = [(EFFECT, table)]
-    if len(set(table["floor"])) > 1 and np.ptp(table["s_c"].to_numpy()) > 0:
-        models += [(EFFECT_BY_FLOOR, table), (AMPLITUDE, long_rows(table))]
-    for formula, rows in models:
-        try:
-            fit: MixedFit = fit_mixed(rows, formula)
-        except InputError as error:
-            notes.append(str(error))
-            continue
-        except np.linalg.LinAlgError:
-            notes.append(
-                f"Mixed model {formula}: variances of events, motions and pairs cannot be told apart "
-                "in these pairs; it is left out."
-            )
-            continue
-        frames.append(
-            fit.coefficients.assign(
-                formula=formula,
-                sd_event=fit.sd_event,
-                sd_motion=fit.sd_motion,
-                sd_residual=fit.sd_residual,
-                balanced=fit.balanced,
-            )
-        )
-    return (pd.concat(frames, ignore_index=True) if frames else pd.DataFrame()), notes
+def _tied_of(tied: int, pairs: int) -> str:
+    return "the two tests of the only pair" if pairs == 1 else f"{tied} of {pairs} pairs"
 
 
 def ties_note(table: pd.DataFrame) -> list[str]:
@@ -316,11 +252,11 @@ def ties_note(table: pd.DataFrame) -> list[str]:
     widest = float(table.loc[tied, "resolution"].max())
     if widest == 0:
         return [
-            f"{int(tied.sum())} of {len(table)} pairs have equal amplitudes; the table does not give the steps "
-            "(lower_g, upper_g), so the difference that they exclude is not known"
+            f"{_tied_of(int(tied.sum()), len(table))} agree in their amplitudes; the table does not give the "
+            "steps (lower_g, upper_g), so the difference that they exclude is not known"
         ]
     notes = [
-        f"{int(tied.sum())} of {len(table)} pairs overturned in the same step: each of them excludes a "
+        f"{_tied_of(int(tied.sum()), len(table))} overturned in the same step, which excludes a "
         f"change of {100 * math.expm1(widest):.1f} % or more and no smaller one; no interval is "
         "narrower than the steps of the pairs that agree"
     ]
@@ -335,7 +271,6 @@ def ties_note(table: pd.DataFrame) -> list[str]:
 
 def _no_ratio(pairs: Pairs) -> PedestalStudy:
     """Return the study of tests none of whose pairs has a known ratio: empty tables and a note."""
-    nothing = pd.DataFrame()
     note = (
         "no pair has a known ratio, not even a bound: raise or lower the amplitudes of the protocol"
     )
@@ -345,7 +280,6 @@ def _no_ratio(pairs: Pairs) -> PedestalStudy:
         whole=pd.DataFrame(columns=WHOLE_COLUMNS),
         without_event=pd.DataFrame(columns=WITHOUT_COLUMNS),
         ranks=pd.DataFrame(columns=RANK_COLUMNS),
-        mixed=nothing,
         notes=(*pairs.notes(), note),
     )
 
@@ -372,8 +306,6 @@ def study_pedestal(
     ------
     InputError
         If the table cannot be used.
-    FitDisagreementError
-        If a mixed model contradicts the means of the data.
     """
     pairs = pair_tests(tests, slenderness)
     table = pairs.table
@@ -385,13 +317,11 @@ def study_pedestal(
         censored = fit_censored(tests)
     except InputError as error:
         notes.append(str(error))
-    mixed, mixed_notes = _mixed_fits(table)
     return PedestalStudy(
         pairs=pairs,
         effects=effects_table(table, list(tests["floor"].astype(str).unique())),
         whole=_whole_tests(table, censored, seed),
         without_event=leave_one_event_out(table),
         ranks=_ranks(table, seed),
-        mixed=mixed,
-        notes=tuple(notes + mixed_notes),
+        notes=tuple(notes),
     )

@@ -7,9 +7,7 @@ In an interval that starts with acceleration a₀, velocity v₀ and displacemen
     d(τ) = d₀ + v₀ τ + a₀ τ²/2 + s τ³/6,
 
 so nothing is lost by integrating, and the peaks can be located between samples as well: that of the
-velocity where a(τ) = 0, that of the displacement where v(τ) = 0.  With g = 9.81 m/s² this is the
-rule that gives every figure of Table 3.3 of the thesis; the largest *sample* of the velocity does
-not.
+velocity where a(τ) = 0, that of the displacement where v(τ) = 0.  The largest *sample* of the velocity is smaller.
 """
 
 import numpy as np

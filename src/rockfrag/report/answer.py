@@ -16,6 +16,7 @@ from rockfrag.report.findings import (
     windows_found,
 )
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results
+from rockfrag.report.sides import sides_of
 from rockfrag.report.wording import counted, listed, of_all, sentence
 
 FEW = 10
@@ -48,7 +49,12 @@ def questions(results: Results) -> list[tuple[str, str]]:
     """Questions that a study's page answers."""
     study = results.study
     answered = {"pedestal": study.has_pairs, "live": study.simulated_in_page}
-    return [one for one in QUESTIONS if answered.get(one[1], True)]
+    asked = [one for one in QUESTIONS if answered.get(one[1], True)]
+    if study.counterparts:
+        return [
+            ("Compared?" if section == "pedestal" else words, section) for words, section in asked
+        ]
+    return asked
 
 
 def _asked(results: Results) -> str:
@@ -56,6 +62,8 @@ def _asked(results: Results) -> str:
     which = f"the {len(names)} objects" if len(names) > MOST_NAMED else listed(names)
     its = "its" if len(names) == 1 else "their"
     sides = f", with and without {its} pedestal" if results.study.has_pairs else ""
+    if results.study.counterparts:
+        sides = ", in each arrangement and in the one it is compared with"
     return f"How strong must shaking be to overturn {which}{sides}?"
 
 
@@ -75,7 +83,10 @@ def sentences(results: Results) -> list[Finding]:
     if has_one_record(results):
         return [amplitudes_found(results.tests), recorded, ONE_MOTION]
     if results.study.has_pairs:
-        return [*found, pedestal_effect(results.table("pedestal/effects"))[0]]
+        return [
+            *found,
+            pedestal_effect(results.table("pedestal/effects"), sides_of(results.study))[0],
+        ]
     slenderness = {name: results.study.specimens[name].slenderness for name in results.objects}
     windows = windows_found(results.table("survival_windows"), results.table("tests"))
     return [*found, *objects_compared(results.table("mean_amplitudes"), slenderness), windows][:3]

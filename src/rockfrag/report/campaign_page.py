@@ -1,5 +1,6 @@
 """The report of a campaign on a shake table: how often the simulation is right, and where it is not."""
 
+import math
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -8,6 +9,8 @@ from typing import Any
 import pandas as pd
 from markupsafe import Markup
 
+from rockfrag.campaign.trials import preferred_edges
+from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.files import write_text
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.report.figures.campaign import (
@@ -29,7 +32,7 @@ from rockfrag.report.wording import (
     probability,
     sentence,
 )
-from rockfrag.stages.campaign import OURS, TABLES
+from rockfrag.stages.campaign import OURS, TABLES, VOTES
 from rockfrag.stages.digest import package_digest
 from rockfrag.study.campaign import CampaignStudy
 
@@ -49,7 +52,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
         _agreement(study, tables),
         _fragility(study, tables),
         _tests(study, tables),
-        _object(tables),
+        _object(study, tables),
         _conditioning(study, tables),
     ]
     answer = _answer(study, tables, sections)
@@ -191,30 +194,38 @@ def _p(value: float) -> str:
 
 
 def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
-    rows = fragility[fragility["who"] == OURS].dropna(subset=["theta_ratio"])
+    rows = fragility.dropna(subset=["theta_ratio"])
     if rows.empty:
         return []
-    # the measure that orders the tests best is the one in which a curve says most
-    measured = fragility[fragility["who"] == "measured"].set_index("measure")["beta"]
-    measure = str(measured.idxmin())
-    row = rows[rows["measure"] == measure].to_dict("records")[0]
-    name = name_and_unit(measure)[0]
-    theta = estimate(row["theta_ratio"], row["theta_ratio_lower"], row["theta_ratio_upper"], 2)
-    beta = estimate(row["beta_ratio"], row["beta_ratio_lower"], row["beta_ratio_upper"], 2)
-    agrees = row["theta_ratio_lower"] <= 1 <= row["theta_ratio_upper"]
-    headline = (
-        f"The simulated fragility in {name} is not distinguishable from the measured one"
-        if agrees
-        else f"The simulated median {name} is {number(100 * abs(row['theta_ratio'] - 1), 0)} % "
-        f"{'above' if row['theta_ratio'] > 1 else 'below'} the measured one"
-    )
+    measure = _ordering(fragility)
+    found = {
+        row["who"]: _ratios(row) for row in rows[rows["measure"] == measure].to_dict("records")
+    }
+    theta, beta = found[OURS]
     return [
         Finding(
-            headline,
+            f"Simulated over measured {name_and_unit(measure)[0]} of overturning: median {theta}, "
+            f"dispersion {beta}",
             "",
-            f"Simulated over measured median {theta}; simulated over measured dispersion {beta}.",
+            "So by the majority of votes in each test; with the fraction of votes in its place median "
+            "{}, dispersion {}.".format(*found[VOTES]),
         )
     ]
+
+
+def _ordering(fragility: pd.DataFrame) -> str:
+    """The measure that orders the tests best is the one in which a curve says most."""
+    measured = fragility[fragility["who"] == "measured"]
+    return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
+
+
+def _ratios(row: Row) -> tuple[str, str]:
+    """Simulated over measured median and dispersion, with limits."""
+    theta, beta = (
+        estimate(row[key], row[f"{key}_lower"], row[f"{key}_upper"], 2)
+        for key in ("theta_ratio", "beta_ratio")
+    )
+    return theta, beta
 
 
 def _agreement(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -279,6 +290,13 @@ def _rocking(rocking: pd.DataFrame) -> list[Markup]:
     return [table_html(shown, columns, "Whether the object rocked at all, simulated and noted.")]
 
 
+_OUTCOMES = {
+    "measured": "measured",
+    OURS: "simulated, majority of votes",
+    VOTES: "simulated, votes",
+}
+
+
 def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
     rows = []
@@ -287,7 +305,7 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         rows.append(
             {
                 "measure": f"{name} [{unit}]",
-                "who": "measured" if row["who"] == "measured" else "simulated",
+                "who": _OUTCOMES[row["who"]],
                 **{
                     key: estimate(row[key], row[f"{key}_lower"], row[f"{key}_upper"], digits)
                     for key, digits in (
@@ -307,8 +325,7 @@ def _fragility(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section
         Column("theta_ratio", "θ over measured", numeric=True),
         Column("beta_ratio", "β over measured", numeric=True),
     )
-    measured = fragility[fragility["who"] == "measured"]
-    measure = str(measured.set_index("measure")["beta"].idxmin())
+    measure = _ordering(fragility)
     name, unit = name_and_unit(measure)
     found = _fragility_found(fragility)
     figure = FigureSpec(
@@ -392,7 +409,7 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     )
 
 
-def _object(tables: dict[str, pd.DataFrame]) -> Section:
+def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
     likely = trials[trials["plausible"]]
     unknown = [
@@ -479,10 +496,35 @@ def _object(tables: dict[str, pd.DataFrame]) -> Section:
         f"{len(likely)} of {len(trials)} trials are plausible.",
         [
             "A trial is plausible if its predictions are as right as the best within two standard errors. It "
-            "is chosen on all tests and therefore judges nothing."
+            "is chosen on all tests and therefore judges nothing.",
+            *_few_voters(len(likely)),
+            *_edges(study, trials, likely, titles),
         ],
         parts,  # type: ignore[arg-type]
     )
+
+
+def _few_voters(count: int) -> list[str]:
+    if count >= FEWEST_VOTERS:
+        return []
+    return [
+        f"Fewer than {FEWEST_VOTERS} trials vote, so that chance decides near-critical tests: raise the number of "
+        "trials."
+    ]
+
+
+def _edges(
+    study: CampaignStudy, trials: pd.DataFrame, likely: pd.DataFrame, titles: Mapping[str, str]
+) -> list[str]:
+    """Say which ranges end where the tests would have them go on."""
+    edges = preferred_edges(trials, likely.index, study.unknowns)
+    words = [f"{titles[name].split(' [')[0].lower()} ({edge})" for name, edge in edges.items()]
+    if not words:
+        return []
+    return [
+        f"Plausible trials crowd at an end of the range of: {listed(words)}. Widen the range there: what lies "
+        "beyond may be as plausible."
+    ]
 
 
 def _conditioning(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:

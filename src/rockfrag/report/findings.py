@@ -9,6 +9,7 @@ import pandas as pd
 
 from rockfrag.fragility.compared import Compared, compared_curves
 from rockfrag.report.part import Finding
+from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import (
     agree,
     counted,
@@ -117,6 +118,10 @@ def recorded_found(recorded: pd.DataFrame) -> Finding:
     elif len(by_name) == 1:
         headline = f"At recorded strength {_overturn(fallen, motions)} {by_name.index[0]}"
         numbers = ""
+    elif motions == 1:
+        fell = by_name["sum"] > 0
+        here, not_here = (listed([str(one) for one in by_name.index[it]]) for it in (fell, ~fell))
+        headline = f"At recorded strength {subject} overturns {here}, and not {not_here}"
     else:
         counts = {str(name): int(n) for name, n in by_name["sum"].items()}
         low, high = min(counts, key=counts.__getitem__), max(counts, key=counts.__getitem__)
@@ -179,11 +184,14 @@ def _fallen(tests: pd.DataFrame) -> list[str]:
     on_pedestal = tests[(tests["pedestal"] == "P") & (tests["overturned_body"] != "")]
     if on_pedestal.empty:
         return []
-    pedestals = int((on_pedestal["overturned_body"] == "pedestal").sum())
-    if pedestals == 0:
-        return ["The object always fell, never the pedestal."]
-    falls = of_all(pedestals, len(on_pedestal), "test on a pedestal", "tests on a pedestal")
-    return [f"The pedestal itself fell in {falls} that overturned."]
+    itself = on_pedestal["overturned_body"].isin(["statue"]) | (
+        on_pedestal["overturned_body"] == on_pedestal["object"]
+    )
+    below = int((~itself).sum())
+    if below == 0:
+        return ["The object always fell, never what it stood on."]
+    falls = of_all(below, len(on_pedestal), "test on a pedestal", "tests on a pedestal")
+    return [f"What the object stood on fell first in {falls} that overturned."]
 
 
 def objects_compared(means: pd.DataFrame, slenderness: Mapping[str, float]) -> list[Finding]:
@@ -272,8 +280,8 @@ def ratio_text(row: Mapping[Any, Any]) -> str:
     return estimate(row["ratio"], row["lower"], row["upper"], _RATIO_DECIMALS)
 
 
-def ratio_of(effects: pd.DataFrame) -> Callable[[str, str], str]:
-    """Return a function of scope and level that words the ratio with over without pedestal there."""
+def ratio_of(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> Callable[[str, str], str]:
+    """Return a function of scope and level that words the ratio of amplitudes there."""
     rows = effects[effects["reading"] == READING] if len(effects) else effects
 
     def text(scope: str, level: str) -> str:
@@ -281,24 +289,24 @@ def ratio_of(effects: pd.DataFrame) -> Callable[[str, str], str]:
         if found.empty:
             return "no pair with both amplitudes known"
         row = found.to_dict("records")[0]
-        return f"with/without pedestal {estimate(row['ratio'], row['lower'], row['upper'], 2)}"
+        return f"{about.ratio} {estimate(row['ratio'], row['lower'], row['upper'], 2)}"
 
     return text
 
 
-def pedestal_effect(effects: pd.DataFrame) -> list[Finding]:
-    """Say by what factor the pedestal changes the amplitude, over all pairs and on each floor."""
+def pedestal_effect(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> list[Finding]:
+    """Say by what factor what is compared changes the amplitude, over all pairs and on each floor."""
     whole = effects[effects["scope"] == "whole"]
     here = whole[whole["reading"] == READING]
     if here.empty:
         return [
             Finding(
-                "The pedestal's effect is not known",
-                "No object overturned both with and without its pedestal under the same motion.",
+                f"The effect of {about.change} is not known",
+                f"No object overturned both {about.both} under the same motion.",
             )
         ]
     row = here.to_dict("records")[0]
-    numbers = [_ratio_sentence(row), _steps(row)]
+    numbers = [_ratio_sentence(row, about), _steps(row)]
     others = whole[whole["reading"] != READING].to_dict("records")
     if others:
         listing = "; ".join(
@@ -308,29 +316,32 @@ def pedestal_effect(effects: pd.DataFrame) -> list[Finding]:
         )
         numbers.append(f"Other ways to read the amplitude: {listing}.")
     floors = effects[(effects["scope"] == "floor") & (effects["reading"] == READING)]
-    found = Finding(_headline(row), _meaning(row), " ".join(word for word in numbers if word))
-    return [found, *_by_floor(floors)]
+    found = Finding(
+        _headline(row, about), _meaning(row), " ".join(word for word in numbers if word)
+    )
+    return [found, *_by_floor(floors, about)]
 
 
-def _headline(row: Mapping[Any, Any]) -> str:
+def _headline(row: Mapping[Any, Any], about: Sides) -> str:
+    change_of = sentence(about.change)
     change = "raises" if row["ratio"] > 1 else "lowers"
     size = number(100 * abs(row["ratio"] - 1), 1)
     if not has_interval(row["lower"], row["upper"], _RATIO_DECIMALS):
         if size == "0.0":
-            return "The amplitudes with and without pedestal are the same"
-        return f"The pedestal {change} the amplitude by {size} % in {counted(int(row['pairs']), 'pair')}"
+            return f"The amplitudes {about.both} are the same"
+        return f"{change_of} {change} the amplitude by {size} % in {counted(int(row['pairs']), 'pair')}"
     if row["lower"] <= 1 <= row["upper"]:
         if row["equivalent"]:
-            return "The pedestal changes the overturning amplitude by less than 10 %"
-        return "The pedestal's mean effect is not distinguishable from zero"
-    return f"The pedestal {change} the overturning amplitude by {size} %"
+            return f"{change_of} changes the overturning amplitude by less than 10 %"
+        return f"The mean effect of {about.change} is not distinguishable from zero"
+    return f"{change_of} {change} the overturning amplitude by {size} %"
 
 
-def _ratio_sentence(row: Mapping[Any, Any]) -> str:
+def _ratio_sentence(row: Mapping[Any, Any], about: Sides) -> str:
     pairs, units = int(row["pairs"]), counted(int(row["units"]), UNIT[str(row["unit"])])
     bounds = int(row["at_bound"])
     text = (
-        "Amplitude with pedestal divided by that without"
+        about.divided
         + (f", geometric mean of {pairs} pairs" if pairs > 1 else ", of the only pair")
         + (f", {bounds} of which have one test that gives a bound only" if bounds else "")
         + f": {ratio_text(row)}"
@@ -367,11 +378,11 @@ def _meaning(row: Mapping[Any, Any]) -> str:
     return ""
 
 
-def _by_floor(rows: pd.DataFrame) -> list[Finding]:
+def _by_floor(rows: pd.DataFrame, about: Sides) -> list[Finding]:
     if len(rows) < 2:
         return []
     parts = [f"{row['level']} {ratio_text(row)}" for row in rows.to_dict("records")]
-    numbers = f"Amplitude with pedestal divided by that without: {'; '.join(parts)}."
+    numbers = f"{about.divided}: {'; '.join(parts)}."
     known = np.array(
         [
             has_interval(low, high, _RATIO_DECIMALS)
@@ -382,9 +393,9 @@ def _by_floor(rows: pd.DataFrame) -> list[Finding]:
     if not known.any():
         return [Finding("The ratios by floor have no intervals", "", numbers)]
     headline = (
-        "The pedestal's effect is not distinguishable from zero on any floor"
+        f"The effect of {about.change} is not distinguishable from zero on any floor"
         if clear.empty
-        else f"The pedestal has an effect on {of_all(len(clear), len(rows), 'floor')}"
+        else f"{sentence(about.change)} has an effect on {of_all(len(clear), len(rows), 'floor')}"
     )
     return [Finding(headline, "", numbers)]
 

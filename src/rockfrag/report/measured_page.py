@@ -20,9 +20,6 @@ from rockfrag.report.wording import counted, estimates, listed, probability
 from rockfrag.stages.digest import package_digest
 from rockfrag.study.measured_table import MeasuredTable
 
-TABLES = ("tests", "fragility", "recommendation", "bins", "goodness")
-"""Result tables of a measured table, each as CSV and Parquet."""
-
 _CAPTIONS = {
     "measures": "Probability of overturning over each measure: tests in bins with binomial limits, a local "
     "average (dashed), and the lognormal curve with its band.",
@@ -32,7 +29,7 @@ _CAPTIONS = {
 
 
 def result_tables(found: UserFragility) -> dict[str, pd.DataFrame]:
-    """Return the tables named in ``TABLES``."""
+    """Return the tables by their names."""
     goodness = [
         {
             "measure": measure,

@@ -213,7 +213,7 @@ class Results:
     @property
     def objects(self) -> list[str]:
         """Names of the objects tested, in the study's order."""
-        return list(dict.fromkeys(one.object for one in self.study.configurations))
+        return list(dict.fromkeys(one.names[-1] for one in self.study.configurations))
 
 
 def _always(_: Study) -> bool:

@@ -1,4 +1,4 @@
-"""The report on paper: ``python -m rockfrag.report.pdf config/thesis.yaml`` prints a study's page as PDF.
+"""The report on paper: ``python -m rockfrag.report.pdf config/config.yaml`` prints a study's page as PDF.
 
 A page is laid out by a browser, so a browser prints it: Chromium, Chrome or Edge without a window.
 """
@@ -23,7 +23,7 @@ def print_page(page: Path) -> Path:
     Parameters
     ----------
     page
-        The page, such as ``results/thesis/report.html``.
+        The page, such as ``results/example/report.html``.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def main() -> int:
 
     try:
         if len(sys.argv) != 2:
-            raise InputError("Name one study, such as config/thesis.yaml.")
+            raise InputError("Name one study, such as config/config.yaml.")
         target = print_page(results_folder(load_any(sys.argv[1])) / "report.html")
     except InputError as error:
         print(error, file=sys.stderr)

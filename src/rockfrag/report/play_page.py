@@ -7,12 +7,13 @@ from importlib.metadata import version
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
-from rockfrag.report.live import AMPLITUDES_G, live_kernel, swept
+from rockfrag.report.live import AMPLITUDES_G, MOST_BODIES, live_kernel, swept
 from rockfrag.report.page import render
 from rockfrag.report.part import Answer, Finding
 from rockfrag.report.wording import counted, number, sentence
 from rockfrag.rocking import simulate
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.blocks import SystemLike, as_system
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 _STEP = 100 * (AMPLITUDES_G[1] / AMPLITUDES_G[0] - 1)
@@ -21,7 +22,7 @@ MOST_SAMPLES = 20_000
 """Samples of a record for which the page stays below 400 kB."""
 
 
-def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) -> None:
+def write_play_page(body: SystemLike, motion: Motion, path: str | os.PathLike[str]) -> None:
     """Write the page.
 
     Parameters
@@ -36,8 +37,13 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
     Raises
     ------
     InputError
-        If the record is too long, or zero throughout.
+        If the record is too long, or zero throughout, or there are more than two blocks.
     """
+    system = as_system(body)
+    if system.count > MOST_BODIES:
+        raise InputError(
+            "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
+        )
     samples = motion.acceleration.size
     if samples > MOST_SAMPLES:
         raise InputError(
@@ -46,15 +52,16 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
         )
     if motion.pga <= 0:
         raise InputError(f"{motion.name}: the record is zero throughout, so nothing would rock.")
-    name = _name(body)
-    verdicts = swept({name: body}, [motion])
+    sizes = [f"{100 * one.width:.3g} × {100 * one.height:.3g} cm" for one in system.bodies]
+    name = " on ".join(reversed(sizes))
+    verdicts = swept({name: system}, [motion])
     page = render(
         title=f"{name} under {motion.name}",
         lead=f"{counted(samples, 'sample')} of {motion.dt:.4g} s, as recorded with a peak of "
         f"{number(motion.pga / GRAVITY, 3)} g.",
         answer=Answer(
             asked="How strong must this motion be to overturn it?",
-            sentences=[_strength(verdicts["overturned"].tolist()), _recorded(body, motion)],
+            sentences=[_strength(verdicts["overturned"].tolist()), _recorded(system, motion)],
         ),
         sections=[],
         pictures={},
@@ -63,19 +70,9 @@ def write_play_page(body: Body, motion: Motion, path: str | os.PathLike[str]) ->
             "Body": repr(body),
             "Source": f"rockfrag {version('rockfrag')}",
         },
-        live=live_kernel({name: body}, [motion]),
+        live=live_kernel({name: system}, [motion]),
     )
     write_text(page, path)
-
-
-def _name(body: Body) -> str:
-    if isinstance(body, Stack):
-        return f"{_size(body.statue)} on {_size(body.pedestal)}"
-    return _size(body)
-
-
-def _size(block: Block) -> str:
-    return f"{100 * block.width:.3g} × {100 * block.height:.3g} cm"
 
 
 def _strength(fell: Sequence[bool]) -> Finding:
@@ -97,9 +94,9 @@ def _strength(fell: Sequence[bool]) -> Finding:
     )
 
 
-def _recorded(body: Body, motion: Motion) -> Finding:
+def _recorded(system: System, motion: Motion) -> Finding:
     """Say what the motion does as it was recorded."""
-    response = simulate(body, motion)
+    response = simulate(system, motion)
     words = "overturns it" if response.overturned else "does not overturn it"
     return Finding(
         f"The motion as recorded {words}",

@@ -3,6 +3,7 @@
 from importlib.metadata import version
 from typing import Any
 
+from rockfrag.plugins import plugins_of
 from rockfrag.report.page import MOST_TABLE_ROWS
 from rockfrag.report.part import Results
 from rockfrag.stages.digest import package_digest
@@ -24,9 +25,13 @@ def provenance(results: Results) -> dict[str, str]:
         "Records": _records(study),
         "Motions, SHA-256": ", ".join(hashes),
         "Seed": str(study.seed),
-        "Source": f"rockfrag {version('rockfrag')}, digest {package_digest()}",
+        "Source": f"rockfrag {version('rockfrag')}, digest {_digest(study)}",
         "Libraries": ", ".join(f"{name} {version(name)}" for name in _LIBRARIES),
     }
+
+
+def _digest(study: Study) -> str:
+    return package_digest(*(plugin.rules.parent for plugin in plugins_of(study)))
 
 
 def _records(study: Study) -> str:

@@ -1,8 +1,29 @@
 """Stages that write reports: of a study, of a table of tests, of a campaign on a shake table."""
 
+from typing import TYPE_CHECKING
+
+from rockfrag.plugins import plugins_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.measured_table import MeasuredTable
+from rockfrag.study.study import Study
+
+if TYPE_CHECKING:
+    from rockfrag.plugins import FirstPage, Parts
+
+
+def report(job: Job[Study]) -> Results:
+    """Draw the figures of a study and write its page."""
+    from rockfrag.report.answer import study_answer
+    from rockfrag.report.sections import PARTS
+    from rockfrag.report.study_report import write_report
+
+    found: tuple[Parts, FirstPage] = PARTS, study_answer
+    for plugin in plugins_of(job.study):
+        found = plugin.report(job.study, *found)
+    write_report(job.study, *found, job.folder, job.threads)
+    job.log.info("%s", job.folder / "report.html")
+    yield from ()
 
 
 def measured_table(job: Job[MeasuredTable]) -> Results:

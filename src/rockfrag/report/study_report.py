@@ -21,7 +21,6 @@ from rockfrag.report.part import (
 from rockfrag.report.provenance import provenance
 from rockfrag.report.wording import counted
 from rockfrag.study.study import Study
-from rockfrag.system.blocks import Column
 
 FIGURES = "figures"
 """Folder of the figures in that of the results, each as SVG and as PNG."""
@@ -125,10 +124,8 @@ def _live(results: Results) -> Markup:
     study = results.study
     if not study.simulated_in_page:
         return Markup()
-    bodies = {
-        one.name: one.body for one in study.configurations if not isinstance(one.body, Column)
-    }
-    return live_kernel(bodies, results.floors, results.verdicts)
+    systems = {one.name: one for one in study.configurations}
+    return live_kernel(systems, results.floors, results.verdicts)
 
 
 def _lead(results: Results) -> str:

@@ -1,6 +1,6 @@
 """What can be said about a rocking block without integrating its motion step by step.
 
-Unless it says otherwise a formula belongs to the slender linearised equation (thesis eq. 2.9),
+Unless it says otherwise a formula belongs to the slender linearised equation (Housner, 1963),
 θ'' = p² (θ - s θc) - p² a/g, in which only the frequency parameter p [1/s], the critical angle θc [rad]
 and g [m/s²] appear.  Amplitudes of pulses are given as x = a / (θc g), dimensionless.
 """
@@ -37,7 +37,7 @@ def _below_critical(theta0: float, alpha: float) -> None:
 
 
 def free_rotation(time: ArrayLike, theta0: float, alpha: float, p: float) -> NDArray[np.float64]:
-    """Rotation after release from rest until the first impact [rad] (thesis eq. 2.19).
+    """Rotation after release from rest until the first impact [rad] (Housner, 1963).
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def free_rotation(time: ArrayLike, theta0: float, alpha: float, p: float) -> NDA
 
 
 def free_period(theta0: float, alpha: float, p: float) -> float:
-    """Period of free rocking without loss [s] (Housner 1963; thesis eq. 2.20).
+    """Period of free rocking without loss [s] (Housner, 1963).
 
     Parameters
     ----------
@@ -284,7 +284,7 @@ def housner_half_sine(omega: float, p: float) -> float:
 def west_acceleration(block: Block, g: float = GRAVITY) -> float:
     """Least acceleration that starts rocking, and the one West's formula overturns at, (b/h) g [m/s²].
 
-    Thesis eq. 2.1; Milne & Omori (1893), Kirkpatrick (1927).
+    Milne & Omori (1893), Kirkpatrick (1927).
     """
     return min(abs(block.arm(s).x) / block.arm(s).y for s in (1, -1)) * g
 

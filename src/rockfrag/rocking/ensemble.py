@@ -17,7 +17,6 @@ from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.rocking.inputs import (
     MotionLike,
-    Standing,
     check_case_count,
     checked_scales,
     checked_switch,
@@ -29,6 +28,7 @@ from rockfrag.rocking.inputs import (
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput, systems_of
 from rockfrag.system import geometry
+from rockfrag.system.blocks import SystemLike
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
@@ -70,7 +70,7 @@ class Options(NamedTuple):
 
 @named_keywords
 def overturns(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None = None,
     scales: ArrayLike = (1.0,),
@@ -105,7 +105,7 @@ def overturns(
     restitution
         A list with one entry per body, each as in :func:`simulate`; None conserves momentum in all.
     linear
-        Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
+        Use the linearised equations of motion (Housner, 1963; Psycharis, 1990).
     friction
         A list with one entry per body, each as in :func:`simulate`; or one number, one ``Friction`` or one mapping
         ``{"ground": …, "interface": …}`` for all; None: nothing slides.
@@ -161,7 +161,7 @@ def overturns(
 
 
 def prepared(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,

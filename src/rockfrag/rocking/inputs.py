@@ -23,8 +23,8 @@ from rockfrag.plausibility import (
 )
 from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
-from rockfrag.system.blocks import Block, Column, Stack, as_system
-from rockfrag.system.system import System, contact_ends, standing_centres
+from rockfrag.system.blocks import SystemLike, as_system, is_system
+from rockfrag.system.system import uplift_ratios
 
 MOST_CASES = 50_000_000
 """Cases of an ensemble whose results are held in memory."""
@@ -34,11 +34,6 @@ STRONGEST = 1e4
 
 MotionLike = Motion | GroundMotion | ArrayLike
 """A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
-
-Standing = Block | Stack | Column | System
-"""What stands, as it may be written."""
-
-WRITTEN = (Block, Stack, Column, System)
 
 
 def checked_motion(
@@ -110,7 +105,7 @@ def checked_vertical(
     return values
 
 
-def checked_start(body: Standing, value: object, name: str) -> tuple[float, ...]:
+def checked_start(body: SystemLike, value: object, name: str) -> tuple[float, ...]:
     """Return rotations or angular velocities at the start, one for each block; zeros for None.
 
     Raises
@@ -129,7 +124,7 @@ def checked_start(body: Standing, value: object, name: str) -> tuple[float, ...]
     return tuple(values.tolist())
 
 
-def listed_bodies(bodies: object) -> list[Standing]:
+def listed_bodies(bodies: object) -> list[SystemLike]:
     """Return the bodies as a list.
 
     Raises
@@ -137,14 +132,14 @@ def listed_bodies(bodies: object) -> list[Standing]:
     InputError
         If there is none, or one is no Block, Stack, Column or System.
     """
-    if isinstance(bodies, WRITTEN):
+    if is_system(bodies):
         return [bodies]
     if not isinstance(bodies, (Sequence, np.ndarray)) or isinstance(bodies, (str, bytes)):
         raise InputError(
             f"bodies: expected a Block, a Stack, a Column, a System or a list of them, got {shown(bodies)}."
         )
     for i, body in enumerate(bodies):
-        if not isinstance(body, WRITTEN):
+        if not is_system(body):
             raise InputError(
                 f"bodies[{i}]: expected a Block, a Stack, a Column or a System, got {shown(body)}."
             )
@@ -368,7 +363,7 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
     doubtful = plain and 0 < peak <= LARGEST_IN_G
-    least = min(least_uplift(system, g) for system in cases.systems) if doubtful else None
+    least = g * min(min(uplift_ratios(one)) for one in cases.systems) if doubtful else None
     longest = max(motion.dt for motion in cases.motions)
     if longest > LONGEST_STEP:
         # what is far too long is refused before it is doubted
@@ -377,20 +372,3 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     for doubt in (peak_warning(peak, least), gravity_warning(g), interval_warning(longest)):
         if doubt:
             warnings.warn(doubt, UnitDoubt, stacklevel=stacklevel)
-
-
-def least_uplift(system: System, g: float) -> float:
-    """Least horizontal acceleration that opens a contact at rest [m/s²]; eq. 2.1, 2.21 to 2.25."""
-    found = math.inf
-    centres, mass = standing_centres(system), 0.0
-    x = y = 0.0
-    for k in reversed(range(system.count)):
-        own = system.bodies[k].mass
-        x, y = (
-            (x * mass + own * centres[k][0]) / (mass + own),
-            (y * mass + own * centres[k][1]) / (mass + own),
-        )
-        mass += own
-        for end in contact_ends(system, k):
-            found = min(found, abs(x - end[0]) / (y - end[1]) * g if y > end[1] else math.inf)
-    return found

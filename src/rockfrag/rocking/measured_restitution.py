@@ -1,22 +1,19 @@
 """What a measured restitution is, and what kernels are told of it (``docs/restitution.md``)."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, shown
+from rockfrag.laws import Told, law_named, law_names, ratio
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block
 from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
 from rockfrag.system.system import System, each_contact
-
-Law = Literal["position", "couple", "ratio"]
-"""How the restitution of a lone block is carried over to a stack."""
-
-LAWS: tuple[Law, ...] = get_args(Law)
 
 Measured = float | Sequence[float] | None
 """Ratio of the rates after and before an impact of one interface, or the two ratios of impacts that end on the
@@ -36,14 +33,14 @@ class MeasuredRestitution:
         Of a lone block one ratio [-], or (right, left): of impacts that end on its right and on its left corner.
         Of a stack a pair (ground, interface), each of them likewise, or None where momentum is conserved.
     law
-        ``"position"``: the impulse acts nearer the middle of the base where momentum would leave less, and a
-        couple brakes where it would leave more; ``"couple"``: a couple brakes or drives the contact, so that its
-        relative velocity is a fixed multiple of what momentum leaves; ``"ratio"``: the relative velocities after
-        and before have the measured ratio.
+        Name of a law in ``rockfrag.laws``.  ``"position"``: the impulse acts nearer the middle of the base where
+        momentum would leave less, and a couple brakes where it would leave more; ``"couple"``: a couple brakes or
+        drives the contact, so that its relative velocity is a fixed multiple of what momentum leaves;
+        ``"ratio"``: the relative velocities after and before have the measured ratio.
     """
 
     value: float | Sequence[Measured] | dict[str, Any]
-    law: Law = "position"
+    law: str = "position"
 
     def __post_init__(self) -> None:
         """Refuse a law that does not exist.
@@ -51,11 +48,11 @@ class MeasuredRestitution:
         Raises
         ------
         InputError
-            If ``law`` is none of the three.
+            If there is no such law.
         """
-        if self.law not in LAWS:
+        if self.law not in law_names():
             raise InputError(
-                f"restitution: the law {shown(self.law)} is none of {', '.join(LAWS)}."
+                f"restitution: the law {shown(self.law)} is none of {', '.join(law_names())}."
             )
 
 
@@ -74,27 +71,6 @@ def largest_restitution(block: Block, pole: int | None = None) -> float:
     if pole is None:
         return min(largest_restitution(block, +1), largest_restitution(block, -1))
     return geometry.largest_restitution(block.shape, pole)
-
-
-def impulse_position(block: Block, restitution: float, pole: int) -> float:
-    """Where the impulse of a closing base acts, if the lone block comes off with ``restitution``.
-
-    The angular momentum about the point of the impulse is conserved; conserving it about the new pole
-    (position 1) gives :meth:`Block.momentum_restitution`, about the middle of the base (position 0) of
-    a symmetric block gives 1.
-
-    Parameters
-    ----------
-    restitution
-        ω⁺ / ω⁻ of the lone block on a rigid base [-].
-    pole
-        The corner that comes down, +1 or -1.
-
-    Returns
-    -------
-    Position σ of the impulse in half widths from the middle towards the new pole [-].
-    """
-    return geometry.impulse_position(block.shape, restitution, pole)
 
 
 def impact_laws(
@@ -136,27 +112,34 @@ def impact_laws(
         )
     places = ("block",) if system.count == 1 else ("ground", "interface")
     return tuple(
-        _law_of(f"{name} of the {places[min(k, 1)]}", law if places[1:] else "ratio", value, shape)
+        _law_of(f"{name} of the {places[min(k, 1)]}", law, value, shape, system.count == 1)
         for k, (value, shape) in enumerate(zip(each, system.carried, strict=True))
     )
 
 
-def _law_of(name: str, law: str, value: object, shape: geometry.Shape) -> ImpactLaw:
+def _law_of(name: str, law: str, value: object, shape: geometry.Shape, lone: bool) -> ImpactLaw:
     both = _checked(name, value, shape)
     if both is None:
         return BY_MOMENTUM
-    for pivot, measured in zip((+1, -1), both, strict=True):
-        by_momentum = geometry.momentum_restitution(shape, pivot)
-        if (
-            by_momentum <= 0
-            and law != "ratio"
-            and not (law == "position" and measured >= by_momentum)
-        ):
-            raise InputError(
-                f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "
-                "multiply; choose the law position or ratio."
-            )
-    return ImpactLaw(law, *both)
+    right, left = (_told(name, law, shape, *one) for one in zip(both, (+1, -1), strict=True))
+    if lone:
+        # what was measured is the ratio of the lone body, unless its law makes another one of it
+        both = _of_lone(right, both[0]), _of_lone(left, both[1])
+    return ImpactLaw("ratio" if lone else law, *both)
+
+
+def _of_lone(told: Told, measured: float) -> float:
+    return told[1] if told[0] == ratio.NUMBER else measured
+
+
+def _told(name: str, law: str, shape: geometry.Shape, measured: float, pivot: int) -> Told:
+    told = law_named(law).tell(shape, measured, pivot)
+    if math.isnan(told[1]):
+        raise InputError(
+            f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "
+            "multiply; choose the law position or ratio."
+        )
+    return told
 
 
 def _checked(name: str, measured: object, shape: geometry.Shape) -> tuple[float, float] | None:

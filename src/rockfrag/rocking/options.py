@@ -9,9 +9,9 @@ import numpy as np
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import shown
-from rockfrag.rocking.inputs import Standing, check_one_per_body, checked_start
+from rockfrag.rocking.inputs import check_one_per_body, checked_start
 from rockfrag.rocking.measured_restitution import Restitution, impact_laws
-from rockfrag.system.blocks import as_system
+from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.contact import Friction, checked_friction
 from rockfrag.system.system import Start, System, each_contact
 
@@ -24,7 +24,7 @@ StartInput = float | Sequence[float] | None
 
 
 def system_of(
-    body: Standing,
+    body: SystemLike,
     friction: FrictionInput | None = None,
     restitution: Restitution = None,
     theta0: StartInput = None,
@@ -70,7 +70,7 @@ def system_of(
 
 
 def systems_of(
-    bodies: Sequence[Standing],
+    bodies: Sequence[SystemLike],
     friction: FrictionInput | None = None,
     restitution: Sequence[Restitution] | None = None,
     theta0: Sequence[StartInput] | None = None,

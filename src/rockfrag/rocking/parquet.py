@@ -26,9 +26,10 @@ from rockfrag.keywords import named_keywords
 from rockfrag.outcomes.columns import Table
 from rockfrag.outcomes.outcomes import columns as columns_of
 from rockfrag.rocking.ensemble import Options, prepared, richest, shaken
-from rockfrag.rocking.inputs import MotionLike, Standing
+from rockfrag.rocking.inputs import MotionLike
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput
+from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 
 ROWS = 262_144
@@ -45,7 +46,7 @@ USUAL = ("overturned", "overturned_body")
 
 @named_keywords
 def stream_overturns(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
@@ -176,7 +177,7 @@ SCHEMA = pa.schema(
 
 @named_keywords
 def stream_histories(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,

@@ -1,7 +1,7 @@
 """Restitution of a real block from its measured free rocking.
 
 A block that rocks freely loses energy at impacts only.  With x the square of the angular velocity just
-after an impact, e² x is that after the next (thesis eq. 2.13), and x gives both the peak between them and
+after an impact, e² x is that after the next (Housner, 1963), and x gives both the peak between them and
 the time between them.  So peaks, impact times and whole histories all speak about e.  For the slender
 linearised equation (2.9) the peaks obey φ' = 1 - √(1 - e² (1 - (1 - φ)²)) with φ = θ/θc (Housner 1963).
 """
@@ -66,7 +66,7 @@ def peak_after(
     pole
         Corner it rocks on.
     linear
-        Use the slender linearised equation (thesis eq. 2.9).
+        Use the slender linearised equation (Housner, 1963).
 
     Returns
     -------
@@ -98,7 +98,7 @@ def speed_before(
 def quarter_period(
     block: Block, peak: float, pole: int = 1, *, linear: bool = False, g: float = GRAVITY
 ) -> float:
-    """Time from rest at a rotation ``peak`` [rad] to the impact [s]; thesis eq. 2.20 if linear.
+    """Time from rest at a rotation ``peak`` [rad] to the impact [s] (Housner, 1963, if linear).
 
     The nonlinear one is the integral of dθ/θ' with the energy of eq. 2.4, by Gauss-Legendre after
     θ = θ0 (1 - u²), which takes the singularity away.
@@ -131,7 +131,7 @@ def restitution_from_peaks(
         Peak rotations in their order [rad], shape (n,), n ≥ 2; alternating in sign, or magnitudes.
         They alternate between the corners; the first is on that of the first peak's sign.
     linear
-        Use the slender linearised equation (thesis eq. 2.9).
+        Use the slender linearised equation (Housner, 1963).
     confidence
         Level of the interval.
     g

@@ -16,7 +16,7 @@ from rockfrag.motions.intensity import pgv
 from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.closed_forms import housner_velocity
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system.blocks import Block, Body
 from rockfrag.units import GRAVITY
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 25)
@@ -111,14 +111,15 @@ RULES: Mapping[str, Rule] = MappingProxyType(
 
 
 def three_models(body: Body) -> list[Block]:
-    """Blocks that practice checks for an object: itself, and with its pedestal as one body.
+    """Blocks that practice checks for an object: itself, and with what it stands on as one body.
 
     Parameters
     ----------
     body
         The object, or the object on its pedestal.
     """
-    return [body.statue, body.rigidly_joined()] if isinstance(body, Stack) else [body]
+    # a block joined with nothing is the block
+    return list(dict.fromkeys((body.blocks[-1], body.rigidly_joined())))
 
 
 def predicted(body: Body, motion: Motion, rule: Rule) -> float:

@@ -14,19 +14,19 @@ from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.inputs import (
     MotionLike,
-    Standing,
     checked_switch,
     ground_motion,
     warn_of_units,
 )
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput, system_of
+from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 
 
 @named_keywords
 def simulate(
-    body: Standing,
+    body: SystemLike,
     motion: MotionLike,
     dt: float | None = None,
     *,
@@ -57,9 +57,9 @@ def simulate(
     restitution
         Measured ratio of angular velocities of an impact: a number, or for several bodies
         ``{"ground": …, "interface": …}`` or (ground, interface), or a :class:`MeasuredRestitution` with its law;
-        None, the default, conserves momentum (thesis eq. 2.14, 2.76-2.86).
+        None, the default, conserves momentum (Housner, 1963; Spanos, Roussis and Politis, 2001).
     linear
-        Use the linearised equations of motion (thesis eq. 2.9; 2.60-2.65).
+        Use the linearised equations of motion (Housner, 1963; Psycharis, 1990).
     friction
         Coefficient of friction of all contacts, or ``{"ground": …, "interface": …}``, or (ground, interface) of a
         stack; ``Friction(static, kinetic)`` or a pair may stand in place of each number, and numbers may be

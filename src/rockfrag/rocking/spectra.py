@@ -1,4 +1,4 @@
-"""Rocking spectra: peak rotation and velocity of geometrically similar blocks (thesis section 2.3).
+"""Rocking spectra: peak rotation and velocity of geometrically similar blocks (Makris and Konstantinidis, 2003).
 
 As a response spectrum shows oscillators of one damping over their period, a rocking spectrum shows blocks
 of one slenderness over 2π/p (Makris and Konstantinidis 2003, Earthquake Eng. Struct. Dyn. 32, 265-289).
@@ -18,7 +18,6 @@ from rockfrag.engines.steps import fastest_frequency
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_array
 from rockfrag.keywords import named_keywords
-from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.inputs import MotionLike
@@ -63,7 +62,7 @@ class RockingSpectrum:
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
     """Return the uniform block of critical angle α [rad] and apparent period 2π/p [s].
 
-    Its size follows from p = √(3g/4R) (thesis eq. 2.17); its density is 1000 kg/m³ for a depth of
+    Its size follows from p = √(3g/4R) (Housner, 1963); its density is 1000 kg/m³ for a depth of
     1 m, which matters to nothing.
 
     Parameters
@@ -117,7 +116,7 @@ def rocking_spectrum(
     alpha
         Critical angles [rad], one or several, shape (j,).
     restitution
-        The same measured restitution for all; None conserves momentum (thesis eq. 2.14).
+        The same measured restitution for all; None conserves momentum (Housner, 1963).
     friction
         The same friction for all, as in :func:`rockfrag.rocking.simulate`; None: nothing slides.
     vertical
@@ -168,29 +167,3 @@ def rocking_spectrum(
         np.isinf(rotation), np.inf, found.of_top("peak_velocity").reshape(shape) / p
     )
     return RockingSpectrum(period, angle, rotation, velocity)
-
-
-def spectra(
-    motion: Motion,
-    periods: ArrayLike,
-    alpha: ArrayLike | Sequence[float],
-    dampings: Sequence[float] = (0.02, 0.05, 0.10),
-    *,
-    restitution: Restitution = None,
-    threads: int | None = None,
-) -> tuple[list[ResponseSpectrum], RockingSpectrum]:
-    """Response spectra (one per damping) and the rocking spectrum of a motion, over the same periods.
-
-    Parameters
-    ----------
-    periods
-        Natural periods of the oscillators, and 2π/p of the blocks [s], shape (k,).
-    alpha
-        Critical angles of the blocks [rad], shape (j,).
-    dampings
-        Fractions of critical damping of the oscillators [-].
-    """
-    return (
-        [response_spectrum(motion, periods, damping) for damping in dampings],
-        rocking_spectrum(motion, periods, alpha, restitution=restitution, threads=threads),
-    )

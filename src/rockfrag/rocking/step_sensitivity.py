@@ -16,10 +16,11 @@ from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.case_list import overturned_cases
 from rockfrag.rocking.ensemble import Options, prepared
-from rockfrag.rocking.inputs import MotionLike, Standing
+from rockfrag.rocking.inputs import MotionLike
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 
 
@@ -51,7 +52,7 @@ class FragileVerdicts:
 
 @named_keywords
 def fragile_verdicts(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,

@@ -17,9 +17,10 @@ from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, whole_number
 from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import Options, prepared, shaken
-from rockfrag.rocking.inputs import MotionLike, Standing, listed_bodies
+from rockfrag.rocking.inputs import MotionLike
 from rockfrag.rocking.measured_restitution import Restitution
-from rockfrag.rocking.options import FrictionInput, StartInput, systems_of
+from rockfrag.rocking.options import FrictionInput, StartInput
+from rockfrag.system.blocks import SystemLike
 from rockfrag.system.perturbation import perturbed
 from rockfrag.units import GRAVITY
 
@@ -29,7 +30,7 @@ LARGEST_PERTURBATION = 0.1
 
 @named_keywords
 def verdict_sureness(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
@@ -95,15 +96,11 @@ def verdict_sureness(
     )
     cases = prepared(bodies, motions, dt, scales, options)
     rng = np.random.default_rng(seed)
-    written = listed_bodies(bodies)
-
-    def outcomes(of: Sequence[Standing], scale: float) -> NDArray[np.bool_]:
-        own = systems_of(of, friction, restitution, theta0, omega0)
-        return shaken(replace(cases, systems=own, scales=scale * cases.scales)).overturned
-
-    given = outcomes(written, 1.0)
+    given = shaken(cases).overturned
     same = np.zeros(given.shape)
     for _ in range(copies):
-        near = [perturbed(body, size, rng) for body in written]
-        same += outcomes(near, 1.0 + size * float(rng.uniform(-1, 1))) == given
+        near = tuple(perturbed(system, size, rng) for system in cases.systems)
+        scale = 1.0 + size * float(rng.uniform(-1, 1))
+        found = shaken(replace(cases, systems=near, scales=scale * cases.scales))
+        same += found.overturned == given
     return same / copies

@@ -21,10 +21,11 @@ from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.rocking.case_list import overturned_cases
 from rockfrag.rocking.ensemble import Options, prepared, shaken
-from rockfrag.rocking.inputs import MotionLike, Standing
+from rockfrag.rocking.inputs import MotionLike
 from rockfrag.rocking.measured_restitution import Restitution
 from rockfrag.rocking.options import FrictionInput, StartInput
 from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
 
 Array = NDArray[np.float64]
@@ -65,7 +66,7 @@ class Thresholds:
 
 @named_keywords
 def find_thresholds(
-    bodies: Standing | Sequence[Standing],
+    bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     highest: float,

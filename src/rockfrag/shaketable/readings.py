@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
 from rockfrag.shaketable.protocols import Outcome, Protocol, measured
-from rockfrag.shaketable.swept import ABOUT, FALLEN, Swept, swept_of
+from rockfrag.shaketable.swept import ABOUT, Swept, swept_of
 from rockfrag.shaketable.tests_table import as_tests_table
 
 Floats = NDArray[np.float64]
@@ -244,7 +244,7 @@ def _rows(
         shown = measured(true, protocol.measurement, str(about["configuration"]))
         body = ""
         if not true.censored:
-            body = FALLEN[part.fallen[place, int(np.searchsorted(amplitudes, true.upper_g))]]
+            body = part.bodies[part.fallen[place, int(np.searchsorted(amplitudes, true.upper_g))]]
         rows.append(
             {
                 "test": f"{about['configuration']} {about['motion']}",

@@ -4,7 +4,7 @@ A file of a sweep has a row per motion and amplitude, motion after motion, each 
 amplitudes. What statistics need of it is a byte a history.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,18 +15,11 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-
-FALLEN = ("", "pedestal", "statue")
-"""Which body overturned, by its number in a matrix of verdicts."""
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named
+from rockfrag.system.system import System
 
 ABOUT = ("configuration", "object", "pedestal", "event", "floor", "motion")
 """Columns that are the same for all amplitudes of a motion."""
-
-SLIP = "peak_slip_m"
-"""Column of a sweep with friction: largest slip of any contact [m]."""
-
-SLIDES = 0.001
-"""Slip above which a body counts as having slid [m]: a displacement that one sees."""
 
 
 @dataclass(frozen=True)
@@ -40,55 +33,56 @@ class Swept:
     amplitude_g
         Amplitudes [g], rising, shape (n,).
     overturned
-        Verdicts, shape (motions, n); also whether anything was displaced, where that was asked for.
+        Whether the limit state that was asked for was reached, shape (motions, n).
     fallen
-        Number in ``FALLEN`` of what overturned, shape (motions, n).
+        Place in ``bodies`` of what overturned, shape (motions, n).
+    bodies
+        Names of what overturned in any of them, empty for nothing.
     """
 
     about: pd.DataFrame
     amplitude_g: NDArray[np.float64]
     overturned: NDArray[np.bool_]
-    fallen: NDArray[np.uint8]
+    fallen: NDArray[np.intp]
+    bodies: Sequence[str]
 
 
-def displaced(sweep: pd.DataFrame) -> NDArray[np.bool_]:
-    """Whether each run slid by more than `SLIDES` of any contact, or overturned, shape (n,).
-
-    Parameters
-    ----------
-    sweep
-        With ``overturned`` and the column `SLIP`.
-    """
-    slip = sweep[SLIP].to_numpy(dtype=float)
-    return np.asarray((slip > SLIDES) | sweep["overturned"].to_numpy(dtype=bool))
+def labels_of(system: System) -> dict[str, str]:
+    """Return what tables of a study call a system: its configuration, its object, with or without a pedestal."""
+    side = "P" if system.count > 1 else "NP"
+    return {"configuration": system.name, "object": system.names[-1], "pedestal": side}
 
 
-def read_swept(paths: Iterable[Path], *, slid: bool = False) -> Iterator[Swept]:
+def fallen_names(system: System) -> tuple[str, ...]:
+    """Return what tables of a study call the body that fell, by its number in outcomes."""
+    return ("", *(system.names if system.count > 2 else ("pedestal", "statue")[-system.count :]))
+
+
+def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swept]:
     """Yield the verdicts of sweeps in parts of some motions, so that memory holds one part.
 
     Parameters
     ----------
     paths
         Files of sweeps, each of one configuration or of some motions of it.
-    slid
-        Whether the verdict is that something was :func:`displaced`, of sweeps with friction, and not that it
-        overturned.
+    state
+        Name of the limit state that is asked for, which the sweeps count.
 
     Raises
     ------
     InputError
         If a part does not hold whole motions that rose through the same amplitudes.
     """
-    slips = [SLIP] if slid else []
-    columns = [*ABOUT, "amplitude_g", "overturned", "overturned_body", *slips]
+    reached = limit_state_named(state).column
+    columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]
     texts = [*ABOUT, "overturned_body"]
     for path in paths:
         with pq.ParquetFile(path, read_dictionary=texts) as file:
             for group in range(file.num_row_groups):
-                yield _swept(file.read_row_group(group, columns=columns), path)
+                yield _swept(file.read_row_group(group, columns=columns), reached, path)
 
 
-def _swept(part: pa.Table, path: Path) -> Swept:
+def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
     amplitude = part["amplitude_g"].to_numpy()
     motion = part["motion"].combine_chunks()
     code = motion.indices.to_numpy()
@@ -102,13 +96,9 @@ def _swept(part: pa.Table, path: Path) -> Swept:
     first = part.select(list(ABOUT)).take(pa.array(np.arange(0, code.size, each)))
     about = pd.DataFrame({name: first[name].to_pylist() for name in ABOUT}, dtype="str")
     body = part["overturned_body"].combine_chunks()
-    number = np.array([FALLEN.index(name) for name in body.dictionary.to_pylist()], dtype=np.uint8)
-    fallen = number[body.indices.to_numpy()].reshape(-1, each)
-    if SLIP in part.column_names:
-        verdicts = displaced(part.select(["overturned", SLIP]).to_pandas())
-    else:
-        verdicts = part["overturned"].to_numpy()
-    return Swept(about, grid[0].copy(), verdicts.reshape(-1, each), fallen)
+    fallen = body.indices.to_numpy().reshape(-1, each)
+    found = part[reached].to_numpy().reshape(-1, each)
+    return Swept(about, grid[0].copy(), found, fallen, body.dictionary.to_pylist())
 
 
 def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator[Swept]:
@@ -123,12 +113,12 @@ def swept_of(sweep: pd.DataFrame, keys: list[str], about: list[str]) -> Iterator
     about
         Columns to keep.
     """
-    number = np.zeros(len(sweep), dtype=np.uint8)
-    for code, name in enumerate(FALLEN):
-        number[(sweep["overturned_body"] == name).to_numpy()] = code
+    number, bodies = pd.factorize(sweep["overturned_body"])
     overturned = sweep["overturned"].to_numpy(dtype=bool)
     amplitude = sweep["amplitude_g"].to_numpy(dtype=np.float64)
     for rows in sweep.groupby(keys, sort=False).indices.values():
         ordered = rows[np.argsort(amplitude[rows], kind="stable")]
         head = sweep[about].iloc[rows[:1]].reset_index(drop=True)
-        yield Swept(head, amplitude[ordered], overturned[None, ordered], number[None, ordered])
+        yield Swept(
+            head, amplitude[ordered], overturned[None, ordered], number[None, ordered], list(bodies)
+        )

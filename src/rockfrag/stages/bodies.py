@@ -4,37 +4,12 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from rockfrag.rocking.inputs import least_uplift
-from rockfrag.study.configurations import Configuration
-from rockfrag.system.blocks import Block, Body, Column
+from rockfrag.system import geometry
+from rockfrag.system.system import System, uplift_ratios
 from rockfrag.units import GRAVITY
 
 
-def uplift_accelerations(body: Body | Column, g: float = GRAVITY) -> tuple[float, float]:
-    """Least accelerations [m/s²] at which a body starts to rock in pattern 3 and in pattern 4.
-
-    A body at rest opens about the pole whose overturning moment first exceeds the weight's (thesis
-    eq. 2.1, 2.21-2.25). A lone block rocks like a statue on a pedestal that cannot move: its own
-    value is that of pattern 4, and its pattern 3 is NaN. Of three and more blocks the first is the least at
-    which any contact opens.
-    """
-    if isinstance(body, Block):
-        return float("nan"), min(_tangent(body.arm(pole)) for pole in (+1, -1)) * g
-    if isinstance(body, Column):
-        top = body.blocks[-1]
-        alone = min(_tangent(top.arm(pole)) for pole in (+1, -1)) * g
-        return least_uplift(body.system(), g), alone
-    return (
-        min(_tangent(body.common_arm(pole)) for pole in (+1, -1)) * g,
-        min(_tangent(body.statue_arm(pole)) for pole in (+1, -1)) * g,
-    )
-
-
-def _tangent(arm: Sequence[float]) -> float:
-    return abs(arm[0]) / arm[1]
-
-
-def bodies_table(configurations: Sequence[Configuration]) -> pd.DataFrame:
+def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
     """Return what is tested, a row per configuration.
 
     Returns
@@ -47,21 +22,20 @@ def bodies_table(configurations: Sequence[Configuration]) -> pd.DataFrame:
     """
     rows = []
     for one in configurations:
-        block = one.statue
-        together, alone = uplift_accelerations(one.body)
+        body, shape = one.bodies[-1], one.shapes[-1]
         rows.append(
             {
                 "configuration": one.name,
-                "object": one.object,
-                "stands_on": one.pedestal,
-                "width_m": block.width,
-                "height_m": block.height,
-                "mass_kg": block.mass,
-                "slenderness": block.slenderness,
-                "critical_angle_rad": block.alpha,
-                "radius_m": block.radius(),
-                "frequency_1_s": block.frequency(),
-                "uplift_m_s2": alone if isinstance(one.body, Block) else min(together, alone),
+                "object": one.names[-1],
+                "stands_on": "|".join(one.names[-2::-1]),
+                "width_m": body.width,
+                "height_m": body.height,
+                "mass_kg": body.mass,
+                "slenderness": body.height / body.width,
+                "critical_angle_rad": min(geometry.critical_angle(shape, k) for k in (+1, -1)),
+                "radius_m": geometry.radius(shape, 1),
+                "frequency_1_s": geometry.frequency(shape, 1, GRAVITY),
+                "uplift_m_s2": GRAVITY * min(uplift_ratios(one)),
             }
         )
     return pd.DataFrame(rows)

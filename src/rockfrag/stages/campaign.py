@@ -1,5 +1,6 @@
 """The tables of a campaign on a shake table, from the table of tests to comparisons."""
 
+import logging
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from rockfrag.campaign.comparison import (
     judged_tests,
     paired_row,
 )
+from rockfrag.campaign.peaks import check_peaks, measured_peaks
 from rockfrag.campaign.repeats import REPEATS, majority_of_repeats
 from rockfrag.campaign.table_motions import missing_motions, table_motions
 from rockfrag.campaign.tests import MEASURED, Campaign, read_campaign
@@ -20,8 +22,6 @@ from rockfrag.campaign.trials import Trials, sample_trials
 from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
 from rockfrag.campaign.verdicts import simulate_tests
 from rockfrag.errors import InputError
-from rockfrag.motions.filtering import highpass
-from rockfrag.motions.intensity import pga, pgv
 from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.motions.scaling import scale_to_pga
@@ -33,8 +33,8 @@ from rockfrag.system.blocks import Block
 from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.units import GRAVITY
 
-OURS = "rockfrag"
-"""Who gave the simulated verdicts, in the tables."""
+OURS, VOTES = "rockfrag", "rockfrag by votes"
+"""Who gave the simulated verdicts, and the votes behind them, in the tables."""
 
 TABLES = (
     *("tests", "trials", "agreement", "rocking", "fragility"),
@@ -44,14 +44,13 @@ TABLES = (
 VARIED_SHARE = 4
 """Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
 REPLICATES = 400
-DRIFT_CORNER_HZ = 0.1
-"""High-pass before a measured motion is integrated: its noise would drift."""
+FEWEST_GROUPS = 2
 
 
 def run(job: Job[CampaignStudy]) -> Results:
     """Yield the tables of the campaign (``TABLES``), each as soon as it is there."""
     study = job.study
-    campaign, motions = _campaign_with_motions(job)
+    campaign, motions = campaign_with_motions(study, job.log)
     thing = object_of(study)
     trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
     verdicts, rocked = simulate_tests(trials, motions, job.threads)
@@ -75,23 +74,44 @@ def run(job: Job[CampaignStudy]) -> Results:
     yield "footprint", _footprint(study, thing, trials, verdicts == measured, groups)
 
 
-def _campaign_with_motions(job: Job[CampaignStudy]) -> tuple[Campaign, list[Motion]]:
-    """Read the table of tests and the motion of each, scaled where the table says so."""
-    study = job.study
+def campaign_with_motions(
+    study: CampaignStudy, log: logging.Logger
+) -> tuple[Campaign, list[Motion]]:
+    """Read the table of tests and the motion of each, scaled where the table says so.
+
+    Parameters
+    ----------
+    study
+        The configuration.
+    log
+        Where it is said how many tests are left out.
+
+    Raises
+    ------
+    InputError
+        If the table or a motion cannot be used.
+    """
     for public in study.fetch:
         fetch_url(public.url, public.sha256, public.path)
     campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
     if study.leave_out:
         absent = missing_motions(study.motions, list(campaign.tests["motion"]))
         campaign = campaign.only(~campaign.tests["motion"].isin(absent))
-        job.log.info("%d tests without a motion are left out", len(absent))
+        log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
             raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
+    if campaign.tests["group"].nunique() < FEWEST_GROUPS:
+        raise InputError(
+            f"{study.tests}: its tests are of a single input motion; give those of two or more, as guesses are "
+            "chosen by the tests of some and judged by those of others."
+        )
     motions = _motions(study, campaign, study.conditioning)
     if not campaign.measures:
         campaign = Campaign(
-            _measured(campaign.tests, motions), ("pga_g", "pgv_cm_s"), campaign.codes
+            campaign.tests.join(measured_peaks(motions)), ("pga_g", "pgv_cm_s"), campaign.codes
         )
+    elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
+        check_peaks(campaign.tests, motions, study.motions)
     return campaign, motions
 
 
@@ -115,14 +135,6 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
         motion if np.isnan(peak) else scale_to_pga(motion, peak)
         for motion, peak in zip(motions, peaks, strict=True)
     ]
-
-
-def _measured(tests: pd.DataFrame, motions: list[Motion]) -> pd.DataFrame:
-    """Intensity of the motions themselves, where the table of tests has none."""
-    return tests.assign(
-        pga_g=[pga(one) / GRAVITY for one in motions],
-        pgv_cm_s=[100 * pgv(highpass(one, DRIFT_CORNER_HZ)) for one in motions],
-    )
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:
@@ -228,7 +240,7 @@ def _fragility(
         fragility_beside(
             campaign.tests[name].to_numpy(),
             measured,
-            {OURS: validated.verdict},
+            {OURS: validated.verdict, VOTES: validated.mean_votes},
             groups,
             level=study.confidence,
             replicates=REPLICATES,
@@ -289,7 +301,7 @@ def _contact(
         "overturned",
         "right",
     ]
-    if isinstance(thing, Block):
+    if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns, dtype=float)
     low, high = study.unknowns["contact_tolerance_mm"]
     scan = study.object.get("scan_tolerance_mm", 0.0) / 1e3
@@ -330,7 +342,7 @@ def _footprint(
 ) -> pd.DataFrame:
     """Seen from above, about the centre of gravity: outline, and what carries within the plausible tolerances."""
     columns = ["what", "contact_tolerance_mm", "x_m", "y_m"]
-    if isinstance(thing, Block):
+    if not isinstance(thing, Shape):
         return pd.DataFrame(columns=columns)
     likely = trials.table.loc[plausible_trials(right, groups), "contact_tolerance_mm"]
     parts = [("outline", float("nan"), thing.outline)]

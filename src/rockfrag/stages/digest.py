@@ -8,13 +8,14 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 @cache
-def package_digest() -> str:
-    """Return a digest of the whole package's source and data."""
+def package_digest(*plugins: Path) -> str:
+    """Return a digest of source and data of the whole package, and of the folders of plugins."""
     digest = hashlib.sha256()
-    for path in sorted(ROOT.rglob("*")):
-        # what Python and numba keep there of a run is no source
-        if path.is_file() and path.parent.name != "__pycache__":
-            digest.update(path.relative_to(ROOT).as_posix().encode())
-            digest.update(b"\0")
-            digest.update(path.read_bytes())
+    for folder in (ROOT, *plugins):
+        for path in sorted(folder.rglob("*")):
+            # what Python and numba keep there of a run is no source
+            if path.is_file() and path.parent.name != "__pycache__":
+                digest.update(path.relative_to(folder).as_posix().encode())
+                digest.update(b"\0")
+                digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,42 +10,31 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name
-from rockfrag.rocking.inputs import least_uplift
-from rockfrag.system.blocks import Block, Body, Column
+from rockfrag.motions.declared import intensity_measures
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
+from rockfrag.system.system import System, uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
     from rockfrag.fragility.sweep_data import SweepData
 
-GROUND_MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
-FLOOR_MEASURES = ("pga_g", "pgv_cm_s")
-FLOOR_NAMES = {"PGA": "PFA", "PGV": "PFV"}
-"""What peaks are called where the motion is that of a floor above the ground."""
-
-
-def uplift_amplitude(body: Body | Column) -> float:
-    """Peak acceleration above which something rocks, the smallest b/h of any pole [g]; thesis eq. 2.1."""
-    if isinstance(body, Block):
-        arms = [(pole, body.arm(pole)) for pole in (+1, -1)]
-    elif isinstance(body, Column):
-        return least_uplift(body.system(), 1.0)
-    else:
-        arms = [(pole, body.statue_arm(pole)) for pole in (+1, -1)]
-        arms += [(pole, body.common_arm(pole)) for pole in (+1, -1)]
-    return min(-pole * arm.x / arm.y for pole, arm in arms)
+    StateSweeps = dict[str, dict[tuple[str, str], SweepData]]
 
 
 def floor_measures(level: int) -> tuple[str, ...]:
-    """Measures of the curves on a floor, by its level; 0 moves as the ground does."""
-    return GROUND_MEASURES if level == 0 else FLOOR_MEASURES
+    """Columns of the measures of the curves on a floor, by its level; 0 moves as the ground does.
+
+    They are those that other programs read: of the ground OpenQuake's, of a floor demands.
+    """
+    known = intensity_measures()
+    return tuple(one.column for one in known if (one.demand if level else one.openquake))
 
 
 def floor_curves(
-    sweeps: Mapping[tuple[str, str], "SweepData"],
-    slid: Mapping[tuple[str, str], "SweepData"],
+    sweeps: "StateSweeps",
     measures: pd.DataFrame,
     floors: Mapping[str, int],
-    bodies: Mapping[str, Body | Column],
+    systems: Mapping[str, System],
     record_set: str,
     level: float,
     rocks_at_once: bool = True,
@@ -54,15 +44,14 @@ def floor_curves(
     Parameters
     ----------
     sweeps
-        Sweeps of each configuration on each floor, which know the measures of that floor.
-    slid
-        The same with the verdict that something was displaced, where friction is limited; else empty.
+        For each limit state, whether it was reached: sweeps of each configuration on each floor, which know the
+        measures of that floor.
     measures
         Intensity measures of the motions as recorded.
     floors
         Level of each floor by its label; level 0 moves as the ground does.
-    bodies
-        Body of each configuration.
+    systems
+        Systems by the name of their configuration.
     record_set
         Digest of the motions, which goes into the table.
     level
@@ -75,9 +64,9 @@ def floor_curves(
     -------
     curves
         One row per configuration, floor, measure and limit state: ``configuration``, ``floor``,
-        ``floor_level``, ``measure`` (column of ``measures``), ``state`` (``rocks``, ``slides``, ``overturned``)
-        and the columns of :func:`rockfrag.fragility.sweeps.fragility_table`. Overturning is the mean probability
-        over all verdicts; so is sliding, where friction is limited: a visible slip, or worse.
+        ``floor_level``, ``measure`` (column of ``measures``), ``state`` (name of a limit state) and the columns of
+        :func:`rockfrag.fragility.sweeps.fragility_table`. A state that sweeps count has the mean probability over
+        all analyses.
         Rocking starts at an exact peak acceleration, whose value in another measure varies from motion to
         motion.
     shares
@@ -88,33 +77,33 @@ def floor_curves(
     from rockfrag.fragility.drawn_curves import share_points
     from rockfrag.fragility.states import fit_uplift
 
+    floor_labels = {one.label: one.floor_label for one in intensity_measures()}
     shares = []
     rows = []
-    for (name, floor), sweep in sweeps.items():
+    for (name, floor), sweep in sweeps[OVERTURNS].items():
         height = floors[floor]
         columns = floor_measures(height)
         motions = sweep.motions()
-        threshold = uplift_amplitude(bodies[name])
+        threshold = min(uplift_ratios(systems[name]))
         at_uplift = with_measures(motions.assign(amplitude_g=threshold), measures, [*columns])
-        for column in columns:
-            labels = {"configuration": name, "floor": floor, "floor_level": height}
-            states = {"overturned": fragility_of(sweep.outcomes(column), level=level)}
-            if slid:
-                moved = fragility_of(slid[name, floor].outcomes(column), level=level)
-                states = {"slides": moved, **states}
-            if rocks_at_once:
-                rocks = fit_uplift(at_uplift, column, level=level)
-                states = {"rocks": rocks, **states}
-            for state, found in states.items():
-                about = {**labels, "measure": column, "state": state}
-                estimator = "exact_threshold" if state == "rocks" else "mean_probability"
-                row = fragility_row(found, about, estimator, record_set)
-                points = share_points({**about, "estimator": estimator}, found)
-                if height > 0:
-                    row["im"] = FLOOR_NAMES[str(row["im"])]
-                    points["im"] = row["im"]
-                rows.append(row)
-                shares.append(points)
+        for column, state in product(columns, limit_states()):
+            about = {"configuration": name, "floor": floor, "floor_level": height}
+            about |= {"measure": column, "state": state.name}
+            own = sweeps.get(state.name, {}).get((name, floor))
+            if own is not None:
+                found = fragility_of(own.outcomes(column), level=level)
+            elif state.exact and rocks_at_once:
+                found = fit_uplift(at_uplift, column, level=level)
+            else:
+                continue
+            estimator = "exact_threshold" if state.exact else "mean_probability"
+            row = fragility_row(found, about, estimator, record_set)
+            points = share_points({**about, "estimator": estimator}, found)
+            if height > 0:
+                row["im"] = floor_labels[str(row["im"])]
+                points["im"] = row["im"]
+            rows.append(row)
+            shares.append(points)
     return pd.DataFrame(rows), pd.concat(shares, ignore_index=True)
 
 
@@ -148,7 +137,7 @@ def export_curves(
                 usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem, shares=points
             )
             written.append(f"{stem}.xml")
-        if column in FLOOR_MEASURES:
+        if column in floor_measures(1):
             write_simcenter(usable, folder / f"{stem}.csv", folder / f"{stem}.json", shares=points)
             written += [f"{stem}.csv", f"{stem}.json"]
     return written

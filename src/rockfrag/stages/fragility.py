@@ -1,20 +1,25 @@
 """Fragility: curves of every configuration, the measure that predicts overturning best, exports."""
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from rockfrag.motions.declared import declared
+from rockfrag.outcomes.limit_states import OVERTURNS, LimitState, limit_states
 from rockfrag.stages.floor_curves import export_curves, floor_curves, floor_measures
 from rockfrag.stages.job import Job, Results
-from rockfrag.stages.measure_choice import CANDIDATES, best_of, measure_choice
+from rockfrag.stages.measure_choice import best_of, candidates, measure_choice
 from rockfrag.stages.read_sweeps import rows_of, sweeps_of
 from rockfrag.study.study import Study
+from rockfrag.system.system import System
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
     from rockfrag.fragility.sweep_data import SweepData
+    from rockfrag.stages.floor_curves import StateSweeps
 
 
 def run(job: Job[Study]) -> Results:
@@ -43,10 +48,9 @@ def run(job: Job[Study]) -> Results:
     yield "measure_choice", choice
     by_floor, floor_shares = floor_curves(
         data.of_floors,
-        data.slid,
         measures,
         job.study.floors,
-        {one.name: one.body for one in job.study.configurations},
+        {one.name: one for one in job.study.configurations},
         record_set,
         settings.confidence,
         rocks_at_once=not (job.study.slides or job.study.vertical),
@@ -89,15 +93,19 @@ BY = ["configuration", "event", "floor", "motion"]
 
 @dataclass(frozen=True)
 class _Sweeps:
-    """Sweeps by configuration, and by configuration and floor; survival windows of all.
-
-    Of ``slid`` the verdict is that something was displaced; it is empty where nothing can slide.
-    """
+    """Sweeps by configuration, and by limit state, configuration and floor; survival windows of all."""
 
     of_all: dict[str, "SweepData"]
-    of_floors: dict[tuple[str, str], "SweepData"]
-    slid: dict[tuple[str, str], "SweepData"]
+    of_floors: "StateSweeps"
     windows: pd.DataFrame
+
+
+def _states(study: Study) -> dict[str, tuple[LimitState, ...]]:
+    """Limit states that the sweep of each configuration counts."""
+    return {
+        one.name: tuple(state for state in limit_states() if state.counted(one))
+        for one in study.configurations
+    }
 
 
 def _rows(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
@@ -105,62 +113,60 @@ def _rows(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
     from rockfrag.fragility.empirical import survival_windows
     from rockfrag.fragility.sweep_data import TableSweep
     from rockfrag.fragility.sweeps import with_measures
-    from rockfrag.shaketable.swept import displaced
 
     sweep = pd.concat(
         [pd.read_parquet(job.file(path)) for path in job.study.sweep_files], ignore_index=True
     )
-    wanted = list(dict.fromkeys([*job.study.fragility.measures, *CANDIDATES]))
+    wanted = list(dict.fromkeys([*job.study.fragility.measures, *candidates()]))
     measured = with_measures(sweep, measures, wanted)
     of_all: dict[str, SweepData] = {
         str(name): TableSweep(part) for name, part in measured.groupby("configuration", sort=False)
     }
-    of_floors: dict[tuple[str, str], SweepData] = {}
-    slid: dict[tuple[str, str], SweepData] = {}
+    states = _states(job.study)
+    of_floors: StateSweeps = defaultdict(dict)
     for (name, floor), part in sweep.groupby(["configuration", "floor"], sort=False):
         columns = floor_measures(job.study.floors[str(floor)])
         here = with_measures(part, measures, columns)
-        of_floors[str(name), str(floor)] = TableSweep(here)
-        if job.study.slides:
-            slid[str(name), str(floor)] = TableSweep(here.assign(overturned=displaced(here)))
-    return _Sweeps(of_all, of_floors, slid, survival_windows(measured, by=BY))
+        for state in states[str(name)]:
+            reached = here[state.column].astype(bool)
+            of_floors[state.name][str(name), str(floor)] = TableSweep(
+                here.assign(overturned=reached)
+            )
+    return _Sweeps(of_all, of_floors, survival_windows(measured, by=BY))
 
 
 def _counted(job: Job[Study], measures: pd.DataFrame) -> _Sweeps:
     """Sweeps as counts, read part by part."""
     from rockfrag.fragility.counted import CountedSweep
 
-    wanted = list(dict.fromkeys([*job.study.fragility.measures, *CANDIDATES]))
+    wanted = list(dict.fromkeys([*job.study.fragility.measures, *candidates()]))
     floors = {name: floor_measures(level) for name, level in job.study.floors.items()}
 
-    def counted(columns: Mapping[str, Sequence[str]], slid: bool) -> dict[str, CountedSweep]:
-        return {
-            one.name: CountedSweep(
-                sweeps_of(job, one, slid=slid), sweeps_of(job, one, slid=slid), measures, columns
-            )
-            for one in job.study.configurations
-        }
+    def counted(
+        one: System, columns: Mapping[str, Sequence[str]], state: str = OVERTURNS
+    ) -> CountedSweep:
+        first, again = (sweeps_of(job, one, state=state) for _ in range(2))
+        return CountedSweep(first, again, measures, columns)
 
-    def by_floor(sweeps: dict[str, CountedSweep]) -> dict[tuple[str, str], "SweepData"]:
-        return {
-            (name, floor): one.of_floor(floor) for name, one in sweeps.items() for floor in floors
-        }
-
-    found = counted({"": wanted, **floors}, False)
-    return _Sweeps(
-        {name: one.of_floor("") for name, one in found.items()},
-        by_floor(found),
-        by_floor(counted(floors, True)) if job.study.slides else {},
-        pd.concat([one.windows("") for one in found.values()], ignore_index=True).sort_values(
-            BY, ignore_index=True
-        ),
-    )
+    of_all: dict[str, SweepData] = {}
+    of_floors: StateSweeps = defaultdict(dict)
+    windows = []
+    states = _states(job.study)
+    for one in job.study.configurations:
+        found = counted(one, {"": wanted, **floors})
+        of_all[one.name] = found.of_floor("")
+        windows.append(found.windows(""))
+        for state in states[one.name]:
+            of_state = found if state.name == OVERTURNS else counted(one, floors, state.name)
+            for floor in floors:
+                of_floors[state.name][one.name, floor] = of_state.of_floor(floor)
+    table = pd.concat(windows, ignore_index=True).sort_values(BY, ignore_index=True)
+    return _Sweeps(of_all, of_floors, table)
 
 
 def _at_the_base(table: pd.DataFrame, several_floors: bool) -> pd.DataFrame:
     """Name peaks for what they are where motions of several floors share a curve: of the base."""
     if not several_floors:
         return table
-    return table.assign(
-        im=table["im"].replace({"PGA": "peak base acceleration", "PGV": "peak base velocity"})
-    )
+    words = {one.label: f"peak base {one.demand.lower()}" for one in declared() if one.demand}
+    return table.assign(im=table["im"].replace(words))

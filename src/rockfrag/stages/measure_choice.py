@@ -5,15 +5,17 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from rockfrag.motions.declared import intensity_measures
+
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
     from rockfrag.fragility.sweep_data import SweepData
 
-CANDIDATES = (
-    *("pga_g", "pgv_cm_s", "pgd_cm", "sa_0_3s_g", "sa_1_0s_g"),
-    *("avgsa_g", "housner_cm", "arias_m_s"),
-)
-"""Measures that are compared; all grow with the amplitude."""
+
+def candidates() -> tuple[str, ...]:
+    """Return the columns of the measures that are compared; all grow with the amplitude."""
+    return tuple(one.column for one in intensity_measures() if one.compared)
+
 
 GIVEN = ("mean_period_s", "d5_95_s")
 """Properties of which a sufficient measure leaves nothing to tell."""
@@ -53,12 +55,12 @@ def measure_choice(
     :class:`rockfrag.fragility.measure_choice.MeasureChoice`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.
     """
-    from rockfrag.fragility.measure_choice_sweeps import recommend_measure_of
+    from rockfrag.fragility.measure_choice_sweeps import recommend_sweep_measure
 
     parts = []
     for name, sweep in sweeps.items():
-        choice = recommend_measure_of(
-            sweep, measures, CANDIDATES, given=GIVEN, level=level, seed=seed
+        choice = recommend_sweep_measure(
+            sweep, measures, candidates(), given=GIVEN, level=level, seed=seed
         )
         table = choice.table.copy()
         table.insert(0, "configuration", name)

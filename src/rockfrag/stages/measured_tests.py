@@ -9,15 +9,6 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.stages.pedestal import pedestal_tables
 from rockfrag.study.study import Study
 
-MEASURED_TABLES = (
-    "measured/tests",
-    "measured/beside",
-    "measured/fragility",
-    "measured/effects",
-    "measured/notes",
-)
-"""Tables of :func:`measured_tables`."""
-
 _KEY = ("object", "pedestal", "event", "floor")
 _CURVES = ("configuration", "im", "unit", "theta", "theta_lower", "theta_upper", "beta")
 
@@ -66,7 +57,7 @@ def measured_tables(
 
     Returns
     -------
-    The tables named in ``MEASURED_TABLES``; what the tests cannot carry is empty, with the reason
+    The tables by their names; what the tests cannot carry is empty, with the reason
     in ``measured/notes``.
     """
     notes: list[str] = []

@@ -8,20 +8,26 @@ from rockfrag.errors import InputError
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 
-PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "mixed", "notes")
+PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_event", "ranks", "notes")
 """Tables of :func:`pedestal_tables`, each written under ``pedestal/``."""
 
 
 def run(job: Job[Study]) -> Results:
     """Yield the pedestal's effect in every form."""
+    from rockfrag.pedestal.paired_tests import with_counterparts
+
     slenderness = {name: block.slenderness for name, block in job.study.specimens.items()}
-    found = pedestal_tables(job.table("tests"), job.study.seed, slenderness)
+    tests, origin = with_counterparts(job.table("tests"), job.study.counterparts)
+    slenderness |= {name: slenderness[one] for name, one in origin.items()}
+    found = pedestal_tables(tests, job.study.seed, slenderness)
     for name, table in found.items():
         yield f"pedestal/{name}", table
     pairs = found["pairs"]
     # every reading of the amplitudes has the same pairs
     several = pairs.groupby("reading").size()
-    job.log.info("pairs with and without pedestal: %d", several.max() if len(several) else 0)
+    job.log.info(
+        "pairs of an arrangement and its counterpart: %d", several.max() if len(several) else 0
+    )
 
 
 def pedestal_tables(
@@ -48,7 +54,11 @@ def pedestal_tables(
     if tests.empty:
         raise InputError("tests: there is no row; the pedestal's effect needs tests.")
     parts: dict[str, list[pd.DataFrame]] = {name: [] for name in PEDESTAL_TABLES}
-    for reading, rows in tests.groupby("reading", sort=False):
+    # a table that cannot follow the weakest motion has tested nothing
+    untested = (tests["censored"] == "right") & (tests["lower_g"] == 0)
+    for reading, rows in tests[~untested].groupby("reading", sort=False):
+        if rows["pedestal"].nunique() < 2:
+            continue
         found = study_pedestal(rows, seed=seed, slenderness=slenderness)
         for name, table in {
             "pairs": found.pairs.table,
@@ -56,10 +66,11 @@ def pedestal_tables(
             "whole": found.whole,
             "without_event": found.without_event,
             "ranks": found.ranks,
-            "mixed": found.mixed,
             "notes": pd.DataFrame({"note": list(found.notes)}),
         }.items():
             labelled = table.copy()
             labelled.insert(0, "reading", reading)
             parts[name].append(labelled)
+    if not parts["pairs"]:
+        raise InputError("tests: no reading has tests with and without a pedestal.")
     return {name: pd.concat(tables, ignore_index=True) for name, tables in parts.items()}

@@ -5,20 +5,19 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 import pandas as pd
 
+from rockfrag.outcomes.limit_states import OVERTURNS
 from rockfrag.shaketable.swept import Swept, read_swept
 from rockfrag.stages.job import Job
-from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
+from rockfrag.system.system import System
 
 
-def sweeps_of(
-    job: Job[Study], configuration: Configuration, *, slid: bool = False
-) -> Iterator[Swept]:
+def sweeps_of(job: Job[Study], configuration: System, *, state: str = OVERTURNS) -> Iterator[Swept]:
     """Yield the verdicts of a configuration, see :func:`rockfrag.shaketable.swept.read_swept`."""
     study = job.study
     jobs = range(study.sweep_jobs)
     files = (job.file(study.sweep_file(configuration, one)) for one in jobs)
-    yield from read_swept(files, slid=slid)
+    yield from read_swept(files, state=state)
 
 
 MOST_LEVELS = 200

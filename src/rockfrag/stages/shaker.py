@@ -7,17 +7,10 @@ import pandas as pd
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.shaketable.swept import Swept
-from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
 
 LIMITED = "step_protocol_shaker"
 """Reading of the step protocol that stops at the shaker's limit."""
-
-
-def heaviest(configurations: Sequence[Configuration]) -> float:
-    """Mass of the heaviest specimen [kg], the payload for which limits are computed."""
-    bodies = [one.body for one in configurations]
-    return max(body.mass for body in bodies)
 
 
 def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
@@ -26,7 +19,8 @@ def limits_table(study: Study, motions: Sequence[Motion]) -> pd.DataFrame:
 
     if study.more.shaker is None:
         raise ValueError("the study has no shaker")
-    return shaker_table(study.more.shaker, motions, heaviest(study.configurations))
+    payload = max(one.mass for one in study.configurations)
+    return shaker_table(study.more.shaker, motions, payload)
 
 
 def limited_tests(

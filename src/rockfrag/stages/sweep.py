@@ -2,9 +2,7 @@
 
 import warnings
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,17 +11,23 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
-from rockfrag.outcomes.columns import SUFFIXES
-from rockfrag.outcomes.outcomes import Outcomes, columns
+from rockfrag.outcomes.limit_states import limit_states
+from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
+from rockfrag.shaketable.swept import fallen_names, labels_of
 from rockfrag.stages.job import Job, Results
-from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.configurations import Configuration
 from rockfrag.study.study import Study
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 NEAR = 1 + 0.01 * np.arange(-10, 11)
 """Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""
+
+RECORDED = ("overturning_time", "certain_time", "impacts", "unstable_distance", "peak_rotation")
+"""Columns of outcomes in every sweep."""
+
+SLID = ("flights", "slip", "peak_slip")
+"""Columns of outcomes in sweeps with friction."""
 
 ROWS_AT_ONCE = 131_072
 """Histories in memory at a time, and of a row group of a file."""
@@ -63,20 +67,20 @@ def _sweep_part(job: Job[Study]) -> None:
                 sweep_table(
                     configuration,
                     motions[i : i + batch],
-                    study.amplitudes,
+                    study.amplitudes.values_g,
                     job.threads,
                     None if ups is None else ups[i : i + batch],
                 )
                 for i in range(0, len(motions), batch)
             )
             histories += _write(tables, path)
-        if ups is not None and configuration.friction is None:
+        if ups is not None and not configuration.loose:
             _say_how_light(job, configuration, number)
         job.log.info("%s: %d histories so far", configuration.name, histories)
     job.log.info("response histories: %d", histories)
 
 
-def _say_how_light(job: Job[Study], configuration: Configuration, number: int) -> None:
+def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
     """Log in how many histories the ground takes more than half of all weight."""
     from rockfrag.rocking.ensemble import LIGHT
 
@@ -118,9 +122,9 @@ def _all_as_recorded(job: Job[Study]) -> pd.DataFrame:
 
 
 def sweep_table(
-    configuration: Configuration,
+    configuration: System,
     motions: Sequence[Motion],
-    amplitudes: Amplitudes,
+    amplitudes_g: NDArray[np.float64],
     threads: int = 1,
     vertical: Sequence[Motion] | None = None,
 ) -> pa.Table:
@@ -132,8 +136,8 @@ def sweep_table(
         What stands on the table.
     motions
         Motions of the table; each is scaled so that its peak is the amplitude.
-    amplitudes
-        Peaks of the motion.
+    amplitudes_g
+        Peaks of the motion [g].
     threads
         Threads to use; the result does not depend on it.
     vertical
@@ -142,7 +146,8 @@ def sweep_table(
     Returns
     -------
     One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
-    ``motion``, ``event``, ``floor``, ``amplitude_g``, ``overturned``, ``overturned_body``,
+    ``motion``, ``event``, ``floor``, ``amplitude_g``, a column for each limit state that is counted
+    (``overturned``, with friction ``slides``), ``overturned_body``,
     ``overturning_time_s`` and ``certain_time_s`` (instant of the fall, and from which it was certain),
     ``impacts``, ``unstable_distance`` (small where the outcome nearly flipped), ``peak_rotation_body_1`` and on
     (|θ| of each body from below over its critical angle); with vertical motion and without friction also
@@ -152,10 +157,9 @@ def sweep_table(
     """
     from rockfrag.motions.scaling import factors_to_pga
 
-    values = amplitudes.values_g
-    scales = np.array([factors_to_pga(motion, values) for motion in motions])
+    scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
     result = _shaken(configuration, motions, scales, threads, vertical)
-    each = len(values)
+    each = len(amplitudes_g)
 
     def of_all(text: str) -> pa.DictionaryArray:
         return _texts([text], np.zeros(each * len(motions), dtype=np.int32))
@@ -164,46 +168,29 @@ def sweep_table(
         return _texts(texts, np.repeat(np.arange(len(motions), dtype=np.int32), each))
 
     made = {
-        "configuration": of_all(configuration.name),
-        "object": of_all(configuration.object),
-        "pedestal": of_all(configuration.label),
+        **{key: of_all(text) for key, text in labels_of(configuration).items()},
         "motion": of_motions([motion.name for motion in motions]),
         "event": of_motions([motion.metadata.get("event") or motion.name for motion in motions]),
         "floor": of_motions([motion.metadata["floor"] for motion in motions]),
-        "amplitude_g": np.tile(values, len(motions)),
-        "overturned": result.overturned[0].ravel(),
+        "amplitude_g": np.tile(amplitudes_g, len(motions)),
+        **{
+            state.column: state.reached(result)[0].ravel()
+            for state in limit_states()
+            if state.counted(configuration)
+        },
         "overturned_body": _texts(
-            configuration.fallen_names, result.overturned_body[0].ravel().astype(np.int32)
+            fallen_names(configuration), result.overturned_body[0].ravel().astype(np.int32)
         ),
-        **_of_case(result, "overturning_time", "certain_time", "impacts", "unstable_distance"),
-        **_of_parts(result, "peak_rotation"),
+        **result.wide(0, RECORDED),
     }
-    if configuration.friction is None and vertical is not None:
-        made |= _of_case(result, "minimum_gravity_ratio")
-    if configuration.friction is not None:
-        rough = _shaken(replace(configuration, friction=None), motions, scales, threads, vertical)
-        made["peak_slip_m"] = result.peak_slip[0].max(axis=-1).ravel()
-        made |= _of_parts(result, "slip", "peak_slip") | _of_case(result, "flights")
+    if configuration.loose:
+        rough = _shaken(configuration.held(), motions, scales, threads, vertical)
+        made["peak_slip_m"] = result.of_any("peak_slip")[0].ravel()
+        made |= result.wide(0, SLID)
         made["overturned_without_sliding"] = rough.overturned[0].ravel()
+    elif vertical is not None:
+        made |= result.wide(0, ("minimum_gravity_ratio",))
     return pa.table(made)
-
-
-def _of_case(result: Outcomes, *names: str) -> dict[str, NDArray[Any]]:
-    """Columns of the outcomes of one configuration."""
-    titles = {one.name: one.title for one in columns("cases")}
-    return {titles[name]: getattr(result, name)[0].ravel() for name in names}
-
-
-def _of_parts(result: Outcomes, *names: str) -> dict[str, NDArray[Any]]:
-    """Columns of each body or contact of one configuration, from below, numbered."""
-    parts = {one.name: one for one in columns() if one.table != "cases"}
-    found = {}
-    for name in names:
-        one = parts[name]
-        for k in range(result.counts[0]):
-            place = f"{'body' if one.table == 'bodies' else 'contact'}_{k + 1}"
-            found[f"{name}_{place}{SUFFIXES[one.unit]}"] = getattr(result, name)[0, ..., k].ravel()
-    return found
 
 
 def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray:
@@ -214,7 +201,7 @@ def _texts(texts: Sequence[str], which: NDArray[np.int32]) -> pa.DictionaryArray
 
 
 def _shaken(
-    configuration: Configuration,
+    configuration: System,
     motions: Sequence[Motion],
     scales: NDArray[np.float64],
     threads: int,
@@ -227,19 +214,16 @@ def _shaken(
         # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)
         return overturns(
-            [configuration.body],
-            [motion.acceleration for motion in motions],
-            [motion.dt for motion in motions],
-            scales,
-            restitution=[configuration.restitution],
-            friction=None if configuration.friction is None else [configuration.friction],
-            vertical=None if vertical is None else [motion.acceleration for motion in vertical],
+            configuration,
+            motions,
+            scales=scales,
+            vertical=vertical,
             threads=threads,
         )
 
 
 def as_recorded(
-    configuration: Configuration,
+    configuration: System,
     motions: Sequence[Motion],
     threads: int = 1,
     vertical: Sequence[Motion] | None = None,
@@ -269,21 +253,19 @@ def as_recorded(
     itself = len(NEAR) // 2
     table = pd.DataFrame(
         {
-            "configuration": configuration.name,
-            "object": configuration.object,
-            "pedestal": configuration.label,
+            **labels_of(configuration),
             "motion": [motion.name for motion in motions],
             "event": [motion.metadata.get("event") or motion.name for motion in motions],
             "floor": [motion.metadata["floor"] for motion in motions],
             "pga_g": [motion.pga / GRAVITY for motion in motions],
             "overturned": result.overturned[0, :, itself],
             "overturned_body": np.take(
-                configuration.fallen_names, result.overturned_body[0, :, itself]
+                fallen_names(configuration), result.overturned_body[0, :, itself]
             ),
             "peak_rotation": result.peak_rotation[0, :, itself, -1],
             "share_near": result.overturned[0].mean(axis=1),
         }
     )
-    if configuration.friction is None:
+    if not configuration.loose:
         return table
-    return table.assign(peak_slip_m=result.peak_slip[0, :, itself].max(axis=-1))
+    return table.assign(peak_slip_m=result.of_any("peak_slip")[0, :, itself])

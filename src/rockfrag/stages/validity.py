@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion
-from rockfrag.study.configurations import Configuration
+from rockfrag.system.system import System
 
 MOST_TESTED = 500
 """Tests of a configuration whose forces are looked at: of more this many, evenly among them."""
@@ -16,7 +16,7 @@ MOST_TESTED = 500
 
 def validity_table(
     tests: pd.DataFrame,
-    configurations: Sequence[Configuration],
+    configurations: Sequence[System],
     motions: Mapping[str, Motion],
     vertical: Mapping[str, Motion] | None = None,
     threads: int = 1,
@@ -47,7 +47,7 @@ def validity_table(
     known = tests[tests["amplitude_g"].notna()]
     known = known[_looked_at(known["configuration"])].reset_index(drop=True)
     columns = ["friction_demand", "least_normal_force_n", "unstable_distance"]
-    if any(one.friction is not None for one in configurations):
+    if any(one.loose for one in configurations):
         columns += ["peak_slip_m", "flights"]
     parts = [pd.DataFrame(columns=columns)]
     for one in configurations:
@@ -55,7 +55,7 @@ def validity_table(
         if len(rows):
             forces = _forces(one, *_shaken(rows, motions, vertical), threads)
             parts.append(forces.set_index(rows.index))
-    found = pd.concat(parts[1:] or parts).sort_index()
+    found = pd.concat(parts[1:] or parts)[columns].sort_index()
     keys = ["test", "object", "pedestal", "event", "floor", "motion", "amplitude_g"]
     return pd.concat([known[keys], found], axis=1)
 
@@ -89,45 +89,42 @@ def _shaken(
 
 
 def _forces(
-    one: Configuration,
+    one: System,
     motions: list[Motion],
     vertical: list[NDArray[np.float64]] | None,
     threads: int,
 ) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
-    if one.friction is not None:
-        return _forces_with_friction(one, motions, vertical)
+    if one.loose or one.count > 2:
+        return _forces_in_contact(one, motions, vertical)
     from rockfrag.rocking import overturns
 
     found = overturns(
-        [one.body],
+        one,
         motions,
-        restitution=[one.restitution],
         vertical=vertical,
         forces=True,
         threads=threads,
     )
     return pd.DataFrame(
         {
-            "friction_demand": found.friction_demand[0, :, 0].max(axis=1),
-            "least_normal_force_n": found.least_normal_force[0, :, 0].min(axis=1),
-            "unstable_distance": found.unstable_distance[0, :, 0],
+            "friction_demand": found.of_any("friction_demand")[0, :, 0],
+            "least_normal_force_n": found.of_any("least_normal_force")[0, :, 0],
+            **found.wide(0, ("unstable_distance",)),
         }
     )
 
 
-def _forces_with_friction(
-    one: Configuration, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
+def _forces_in_contact(
+    one: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
 ) -> pd.DataFrame:
     from rockfrag.rocking import simulate
 
     rows = []
     for place, motion in enumerate(motions):
         response = simulate(
-            one.body,
+            one,
             motion,
-            restitution=one.restitution,
-            friction=one.friction,
             vertical=None if vertical is None else vertical[place],
         )
         rows.append(

@@ -1,82 +1,18 @@
 """The bodies of a study: a table of blocks and a table of which block stands on which."""
 
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rockfrag.errors import InputError
-from rockfrag.files import distinct_file_names, file_name
+from rockfrag.files import distinct_file_names
 from rockfrag.plausibility import check_density
-from rockfrag.rocking.measured_restitution import (
-    Law,
-    Measured,
-    MeasuredRestitution,
-    Restitution,
-)
-from rockfrag.rocking.options import FrictionInput, system_of
-from rockfrag.system.blocks import Block, Body, Column, Stack
+from rockfrag.rocking.measured_restitution import Measured, MeasuredRestitution
+from rockfrag.rocking.options import system_of
+from rockfrag.system.blocks import Block, stacked
 from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
-
-
-@dataclass(frozen=True)
-class Configuration:
-    """One arrangement to be tested: an object alone, or an object on a pedestal.
-
-    Attributes
-    ----------
-    name
-        Its name in tables, for example ``P&T1``.
-    object, pedestal
-        Names of the blocks; ``pedestal`` is empty where the object stands on the ground, and names all blocks
-        under it, from above, as ``base|plinth``.
-    body
-        What the mechanics see.
-    restitution
-        What was measured of its impacts, as :func:`rockfrag.rocking.simulate` takes it; None conserves momentum.
-    friction
-        Coefficients of friction, as :func:`rockfrag.rocking.simulate` takes them; None where nothing slides.
-    """
-
-    name: str
-    object: str
-    pedestal: str
-    body: Body | Column
-    restitution: Restitution = None
-    friction: FrictionInput | None = None
-
-    @property
-    def label(self) -> str:
-        """``P`` with and ``NP`` without a pedestal."""
-        return "P" if self.pedestal else "NP"
-
-    @property
-    def statue(self) -> Block:
-        """The object's block."""
-        return self.body.blocks[-1]
-
-    @property
-    def system(self) -> System:
-        """What is shaken: the body with its contacts."""
-        return system_of(self.body, self.friction, self.restitution)
-
-    @property
-    def fallen_names(self) -> tuple[str, ...]:
-        """What tables call the body that fell, by its number in outcomes."""
-        if len(self.below) > 1:
-            return ("", *reversed(self.below), self.object)
-        return ("", "pedestal", "statue") if self.pedestal else ("", "statue")
-
-    @property
-    def below(self) -> tuple[str, ...]:
-        """Names of the blocks under the object, from above."""
-        return names_from_above(self.pedestal)
-
-    @property
-    def slug(self) -> str:
-        """The name as a file name."""
-        return file_name(self.name)
 
 
 def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
@@ -129,14 +65,12 @@ def _block(row: Row) -> Block:
         raise InputError(f"{row.path}, line {row.line}: {error}") from error
 
 
-def read_configurations(
-    path: str | os.PathLike[str], blocks: dict[str, Block]
-) -> list[Configuration]:
-    """Read which block stands on which.
+def read_configurations(path: str | os.PathLike[str], blocks: dict[str, Block]) -> list[System]:
+    """Read which block stands on which; a system has the configuration's name, and its bodies those of the blocks.
 
     Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several
     blocks under an object are named from above, ``base|plinth``; they may stand behind the object too,
-    ``venus|base|plinth``.
+    ``venus|base|plinth``. Of ``counterpart`` see :func:`read_counterparts`.
 
     Raises
     ------
@@ -144,9 +78,9 @@ def read_configurations(
         If the file or a cell is not as expected, a name is given twice, a block is not known, or
         the object does not fit on the pedestal.
     """
-    found: dict[str, Configuration] = {}
+    found: dict[str, System] = {}
     checked: dict[str, str] = {}
-    for row in read_rows(path, ["name", "object"], ["pedestal"]):
+    for row in read_rows(path, *_COLUMNS):
         name = row.text("name")
         object_name, *behind = names_from_above(row.text("object")) or ("",)
         under = names_from_above(row.cells.get("pedestal", ""))
@@ -160,12 +94,32 @@ def read_configurations(
         if name in found:
             raise row.error("name", f"{name} is given twice")
         try:
-            body = arranged([blocks[one] for one in (object_name, *below)])
+            found[name] = configuration_of(name, (*reversed(below), object_name), blocks)
             distinct_file_names([name], checked)
         except InputError as error:
             raise InputError(f"{row.path}, line {row.line}: {error}") from error
-        found[name] = Configuration(name, object_name, "|".join(below), body)
     return list(found.values())
+
+
+_COLUMNS = (["name", "object"], ["pedestal", "counterpart"])
+
+
+def read_counterparts(path: str | os.PathLike[str]) -> dict[str, str]:
+    """Read with which arrangement one is compared, by name, where that is not its object alone on the floor.
+
+    Raises
+    ------
+    InputError
+        If the table cannot be read, or a counterpart is no other arrangement of it.
+    """
+    rows = read_rows(path, *_COLUMNS)
+    names = {row.cells["name"] for row in rows}
+    found = {row.text("name"): row.text("counterpart") for row in rows if row.has("counterpart")}
+    for row in rows:
+        other = found.get(row.cells["name"])
+        if other is not None and other not in names - {row.cells["name"]}:
+            raise row.error("counterpart", f"expected another arrangement, found {other}")
+    return found
 
 
 def names_from_above(text: str) -> tuple[str, ...]:
@@ -173,24 +127,20 @@ def names_from_above(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split("|")) if text.strip() else ()
 
 
-def arranged(from_above: list[Block]) -> Body | Column:
-    """Return blocks that stand on each other, the uppermost first, as a block, a stack or a column."""
-    if len(from_above) == 1:
-        return from_above[0]
-    if len(from_above) == 2:
-        return Stack(from_above[1], from_above[0])
-    return Column(tuple(reversed(from_above)))
+def configuration_of(name: str, names: Sequence[str], blocks: Mapping[str, Block]) -> System:
+    """Return the system of the blocks of these names, from below, whose bodies have these names too."""
+    system = stacked([blocks[one] for one in names]).system()
+    bodies = (replace(body, name=one) for body, one in zip(system.bodies, names, strict=True))
+    return replace(system, bodies=tuple(bodies), name=name)
 
 
-def each_alone(blocks: dict[str, Block]) -> list[Configuration]:
+def each_alone(blocks: Mapping[str, Block]) -> list[System]:
     """Every block as an object that stands alone."""
-    return [Configuration(name, name, "", block) for name, block in blocks.items()]
+    return [configuration_of(name, [name], blocks) for name in blocks]
 
 
-def with_restitution(
-    configuration: Configuration, measured: Mapping[str, Measured], law: Law
-) -> Configuration:
-    """Return a configuration whose blocks come off impacts as was measured of each alone.
+def with_restitution(system: System, measured: Mapping[str, Measured], law: str) -> System:
+    """Return a system whose bodies come off impacts as was measured of each alone.
 
     Parameters
     ----------
@@ -205,19 +155,15 @@ def with_restitution(
     InputError
         If a block would gain energy.
     """
-    each = [measured.get(name) for name in (*reversed(configuration.below), configuration.object)]
+    each = tuple(measured.get(name) for name in system.names)
     if all(one is None for one in each):
-        return configuration
-    value = tuple(each) if configuration.pedestal else each[0]
-    restitution = MeasuredRestitution(value, law)  # type: ignore[arg-type]
-    system_of(configuration.body, restitution=restitution)
-    return replace(configuration, restitution=restitution)
+        return system
+    value = each if system.count > 1 else each[0]
+    return system_of(system, restitution=MeasuredRestitution(value, law))  # type: ignore[arg-type]
 
 
-def with_friction(
-    configuration: Configuration, content: float | Mapping[str, Any]
-) -> Configuration:
-    """Return a configuration whose contacts have the friction that a study states.
+def with_friction(system: System, content: float | Mapping[str, Any]) -> System:
+    """Return a system whose contacts have the friction that a study states.
 
     Parameters
     ----------
@@ -237,7 +183,6 @@ def with_friction(
         (one["static"], one["kinetic"]) if isinstance(one, Mapping) else one for one in each
     )
     friction: dict[str, Any] = {"ground": ground}
-    if configuration.pedestal:
+    if system.count > 1:
         friction["interface"] = interface
-    system_of(configuration.body, friction)
-    return replace(configuration, friction=friction)
+    return system_of(system, friction)

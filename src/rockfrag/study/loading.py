@@ -6,6 +6,7 @@ use. Only what is in the user's records is left to :mod:`rockfrag.study.records`
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,15 +15,16 @@ import pandas as pd
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError
 from rockfrag.files import distinct_file_names, file_name, is_file
+from rockfrag.laws import law_names
+from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import read_catalogue
-from rockfrag.rocking.measured_restitution import LAWS
 from rockfrag.schema import checked
 from rockfrag.study.amplitudes import Amplitudes
 from rockfrag.study.campaign import CampaignStudy, campaign_from, is_campaign
 from rockfrag.study.configurations import (
-    Configuration,
     each_alone,
     read_configurations,
+    read_counterparts,
     read_specimens,
     with_friction,
     with_restitution,
@@ -37,6 +39,7 @@ from rockfrag.study.steps import checked_steps
 from rockfrag.study.study import FragilitySettings, Study
 from rockfrag.study.supplementary import supplementary_from
 from rockfrag.system.blocks import Block
+from rockfrag.system.system import System
 from rockfrag.yaml_file import read_yaml
 
 OF_ONE_COMPONENT = (
@@ -52,24 +55,13 @@ OF_ONE_COMPONENT = (
 AnyStudy = Study | MeasuredTable | CampaignStudy
 
 
-def load_study(path: str | os.PathLike[str]) -> Study:
-    """Read a study's configuration file and everything small that it names, and check them all.
-
-    Raises
-    ------
-    InputError
-        One sentence with the file, the key or row, what was expected and what was found.
-    """
-    return study_from(read_yaml(path), path)
-
-
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
     """Read a configuration of any kind: a simulated study, a measured table, a campaign on a shake table.
 
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        One sentence with the file, the key or row, what was expected and what was found.
     """
     return any_study(read_yaml(path), path)
 
@@ -80,7 +72,7 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        As :func:`load_any`.
     """
     if is_measured_table(content):
         return measured_table_from(content, path)
@@ -95,7 +87,7 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     Raises
     ------
     InputError
-        As :func:`load_study`.
+        As :func:`load_any`.
     """
     source = Path(path)
     content = checked(content, "study", str(source))
@@ -103,10 +95,12 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
     specimens = read_specimens(specimens_file)
     configurations_file, known = None, each_alone(specimens)
+    counterparts: dict[str, str] = {}
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
         known = read_configurations(configurations_file, specimens)
+        counterparts = read_counterparts(configurations_file)
     building = content.get("building")
     building_file = None if building is None else existing_file(source, "building", building)
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
@@ -136,17 +130,26 @@ def study_from(content: Mapping[str, Any], path: str | os.PathLike[str]) -> Stud
             ),
             confidence=content["fragility"]["confidence"],
         ),
-        compare_with=content.get("compare_with"),
         keep_going=content.get("keep_going", False),
         slides="friction" in content,
         vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
         more=supplementary_from(content, source),
+        counterparts={
+            one.name: counterparts[one.name]
+            for one in configurations
+            if counterparts.get(one.name) in {other.name for other in configurations}
+        },
+    )
+    asked = plugins_asked(content)
+    study = replace(
+        study, added={name: one.settings(content, study) for name, one in asked.items()}
     )
     _check_names(study)
     _check_records_exist(study)
-    _check_optional_parts(study)
-    _check_mechanics(study)
+    if study.more.measured_tests is not None:
+        _check_measured_tests(study, study.more.measured_tests)
+    _check_vertical(study)
     return study
 
 
@@ -171,8 +174,8 @@ def _rows(source: Path, table: pd.DataFrame, names: Sequence[str] | None) -> pd.
 
 
 def _chosen(
-    source: Path, known: Sequence[Configuration], names: Sequence[str] | None
-) -> tuple[Configuration, ...]:
+    source: Path, known: Sequence[System], names: Sequence[str] | None
+) -> tuple[System, ...]:
     by_name = {one.name: one for one in known}
     for i, name in enumerate(names or ()):
         if name not in by_name:
@@ -185,10 +188,10 @@ def _chosen(
 
 def _measured(
     source: Path,
-    chosen: Sequence[Configuration],
+    chosen: Sequence[System],
     specimens: Mapping[str, Block],
     content: Mapping[str, Any] | None,
-) -> tuple[Configuration, ...]:
+) -> tuple[System, ...]:
     """Return the configurations with what the study says of their impacts."""
     if content is None:
         return tuple(chosen)
@@ -200,7 +203,7 @@ def _measured(
                 f"{key}.blocks: expected names of the specimens {', '.join(specimens)}, found {name}."
             )
         measured[name] = tuple(value) if isinstance(value, list) else value
-    law = content.get("law", LAWS[0])
+    law = content.get("law", law_names()[0])
     try:
         return tuple(with_restitution(one, measured, law) for one in chosen)
     except InputError as error:
@@ -208,8 +211,8 @@ def _measured(
 
 
 def _on_surfaces(
-    source: Path, configurations: tuple[Configuration, ...], content: Any
-) -> tuple[Configuration, ...]:
+    source: Path, configurations: tuple[System, ...], content: Any
+) -> tuple[System, ...]:
     """Return the configurations with what the study says of friction."""
     if content is None:
         return configurations
@@ -248,38 +251,10 @@ def _check_records_exist(study: Study) -> None:
         check_file(path, f"{study.catalogue_file}: column file")
 
 
-def _check_optional_parts(study: Study) -> None:
-    if study.more.explanation is not None and not study.has_pairs:
-        raise InputError(
-            f"{study.source}: key explanation: expected an object tested with and without a pedestal "
-            "among the configurations."
-        )
-    if study.more.sensitivity is not None:
-        _check_varied_building(study)
-    if study.more.measured_tests is not None:
-        _check_measured_tests(study, study.more.measured_tests)
-
-
-def _check_mechanics(study: Study) -> None:
-    """Refuse what is not simulated with friction or with vertical motion."""
-    where = f"{study.source}: key {'friction' if study.slides else 'vertical'}"
-    if (study.slides or study.vertical) and study.more.explanation is not None:
-        raise InputError(
-            f"{where}: the departures of the key explanation rock without sliding under horizontal motion; "
-            "leave one of the two out (explanation.friction tries coefficients)."
-        )
-    if (study.slides or study.vertical) and study.compare_with is not None:
-        raise InputError(
-            f"{where}: what the key compare_with compares with rocks without sliding under horizontal motion; "
-            "leave one of the two out."
-        )
+def _check_vertical(study: Study) -> None:
+    """Refuse vertical motion of which the catalogue names no record, or that processing would cut elsewhere."""
     if not study.vertical:
         return
-    if study.more.sensitivity is not None:
-        raise InputError(
-            f"{study.source}: key vertical: the buildings of the key building_sensitivity are shaken "
-            "horizontally; leave one of the two out."
-        )
     for row in study.catalogue.to_dict("records"):
         if not row["vertical"]:
             raise InputError(
@@ -292,24 +267,6 @@ def _check_mechanics(study: Study) -> None:
                 f"{study.source}: key motions.processing[{i}]: {step['step']} looks at one component, and the "
                 "vertical one would no longer belong to it; leave it out or use trim and scale."
             )
-
-
-def _check_varied_building(study: Study) -> None:
-    """Raise where the sensitivity has no building, or names floors or levels that it does not have."""
-    where = f"{study.source}: key building_sensitivity"
-    if study.building is None:
-        raise InputError(f"{where}: expected the key building too, which it varies.")
-    for i, levels in enumerate((study.more.sensitivity or {}).get("floors", ())):
-        for label, level in levels.items():
-            key = f"{where}.floors[{i}].{label}"
-            if label not in study.floors:
-                raise InputError(
-                    f"{key}: expected a floor of the building, one of {', '.join(study.floors)}."
-                )
-            if level > study.building.storeys:
-                raise InputError(
-                    f"{key}: expected a level up to {study.building.storeys}, found {level}."
-                )
 
 
 def _check_measured_tests(study: Study, path: Path) -> None:

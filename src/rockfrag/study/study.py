@@ -2,20 +2,20 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from rockfrag.building.model import ShearBuilding
-from rockfrag.files import is_file
+from rockfrag.files import file_name, is_file
 from rockfrag.plausibility import size_warning
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.study.amplitudes import Amplitudes
-from rockfrag.study.configurations import Configuration
 from rockfrag.study.supplementary import Supplementary
 from rockfrag.system.blocks import Block, Stack
+from rockfrag.system.system import System
 
 GROUND = "ground"
 """Label of the only floor of a study without a building."""
@@ -62,15 +62,13 @@ class Study:
         Paths of the tables of bodies, the second None where each block stands alone, and the blocks by
         name.
     configurations
-        What is tested, in order.
+        What is tested, in order: systems whose bodies have the names of their blocks.
     amplitudes
         Peaks of the input motion.
     protocol_step_percent
         By how much the laboratory raises the amplitude from one run to the next [%].
     fragility
         Settings of the fragility curves.
-    compare_with
-        ``thesis`` if the study is compared with the thesis that these tests come from, or None.
     keep_going
         Whether records that cannot be used are left out, and said to be, instead of ending the study.
     slides
@@ -80,7 +78,11 @@ class Study:
     write_motions
         Format in which the motions of all floors are written too, or None.
     more
-        Optional parts: shaker, measured tests, sensitivity to the building, explanation.
+        Optional parts: shaker, measured tests.
+    counterparts
+        Name of the configuration with which one is compared, where that is not its object alone on the floor.
+    added
+        Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`.
     """
 
     name: str
@@ -95,16 +97,17 @@ class Study:
     specimens_file: Path
     configurations_file: Path | None
     specimens: Mapping[str, Block]
-    configurations: tuple[Configuration, ...]
+    configurations: tuple[System, ...]
     amplitudes: Amplitudes
     protocol_step_percent: float
     fragility: FragilitySettings
-    compare_with: str | None
     keep_going: bool
     slides: bool
     vertical: bool
     write_motions: str | None
     more: Supplementary
+    counterparts: Mapping[str, str] = field(default_factory=dict)
+    added: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def summary(self) -> str:
@@ -134,28 +137,26 @@ class Study:
 
     @property
     def has_pairs(self) -> bool:
-        """Whether an object is tested both with and without a pedestal."""
-        sides = {
-            side: {one.object for one in self.configurations if one.label == side}
-            for side in ("P", "NP")
-        }
-        return bool(sides["P"] & sides["NP"])
+        """Whether an arrangement is tested together with what it is compared with."""
+        return bool(self.counterparts) or self.with_and_alone
+
+    @property
+    def with_and_alone(self) -> bool:
+        """Whether an object is compared with itself alone on the floor."""
+        lone = {one.names[-1] for one in self.configurations if one.count == 1}
+        rest = (one for one in self.configurations if one.name not in self.counterparts)
+        return any(one.names[-1] in lone for one in rest if one.count > 1)
 
     @property
     def simulated_in_page(self) -> bool:
         """Whether the simulation in a page has its outcomes: horizontal rocking alone, of one or two bodies."""
-        few = all(len(one.body.blocks) < 3 for one in self.configurations)
+        few = any(one.count < 3 for one in self.configurations)
         return few and not (self.slides or self.vertical)
 
     @property
     def floors(self) -> dict[str, int]:
         """Level of each floor that is shaken, by its label; 0 is the ground."""
         return {GROUND: 0} if self.building is None else dict(self.building.floors)
-
-    @property
-    def motion_sets(self) -> list[str]:
-        """Paths of the motions that shake the bodies."""
-        return ["motions/floors.parquet", *(["motions/vertical.parquet"] if self.vertical else [])]
 
     @property
     def body_files(self) -> list[str]:
@@ -173,10 +174,10 @@ class Study:
         motions = len(self.catalogue) * len(self.floors)
         return max(1, min(math.ceil(self.histories / HISTORIES_A_JOB), MOST_JOBS, motions))
 
-    def sweep_file(self, configuration: Configuration, job: int) -> str:
+    def sweep_file(self, configuration: System, job: int) -> str:
         """Path of a configuration's sweep under the motions of a job."""
         folder = "sweep" if self.sweep_jobs == 1 else f"sweep/{job:03d}"
-        return f"{folder}/{configuration.slug}.parquet"
+        return f"{folder}/{file_name(configuration.name)}.parquet"
 
     @property
     def sweep_files(self) -> list[str]:
@@ -190,8 +191,8 @@ class Study:
     @property
     def tested_blocks(self) -> dict[str, Block]:
         """Blocks of the objects tested and, as ``P``, the first pedestal: the ledger's names."""
-        blocks = {one.object: self.specimens[one.object] for one in self.configurations}
-        pedestals = [one.pedestal for one in self.configurations if one.pedestal]
+        blocks = {one.names[-1]: self.specimens[one.names[-1]] for one in self.configurations}
+        pedestals = [one.names[-2] for one in self.configurations if one.count > 1]
         if pedestals:
             blocks["P"] = self.specimens[pedestals[0]]
         return blocks
@@ -199,7 +200,11 @@ class Study:
     @property
     def stacks(self) -> dict[str, Stack]:
         """Stacks tested, by the name of their configuration."""
-        return {one.name: one.body for one in self.configurations if isinstance(one.body, Stack)}
+        return {
+            one.name: Stack(self.specimens[one.names[0]], self.specimens[one.names[1]])
+            for one in self.configurations
+            if one.count == 2
+        }
 
     @property
     def own_records(self) -> list[Path]:

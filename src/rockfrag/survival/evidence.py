@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
-from rockfrag.assess.hazard.measure import PGA, PGV, Measure
-from rockfrag.survival.rates import VELOCITY_PER_G, ShakingRates
+from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G, Measure
+from rockfrag.survival.rates import ShakingRates
 
 Floats = NDArray[np.float64]
 

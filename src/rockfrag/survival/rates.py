@@ -7,17 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.assess.hazard.curve import HazardCurve
-from rockfrag.assess.hazard.measure import PGA, PGV, Measure
+from rockfrag.assess.hazard.measure import PGA, PGV, VELOCITY_PER_G, Measure
 from rockfrag.errors import InputError
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 Floats = NDArray[np.float64]
 
 GRID = 600
 """Levels on which a hazard curve is integrated."""
-
-VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
-"""PGV over (PGA times PGV/PGA): cm/s for g and s."""
 
 NODES = 15
 """Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration."""

@@ -1,6 +1,6 @@
 """Rigid blocks and stacks of two: what every integrator, fast or plain, starts from.
 
-Conventions (thesis chapter 2, ``docs/derivation.md``): a rotation θ > 0 is clockwise and its pole is the
+Conventions (``docs/derivation.md``): a rotation θ > 0 is clockwise and its pole is the
 right corner, s = +1; an acceleration a > 0 of the ground pushes blocks towards θ < 0.  Lengths are read
 in the standing block's frame, x to the right and y up, and
 R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwise.
@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
@@ -21,7 +21,16 @@ from rockfrag.plausibility import inertia_warning, light_giant_warning
 from rockfrag.system import geometry
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
-from rockfrag.system.system import MOST_BODIES, System, box, cylinder, round_inertia, stands
+from rockfrag.system.system import (
+    MOST_BODIES,
+    System,
+    box,
+    common_centre,
+    cylinder,
+    round_inertia,
+    standing_centres,
+    stands,
+)
 from rockfrag.units import GRAVITY
 
 
@@ -225,6 +234,10 @@ class Block:
         """The blocks from below: this one."""
         return (self,)
 
+    def rigidly_joined(self) -> "Block":
+        """Return all blocks as one: this one."""
+        return self
+
     @cached_property
     def body(self) -> RigidBody:
         """The block as a body of a system."""
@@ -313,14 +326,14 @@ class Block:
         return geometry.pole_inertia(self.shape, pole)
 
     def frequency(self, pole: int = 1, g: float = GRAVITY) -> float:
-        """Frequency parameter p = √(m g R / I_O) [1/s]; thesis eq. 2.16 with its square mended."""
+        """Frequency parameter p = √(m g R / I_O) [1/s] (Housner, 1963)."""
         return geometry.frequency(self.shape, pole, g)
 
     def momentum_restitution(self, pole_before: int = 1) -> float:
         """Ratio of angular velocities after and before an impact that conserves momentum [-].
 
-        The block turns about ``pole_before`` and comes down on the other pole (Housner 1963; thesis
-        eq. 2.12, 2.14: 1 - 1.5 sin²α for a uniform block).
+        The block turns about ``pole_before`` and comes down on the other pole (Housner, 1963:
+        1 - 1.5 sin²α for a uniform block).
         """
         return geometry.momentum_restitution(self.shape, -pole_before)
 
@@ -338,7 +351,7 @@ class Stack:
     Parameters
     ----------
     pedestal, statue
-        The lower and the upper block (blocks 1 and 2 of the thesis).
+        The lower and the upper block (blocks 1 and 2).
     offset
         Distance of the middle of the statue's base to the right of the pedestal's middle [m].
 
@@ -443,7 +456,7 @@ class Stack:
     def reach(self, ground_pole: int, statue_pole: int) -> Vector:
         """Vector d from the pedestal's pole to the statue's pole as they stand [m].
 
-        Its length is l (poles on the same side) or l' (opposite sides) of thesis eq. 2.61, 2.63.
+        Its length is l (poles on the same side) or l' (opposite sides) (``docs/derivation.md``).
         """
         return Vector(*geometry.reach(self.pile, ground_pole, statue_pole))
 
@@ -452,7 +465,7 @@ class Stack:
         return Vector(*geometry.statue_arm(self.pile, statue_pole))
 
     def common_arm(self, ground_pole: int) -> Vector:
-        """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
+        """Vector from the pedestal's pole to the common centre of gravity [m]."""
         return Vector(*geometry.common_arm(self.pile, ground_pole))
 
     @property
@@ -523,6 +536,16 @@ class Column:
         """Total mass [kg]."""
         return sum(block.mass for block in self.blocks)
 
+    def rigidly_joined(self) -> Block:
+        """Return all blocks as one rigid body on the lowest base."""
+        x, y = common_centre(self.system())
+        inertia = 0.0
+        for block, at in zip(self.blocks, standing_centres(self.system()), strict=True):
+            apart = (at[0] - x) ** 2 + (at[1] - y) ** 2
+            inertia += block.centroidal_inertia + block.mass * apart
+        height = sum(block.height for block in self.blocks)
+        return Block(self.blocks[0].width, height, self.mass, inertia, y, cg_offset=x)
+
     def system(self) -> System:
         """Return the column as a system: it rocks, never slides, and conserves momentum in impacts."""
         names = [f"body {k + 1}" for k in range(len(self.blocks))]
@@ -542,7 +565,18 @@ def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str
     return System(tuple(bodies), tuple(contacts))
 
 
-def as_system(thing: "System | Body | Column") -> System:
+Body = Block | Stack | Column
+
+SystemLike = Body | System
+"""What stands, as it may be written."""
+
+
+def is_system(thing: object) -> TypeGuard[SystemLike]:
+    """Whether a thing is a system, or writes one."""
+    return isinstance(thing, (System, Block, Stack, Column))
+
+
+def as_system(thing: SystemLike) -> System:
     """Return a system as it is, or the one that a block, a stack or a column writes.
 
     Raises
@@ -550,11 +584,15 @@ def as_system(thing: "System | Body | Column") -> System:
     InputError
         If it is none of them.
     """
-    if isinstance(thing, System):
-        return thing
-    if isinstance(thing, (Block, Stack, Column)):
-        return thing.system()
-    raise InputError(f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}.")
+    if not is_system(thing):
+        raise InputError(
+            f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}."
+        )
+    return thing if isinstance(thing, System) else thing.system()
 
 
-Body = Block | Stack
+def stacked(blocks: Sequence[Block]) -> Body:
+    """Return blocks that stand on each other, from below, as a block, a stack or a column."""
+    if len(blocks) == 1:
+        return blocks[0]
+    return Stack(blocks[0], blocks[1]) if len(blocks) == 2 else Column(tuple(blocks))

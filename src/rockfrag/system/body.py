@@ -41,25 +41,6 @@ class Circle(NamedTuple):
 Outline = Interval | Polygon | Circle
 
 
-def convex_polygon(points: object) -> Polygon:
-    """Return the convex hull of points, shape (n, 2) [m], as a polygon.
-
-    Raises
-    ------
-    InputError
-        If the points span no area.
-    """
-    # scipy is loaded only by those who need it
-    from scipy.spatial import ConvexHull, QhullError
-
-    values = real_array("outline", points, "m")
-    try:
-        hull = ConvexHull(values)
-    except (QhullError, ValueError) as error:
-        raise InputError(f"outline: {shown(points)} are no corners of a polygon.") from error
-    return Polygon(tuple((float(x), float(y)) for x, y in values[hull.vertices]))
-
-
 @dataclass(frozen=True)
 class RigidBody:
     """One rigid body of a system.
@@ -118,6 +99,12 @@ class RigidBody:
     def planar(self) -> bool:
         """Whether the body is known in one plane only."""
         return not isinstance(self.inertia, tuple)
+
+    @property
+    def width(self) -> float:
+        """Width of the base in the plane of x and z [m]."""
+        left, right = interval_of(self.base, (1.0, 0.0))
+        return right - left
 
     @property
     def tensor(self) -> NDArray[np.float64]:

@@ -112,9 +112,6 @@ def can_stand(shape: Shape) -> bool:
 
 # --------------------------------------------------------------------------- impacts of a lone block
 
-MOMENTUM, COUPLE, POSITION, RATIO = 0, 1, 2, 3
-"""Laws by which a contact comes off an impact (``docs/restitution.md``)."""
-
 
 def _product(shape: Shape, pole: int) -> float:
     """Moment of inertia in the angular momentum about the other pole of what turns about this one."""
@@ -138,14 +135,6 @@ def impulse_position(shape: Shape, restitution: float, pole: int) -> float:
     old, new = arm(shape, -pole)[0], arm(shape, pole)[0]
     excess = _product(shape, -pole) - restitution * _product(shape, pole)
     return excess / (shape.mass * pole * shape.b * (old - restitution * new))
-
-
-def by_position(shape: Shape, restitution: float, pole: int) -> tuple[int, float]:
-    """Law and number of a measured restitution: its place, or a couple where momentum leaves more than that."""
-    by_momentum = momentum_restitution(shape, pole)
-    if restitution >= by_momentum:
-        return POSITION, impulse_position(shape, restitution, pole)
-    return COUPLE, restitution / by_momentum
 
 
 # --------------------------------------------------------------------------- a statue on a pedestal
@@ -179,7 +168,7 @@ def statue_arm(pile: Pile, pole: int) -> tuple[float, float]:
 
 
 def common_arm(pile: Pile, pole: int) -> tuple[float, float]:
-    """Vector from the pedestal's pole to the common centre of gravity [m]; thesis eq. 2.22."""
+    """Vector from the pedestal's pole to the common centre of gravity [m]."""
     m1, m2 = pile.pedestal.mass, pile.statue.mass
     x1, y1 = arm(pile.pedestal, pole)
     dx, dy = reach(pile, pole, 1)

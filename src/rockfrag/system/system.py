@@ -105,9 +105,20 @@ class System:
         return sum(body.mass for body in self.bodies)
 
     @property
+    def height(self) -> float:
+        """Height of all bodies on each other [m]."""
+        return sum(body.height for body in self.bodies)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Name of each body from below: its own, or its number."""
         return tuple(body.name or f"body {k + 1}" for k, body in enumerate(self.bodies))
+
+    def held(self) -> "System":
+        """Return the system with contacts that never slide."""
+        return replace(
+            self, contacts=tuple(replace(contact, friction=None) for contact in self.contacts)
+        )
 
     def in_plane(self, direction_deg: float = 0.0) -> "System":
         """Return the planar system that moves in the vertical plane of a direction [degrees]."""
@@ -173,6 +184,25 @@ def planar_shape(body: RigidBody, tilt: float) -> geometry.Shape:
     assert isinstance(body.inertia, float | int)
     x, y = geometry.turned(body.centre[0] - (base.left + base.right) / 2, body.centre[2], tilt)
     return geometry.Shape((base.right - base.left) / 2, body.mass, body.inertia, x, y)
+
+
+def uplift_ratios(system: System) -> tuple[float, ...]:
+    """Least horizontal acceleration over g that opens each contact of a planar system at rest, from below.
+
+    A full contact opens about the pivot whose overturning moment first exceeds the weight's (Kirkpatrick, 1927;
+    Psycharis, 1990).
+    """
+    if system.count == 1:
+        arms = [tuple(geometry.arm(system.shapes[0], pivot) for pivot in (+1, -1))]
+    elif system.count == 2:
+        arms = [
+            tuple(arm(system.pile, pivot) for pivot in (+1, -1))
+            for arm in (geometry.common_arm, geometry.statue_arm)
+        ]
+    else:
+        arms = [arms_above(system, k) for k in range(system.count)]
+    # a body with its centre below its pivots never opens
+    return tuple(min(abs(x) / y if y > 0 else math.inf for x, y in pair) for pair in arms)
 
 
 def each_contact(name: str, given: object, count: int) -> tuple[object, ...]:
@@ -265,19 +295,27 @@ def diagonal(*moments: float) -> Any:
 
 def stands(system: System) -> bool:
     """Whether the bodies above each contact of a planar system have their common centre between its ends."""
-    positions = standing_centres(system)
-    for k in range(system.count):
-        (low, _), (high, _) = contact_ends(system, k)
-        mass = sum(body.mass for body in system.bodies[k:])
-        x = (
-            sum(
-                body.mass * at[0] for body, at in zip(system.bodies[k:], positions[k:], strict=True)
-            )
-            / mass
-        )
-        if not low < x < high or not math.isfinite(x):
-            return False
-    return True
+    return all(
+        math.isfinite(x) and side * x < 0
+        for k in range(system.count)
+        for side, (x, _) in zip((-1, 1), arms_above(system, k), strict=True)
+    )
+
+
+def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
+    """From the left and the right end of contact k to the common centre of what stands on it (x, z) [m]."""
+    x, z = common_centre(system, k)
+    return tuple((x - at[0], z - at[1]) for at in contact_ends(system, k))
+
+
+def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
+    """Common centre of gravity of a planar body and all above it as they stand (x, z) [m]."""
+    masses = [body.mass for body in system.bodies[lowest:]]
+    x, z = (
+        sum(mass * at for mass, at in zip(masses, axis, strict=True)) / sum(masses)
+        for axis in zip(*standing_centres(system)[lowest:], strict=True)
+    )
+    return x, z
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:

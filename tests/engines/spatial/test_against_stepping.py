@@ -1,17 +1,12 @@
 """Fractions overturned in space are those of a plain time stepping that shares no code with the engine."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from rockfrag.engines.spatial.outcome import run_case
 
+from ...oracle.space_stepping import stepping
 from .samples import DT, box, synthetic_motion
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "oracle"))
-from space_stepping import stepping
 
 LEVELS = np.geomspace(0.6, 2.2, 6)
 """Peaks of the components over that which uplifts the box along its shorter side [-]."""

@@ -12,6 +12,9 @@ from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 PERIODS = (0.01, 10.0)
 """Periods of Sa that hazard models cover [s]."""
 
+VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
+"""PGV over (a measure in g times PGV over it): cm/s for g and s."""
+
 _SA = re.compile(r"(?:P?SA)\s*[(\[_]?\s*T?=?\s*(\d*[.P]?\d+)\s*S?\s*[)\]]?", re.IGNORECASE)
 
 

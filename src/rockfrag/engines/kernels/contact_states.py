@@ -66,7 +66,7 @@ def at_rest(state, ground, gravity):
 def rest_interval(body, scratch):
     """Ground accelerations [m/s²] between which the body at rest stays at rest; ``scratch`` is a STATE.
 
-    Every criterion of rest is linear in the acceleration (thesis eq. 2.21-2.25), and homogeneous in it and
+    Every criterion of rest is linear in the acceleration (Psycharis, 1990), and homogeneous in it and
     gravity: where the ground moves vertically too, both limits grow as gravity does.
     """
     low = -math.inf

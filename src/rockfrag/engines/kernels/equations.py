@@ -5,7 +5,7 @@ for rocking on the right or left pole, 0 for full contact.
 
 Positions along an interface are given as σ in [-1, 1]: the poles are σ = ±1.  With r1 = R(θ1) arm1, d = R(θ1)
 reach, r2 = R(θ2) arm2 the equations are M θ'' + f = τ with τ the moments of the contact forces, zero at a
-rocking pole (thesis eq. 2.43, 2.51, 2.55, 2.58).
+rocking pole (Spanos, Roussis and Politis, 2001; ``docs/derivation.md``).
 
 A lone block is block 2 on a block 1 that cannot move (``fixed``).
 """

@@ -1,12 +1,12 @@
 """Impacts: what the velocities are after contacts have closed.
 
 Momentum decides first: point impact, no bounce, no impulse at a pole that leaves.  The momentum before is
-projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; thesis eq. 2.12,
-2.76-2.86).
+projected on the velocity fields after, M(new) ω⁺ = B(new, old) ω⁻ (``docs/derivation.md``; Housner, 1963;
+Spanos, Roussis and Politis, 2001).
 
 A measured restitution then says at which *rate* the closing contact comes off: ω1⁺ of the ground, ω2⁺ - ω1⁺ of the
-interface.  There are three laws for that rate (``docs/restitution.md``), each a function of its own here; the rest
-is common to all: the momentum that no couple in the closing contact can change is conserved, the other
+interface.  The laws for that rate have a file each in ``rockfrag.laws`` (``docs/restitution.md``); the rest is
+common to all: the momentum that no couple in the closing contact can change is conserved, the other
 contact opens or stays as that asks for, and a rate with which energy would grow gives way to the largest that
 does not.
 
@@ -25,7 +25,7 @@ from rockfrag.engines.kernels.equations import (
     turn_between,
 )
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
-from rockfrag.system.geometry import COUPLE, POSITION, RATIO
+from rockfrag.engines.kernels.laws import moves_impulse, rate
 
 GAIN = 1e-9
 """Relative growth of the kinetic energy in an impact that counts as rounding."""
@@ -132,8 +132,8 @@ def _admissible(body, state, closes1, closes2, moved):
     if moved:
         law1, value1, has1 = _law(body, state, 1, closes1)
         law2, value2, has2 = _law(body, state, 2, closes2)
-        at1 = value1 if has1 and law1 == POSITION else 1.0
-        at2 = value2 if has2 and law2 == POSITION else 1.0
+        at1 = value1 if has1 and moves_impulse(law1) else 1.0
+        at2 = value2 if has2 and moves_impulse(law2) else 1.0
     c1, c2 = state.c1, state.c2
     # velocities that rounding alone leaves count as none
     tiny = 1e-13 * (abs(state.omega1) + abs(state.omega2))
@@ -155,7 +155,7 @@ def _admissible(body, state, closes1, closes2, moved):
                 continue
             if _pushed(body, state, (n1, n2), (w1, w2), test):
                 return n1, n2, w1, w2, True
-    # no admissible solution: what met stays together (thesis, after eq. 2.78)
+    # no admissible solution: what met stays together
     n1 = 0 if free1 else c1
     n2 = 0 if free2 else c2
     w1, w2 = stuck(body, state, n1, n2)
@@ -175,16 +175,6 @@ def _law(body, state, contact, closes):
     return after.law, after.value, closes and after.law != 0
 
 
-@inlined_kernel
-def _rate(law, value, by_momentum, before, moved):
-    """Rate at which a law lets a contact come off."""
-    if law == COUPLE:
-        return value * by_momentum
-    if law == RATIO:
-        return value * before
-    return moved
-
-
 @kernel
 def _measured(body, state, closes, momentum):
     """State and velocities after an impact by the laws of its closing contacts; 1 if one gave way."""
@@ -197,12 +187,12 @@ def _measured(body, state, closes, momentum):
     rate1, rate2 = w1, w2 - w1
     before1, before2 = state.omega1, state.omega2 - state.omega1
     moved1, moved2, exists = rate1, rate2, True
-    if (has1 and law1 == POSITION) or (has2 and law2 == POSITION):
+    if (has1 and moves_impulse(law1)) or (has2 and moves_impulse(law2)):
         _, _, v1, v2, exists = _admissible(body, state, closes[0], closes[1], True)
         if exists:
             moved1, moved2 = v1, v2 - v1
-    want1 = _rate(law1, value1, rate1, before1, moved1)
-    want2 = _rate(law2, value2, rate2, before2, moved2)
+    want1 = rate(law1, value1, rate1, before1, moved1)
+    want2 = rate(law2, value2, rate2, before2, moved2)
     open1 = -state.c1 if has1 else n1
     open2 = -state.c2 if has2 else n2
     # a contact that closes does not rebound on its old pole
@@ -307,7 +297,7 @@ def mass_matrix(two, cosine, sine):
 
 @inlined_kernel
 def ground_impact(before, after, product, turn, omega1, omega2):
-    """Velocities after the ground closes (thesis eq. 2.68-2.71): both momenta about the new poles.
+    """Velocities after the ground closes (Psycharis, 1990): both momenta about the new poles.
 
     Parameters
     ----------

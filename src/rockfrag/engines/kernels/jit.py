@@ -36,6 +36,7 @@ from numba import types
 from numba.extending import intrinsic, register_jitable
 
 from rockfrag import elementary
+from rockfrag.laws import couple, laws, position
 from rockfrag.lock import locked
 from rockfrag.machine_code import cached_njit
 from rockfrag.system import geometry
@@ -86,7 +87,7 @@ _PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 if KNOWN:
     _PART["pipeline_class"] = PartCompiler
 
-for _module in (elementary, geometry):
+for _module in (elementary, geometry, couple, position):
     for _function in list(vars(_module).values()):
         if isinstance(_function, FunctionType) and _function.__module__ == _module.__name__:
             # plain Python, which kernels may call as if it were one of them
@@ -98,9 +99,16 @@ def _digest() -> str:
     """Digest of all kernels' sources: those of engines, of the arithmetic and of bodies."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[2]
-    sources = sorted((package / "engines").glob("*/**/*.py"))
+    sources = [
+        *sorted((package / "engines").glob("*/**/*.py")),
+        *sorted((package / "laws").glob("*.py")),
+    ]
     for path in [*sources, Path(elementary.__file__), Path(geometry.__file__)]:
         digest.update(path.read_bytes())
+    for law in laws():
+        # one that was declared elsewhere is compiled in too
+        code = b"" if law.rate is None else law.rate.__code__.co_code
+        digest.update(f"{law.name} {law.number}".encode() + code)
     return digest.hexdigest()
 
 

@@ -263,7 +263,7 @@ def _pull(ground, weight, sine, cosine):
 def rates_of_one(turn, w, kappa, ground, weight):
     """Taylor coefficients 0 to 6 of ψ' over a step that begins at sin ψ = s0, cos ψ = c0.
 
-    ψ'' = κ (W sin ψ + A cos ψ) with A = a + rise τ, W = u + lift τ and time in steps (thesis eq. 2.4): a lone
+    ψ'' = κ (W sin ψ + A cos ψ) with A = a + rise τ, W = u + lift τ and time in steps (Housner, 1963): a lone
     block with ψ = θc - |θ|, κ = p² h², A the ground acceleration over g, positive where it pushes the block back
     down, and W gravity over g, 1 unless the ground moves vertically; ``weight`` as in ``pulled``.
     """

@@ -1,5 +1,7 @@
 """Impacts: impulses at touching ends, Coulomb's law on them, and each contact's own law (``docs/contact.md``)."""
 
+from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
+from rockfrag.engines.kernels.laws import rate as lawful_rate
 from rockfrag.engines.planar.compile import kernel
 from rockfrag.engines.planar.modes import (
     approach,
@@ -10,7 +12,7 @@ from rockfrag.engines.planar.modes import (
 )
 from rockfrag.engines.planar.search import search
 from rockfrag.engines.planar.solve import bias, end_of, rate, solve
-from rockfrag.system.geometry import COUPLE, MOMENTUM, POSITION
+from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 NO_GAIN = 1e-12
 """Fraction of the kinetic energy below which a gain is rounding."""
@@ -88,31 +90,29 @@ def _read_laws(p, w, push):
 @kernel
 def _obey(p, w, ah, av, force, motion):
     """Let the laws of the contacts act on the plastic outcome that is in ``w``, as far as no energy is gained."""
-    before = kinetic_energy(p, w.v)
+    energy = kinetic_energy(p, w.v)
     for k in range(p.count):
         end = w.falls[k]
         if end < 0:
             continue
         x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, 1 - end, w.kind[k, 1 - end])
         w.goal[k, 0] = max(0.0, rate(p, w.q, w.out, k, x, y, -ty, tx))
-        if p.law[k, end] == COUPLE:
-            w.goal[k, 1] = w.goal[k, 0] * p.number[k, end]
-        else:
-            w.goal[k, 1] *= p.number[k, end]
-        if p.law[k, end] == COUPLE and (w.closed[k, end] == 0 or w.closed[k, 1 - end] == 1):
+        law, before = p.law[k, end], w.goal[k, 1]
+        w.goal[k, 1] = lawful_rate(law, p.number[k, end], w.goal[k, 0], before, before)
+        if scales_momentum(law) and (w.closed[k, end] == 0 or w.closed[k, 1 - end] == 1):
             # it stays shut, or leaves altogether: nothing to multiply
             w.falls[k] = -1
-    if _outcome(p, w, ah, av, force, motion, 1.0, before):
+    if _outcome(p, w, ah, av, force, motion, 1.0, energy):
         return
     w.given_way += 1
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if _outcome(p, w, ah, av, force, motion, middle, before):
+        if _outcome(p, w, ah, av, force, motion, middle, energy):
             low = middle
         else:
             high = middle
-    _outcome(p, w, ah, av, force, motion, low, before)
+    _outcome(p, w, ah, av, force, motion, low, energy)
 
 
 @kernel
@@ -123,7 +123,7 @@ def _outcome(p, w, ah, av, force, motion, part, before):
         end = w.falls[k]
         if end < 0 or part == 0.0:
             continue
-        if p.law[k, end] == POSITION:
+        if moves_impulse(p.law[k, end]):
             place = p.number[k, end]
             w.share[k, end] = part * (1.0 - place) / (1.0 + place)
         else:

@@ -28,6 +28,7 @@ from rockfrag.figure_style import (
     letter_panels,
     new_figure,
 )
+from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import shortened
 
 GREY = "#777777"
@@ -204,8 +205,8 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
         figure.legend(handles=handles, loc="outside upper center", ncols=2)
 
 
-def pedestal_scatter(tests: pd.DataFrame, title: str) -> Figure:
-    """Amplitude with the pedestal against that without, of the same object under the same motion.
+def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDESTAL) -> Figure:
+    """Amplitude of an arrangement against that of its counterpart under the same motion.
 
     Parameters
     ----------
@@ -213,6 +214,8 @@ def pedestal_scatter(tests: pd.DataFrame, title: str) -> Figure:
         As of :func:`amplitudes_by_object`.
     title
         What stands above it.
+    sides
+        What is compared.
     """
     rows = drawn_tests(tests)
     keys = ["object", "event", "floor", "motion"]
@@ -226,8 +229,8 @@ def pedestal_scatter(tests: pd.DataFrame, title: str) -> Figure:
         _scatter_panel(axes, pairs, objects, upper)
         # above the panel, where it hides no test
         axes.set_title(title, loc="left", pad=4)
-        axes.set_xlabel("Overturning amplitude without pedestal [g]")
-        axes.set_ylabel("Overturning amplitude with pedestal [g]")
+        axes.set_xlabel(f"Overturning amplitude {sides.second} [g]")
+        axes.set_ylabel(f"Overturning amplitude {sides.first} [g]")
         if 1 < len(objects) <= len(MARKERS):
             handles = [
                 Line2D([], [], ls="", marker=m, mfc="none", mec=c, label=shortened(name))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, figure_style, new_figure
 from rockfrag.report.figures.amplitudes import BAND, GREY
+from rockfrag.report.sides import WITH_PEDESTAL, Sides
 from rockfrag.report.wording import counted, shortened
 
 NONE = (1 / 1.1, 1.1)
@@ -22,13 +23,15 @@ _LEAST_APART = 0.11
 """Ticks nearer than this part of the axis would print over each other."""
 
 
-def forest_figure(effects: pd.DataFrame) -> Figure:
-    """Ratio with over without pedestal of every scope with its 95 % interval, and the ±10 % that counts as none.
+def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure:
+    """Ratio of amplitudes of every scope with its 95 % interval, and the ±10 % that counts as none.
 
     Parameters
     ----------
     effects
         Rows of :func:`rockfrag.pedestal.effects_table`, of one reading.
+    sides
+        What is compared.
     """
     scope = effects["scope"].to_numpy()
     # room for one empty line between the scopes
@@ -49,7 +52,7 @@ def forest_figure(effects: pd.DataFrame) -> Figure:
         axes.set_yticks(place, labels)
         axes.invert_yaxis()
         axes.tick_params(axis="y", length=0)
-        ratio_axis(axes, figures[:, :3].ravel())
+        ratio_axis(axes, figures[:, :3].ravel(), sides)
         handles = [
             Line2D([], [], color=BLUE, marker="o", mfc=BLUE, label="differs from 1 (Holm, 5 %)"),
             Line2D([], [], color=BLUE, marker="o", mfc="white", label="does not"),
@@ -69,7 +72,9 @@ def _too_near(ticks: Sequence[float], low: float, high: float) -> bool:
     return bool(len(ticks) > 1 and np.diff(places).min() < _LEAST_APART)
 
 
-def ratio_axis(axes: Axes, values: NDArray[np.float64] | Sequence[float]) -> None:
+def ratio_axis(
+    axes: Axes, values: NDArray[np.float64] | Sequence[float], sides: Sides = WITH_PEDESTAL
+) -> None:
     """A logarithmic axis of ratios with plain ticks that covers all values and the band of none."""
     known = np.asarray(values, dtype=float)
     known = known[np.isfinite(known) & (known > 0)]
@@ -84,4 +89,4 @@ def ratio_axis(axes: Axes, values: NDArray[np.float64] | Sequence[float]) -> Non
             ticks = [tick for tick in ticks if tick not in crowded]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
-    axes.set_xlabel("Amplitude with / without pedestal")
+    axes.set_xlabel(sides.axis)

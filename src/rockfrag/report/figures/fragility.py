@@ -17,7 +17,6 @@ from rockfrag.figure_style import (
     COLUMN_WIDTH,
     CONFIGURATION_COLOURS,
     OKABE_ITO,
-    ORANGE,
     RED,
     SKY,
     WIDEST,
@@ -34,7 +33,6 @@ from rockfrag.report.wording import shortened
 if TYPE_CHECKING:
     from rockfrag.fragility.estimators import Fragility
     from rockfrag.fragility.goodness import GoodnessOfFit
-    from rockfrag.fragility.states import ThreeStates
     from rockfrag.fragility.surface import FragilitySurface
 
 GREY = "#777777"
@@ -227,39 +225,6 @@ def calibration_figure(judged: Mapping[str, "GoodnessOfFit"]) -> Figure:
         axes.set_xlabel("Fitted probability")
         axes.set_ylabel("Fraction overturned")
         axes.legend(loc="upper left", handletextpad=0.3)
-        return figure
-
-
-def states_figure(states: "ThreeStates") -> Figure:
-    """Draw the probabilities of no rocking, safe rocking and overturning over the measure."""
-    fit = states.overturn.fit
-    if not np.isfinite(fit.theta):
-        raise InputError(f"states figure: there is no curve of overturning ({fit.method}).")
-    low = min(0.6 * states.threshold_g, 0.5 * fit.theta) if states.rock is None else 0.2 * fit.theta
-    grid = np.geomspace(low, fit.theta * np.exp(2.5 * fit.beta), 400)
-    if states.rock is None:
-        # the step at the threshold is upright, not a slope between two points of the grid
-        edge = states.threshold_g
-        grid = np.sort(np.concatenate([grid, [edge, np.nextafter(edge, np.inf)]]))
-    chance = states.probabilities(grid)
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 2.6)
-        axes = figure.subplots()
-        axes.stackplot(
-            grid,
-            chance["overturned"],
-            chance["safe_rocking"],
-            chance["no_rocking"],
-            colors=(ORANGE, SKY, "#e6e6e6"),
-            labels=("overturned", "safe rocking", "no rocking"),
-            linewidth=0,
-        )
-        axes.set_ylim(0, 1)
-        _probability_axis(axes, grid)
-        axes.set_ylim(0, 1)
-        axes.set_ylabel("Probability")
-        axes.set_xlabel(_axis_label(fit.im, fit.unit))
-        figure.legend(loc="outside upper center", ncols=3, handlelength=1.0)
         return figure
 
 

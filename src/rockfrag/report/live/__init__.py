@@ -5,6 +5,7 @@ One source: the module is made of the kernel that `rockfrag.simulate` runs, see 
 
 import base64
 import json
+import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,11 +22,17 @@ from rockfrag.report.live.frames import frames_svg
 from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.system.blocks import Block, Body, Stack
+from rockfrag.system import geometry
+from rockfrag.system.body import RigidBody
+from rockfrag.system.contact import Contact
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 MOST_SAMPLES = 70_000
 """Samples of all motions that a page carries: three quarters of a megabyte."""
+
+MOST_BODIES = 2
+"""Bodies on each other that the page simulates."""
 
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
 """Amplitudes [g] of a body that no study has swept."""
@@ -40,7 +47,7 @@ class Start:
 
 
 def live_kernel(
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, System],
     motions: Sequence[Motion],
     verdicts: pd.DataFrame | None = None,
     start: Start | None = None,
@@ -50,28 +57,32 @@ def live_kernel(
     Parameters
     ----------
     bodies
-        What may be chosen, by the name that a reader sees.
+        What may be chosen, by the name that a reader sees; of more than two blocks only the name is shown.
     motions
         Motions that may be chosen; no more than carry ``MOST_SAMPLES`` samples are taken, the first ones.
     verdicts
         Table of a study: ``configuration`` (a name of ``bodies``), ``motion``, ``amplitude_g``, ``overturned``,
         the same amplitudes for all. Without it the amplitudes ``AMPLITUDES_G`` are tried here.
     start
-        What is shown first; by default a stack, if there is one, and a motion that overturns it.
+        What is shown first; by default one of two bodies, if there is one, and a motion that overturns it.
 
     Returns
     -------
     Markup
-        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing.
+        Needs the style of :func:`rockfrag.report.page.render`, and loads nothing; empty if no body is left.
     """
+    known = {name: system for name, system in bodies.items() if system.count <= MOST_BODIES}
+    if not known:
+        return Markup()
     with warnings.catch_warnings():
         # the page shows pure rocking; where that may be wrong is said in the report's own words
         warnings.simplefilter("ignore", LightBodies)
-        return _element(bodies, carried(motions), verdicts, start)
+        return _element(known, bodies, carried(motions), verdicts, start)
 
 
 def _element(
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, System],
+    asked: Mapping[str, System],
     motions: Sequence[Motion],
     verdicts: pd.DataFrame | None,
     start: Start | None,
@@ -107,6 +118,7 @@ def _element(
     )
     return Markup(
         environment.get_template("live.html.j2").render(
+            left_out=[name for name in asked if name not in bodies],
             frames=frames,
             words=f"{list(bodies)[body]} under {motions[motion].name}: {words}",
             # a name may hold anything, but never the end of the script
@@ -125,7 +137,7 @@ def carried(motions: Sequence[Motion]) -> list[Motion]:
     return list(motions[: max(1, int((total <= MOST_SAMPLES).sum()))])
 
 
-def swept(bodies: Mapping[str, Body], motions: Sequence[Motion]) -> pd.DataFrame:
+def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFrame:
     """Verdicts of all bodies under all motions at ``AMPLITUDES_G``."""
     values = np.array(AMPLITUDES_G)
     fell = overturns(
@@ -149,7 +161,7 @@ def _row(verdicts: pd.DataFrame, body: str, motion: str, amplitudes: Any) -> str
 
 
 def _start(
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, System],
     motions: Sequence[Motion],
     rows: list[list[str]],
     start: Start | None,
@@ -158,7 +170,7 @@ def _start(
     if start is not None:
         return list(bodies).index(start.body), [one.name for one in motions].index(start.motion)
     kinds = list(bodies.values())
-    order = sorted(range(len(kinds)), key=lambda number: not isinstance(kinds[number], Stack))
+    order = sorted(range(len(kinds)), key=lambda number: -kinds[number].count)
     for body in order:
         for motion, row in enumerate(rows[body]):
             if "1" in row[1:] and row[0] == "0":
@@ -181,23 +193,25 @@ def _motion(motion: Motion) -> dict[str, Any]:
     }
 
 
-def _body(name: str, body: Body) -> dict[str, Any]:
-    if isinstance(body, Stack):
-        parts = {
-            "statue": _block(body.statue),
-            "pedestal": _block(body.pedestal),
-            "offset": body.offset,
-        }
-    else:
-        parts = {"statue": _block(body), "pedestal": None, "offset": 0.0}
-    return {"name": name, **parts}
+def _body(name: str, system: System) -> dict[str, Any]:
+    *below, statue = map(_block, system.in_plane().bodies, system.contacts)
+    offset = system.contacts[-1].offset[0]
+    return {
+        "name": name,
+        "statue": statue,
+        "pedestal": below[0] if below else None,
+        "offset": offset,
+    }
 
 
-def _block(block: Block) -> dict[str, float]:
-    """Dimensions in SI as the driver takes them; what is not given follows from them there too."""
-    given: dict[str, float] = {"width": block.width, "height": block.height, "mass": block.mass}
-    if block.inertia is not None:
-        given["inertia"] = block.centroidal_inertia
-    if block.cg_height is not None:
-        given["cgHeight"] = block.cg_height
-    return {**given, "cgOffset": block.cg_offset, "lean": block.lean}
+def _block(body: RigidBody, contact: Contact) -> dict[str, float]:
+    """Dimensions in SI as the driver takes them; what is that of a uniform block follows from them there too."""
+    width, height, mass = body.width, body.height, body.mass
+    x, _, z = body.centre
+    given = {"width": width, "height": height, "mass": mass}
+    uniform = geometry.shape_of(width, height, mass, math.nan, math.nan, 0.0, 0.0)
+    if body.inertia != uniform.inertia:
+        given["inertia"] = float(body.inertia)  # type: ignore[arg-type]
+    if z != uniform.y:
+        given["cgHeight"] = z
+    return {**given, "cgOffset": x, "lean": contact.tilt}

@@ -11,7 +11,9 @@ from rockfrag.motions.scaling import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.report.wording import listed, number
 from rockfrag.rocking import simulate
-from rockfrag.system.blocks import Block, Body, Vector
+from rockfrag.system.blocks import Vector
+from rockfrag.system.body import RigidBody
+from rockfrag.system.system import System
 
 _WIDTH, _HEIGHT, _GROUND = 200, 190, 150
 
@@ -19,53 +21,51 @@ _FALLING = 0.7
 """Rotation at which a falling body is drawn [rad]."""
 
 
-def outlines(body: Body, theta: Sequence[float]) -> list[list[Vector]]:
-    """Corners of each block at rotations [rad], from the middle of the base [m]; a pedestal's first."""
-    if isinstance(body, Block):
-        (angle,) = theta
-        pole = Vector(math.copysign(body.b, angle), 0.0)
-        return [_placed(body, body, angle, pole, pole, 0.0, 0.0)]
-    first, second = theta
-    pedestal, statue = body.pedestal, body.contact_statue
-    pole = Vector(math.copysign(pedestal.b, first), 0.0)
-    side = 1 if second >= first else -1
-    upper = _turned_about(body.interface_pole(side), first, pole)
-    foot = Vector(side * statue.b, 0.0).turned(pedestal.lean)
-    aside = body.offset - body.contact_offset
-    return [
-        _placed(pedestal, pedestal, first, pole, pole, 0.0, 0.0),
-        _placed(body.statue, statue, second, upper, foot, pedestal.lean, aside),
-    ]
-
-
-def _placed(
-    drawn: Block, block: Block, angle: float, at: Vector, pole: Vector, lean: float, aside: float
-) -> list[Vector]:
-    """Corners of a block that is turned about its pole, which stands at ``at``."""
-    corners = []
-    for x, y in (
-        (-drawn.b, 0.0),
-        (drawn.b, 0.0),
-        (drawn.b, drawn.height),
-        (-drawn.b, drawn.height),
-    ):
-        own = Vector(x, y).turned(block.lean)
-        from_pole = Vector(own.x + aside, own.y).turned(lean).minus(pole).turned(angle)
-        corners.append(Vector(at.x + from_pole.x, at.y + from_pole.y))
+def outlines(system: System, theta: Sequence[float]) -> list[list[Vector]]:
+    """Corners of each of one or two bodies at rotations [rad], from the middle of the base [m]; from below."""
+    bodies, tilts = system.in_plane().bodies, [contact.tilt for contact in system.contacts]
+    first = theta[0]
+    pole = Vector(math.copysign(system.shapes[0].b, first), 0.0)
+    corners = [[_turned_about(at, first, pole) for at in _corners(bodies[0], tilts[0])]]
+    if system.count == 2:
+        pile, second = system.pile, theta[1]
+        side = 1 if second >= first else -1
+        foot = Vector(side * pile.statue.b, 0.0).turned(pile.lean)
+        upper = _turned_about(Vector(*(pile.right if side > 0 else pile.left)), first, pole)
+        aside = pile.above.x - pile.statue.x
+        corners.append(
+            [
+                _placed(Vector(at.x - aside, at.y).turned(pile.lean).minus(foot), second, upper)
+                for at in _corners(bodies[1], tilts[1])
+            ]
+        )
     return corners
 
 
+def _corners(body: RigidBody, tilt: float) -> list[Vector]:
+    """Corners of the box around a body as it stands, from the middle of its base [m]."""
+    half, tall = body.width / 2, body.height
+    return [
+        Vector(x, y).turned(tilt)
+        for x, y in ((-half, 0.0), (half, 0.0), (half, tall), (-half, tall))
+    ]
+
+
+def _placed(arm: Vector, angle: float, at: Vector) -> Vector:
+    turned = arm.turned(angle)
+    return Vector(at.x + turned.x, at.y + turned.y)
+
+
 def _turned_about(point: Vector, angle: float, pole: Vector) -> Vector:
-    arm = point.minus(pole).turned(angle)
-    return Vector(pole.x + arm.x, pole.y + arm.y)
+    return _placed(point.minus(pole), angle, pole)
 
 
-def frames_svg(body: Body, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
+def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
     """Draw a body at its largest rotation at each amplitude, and say what becomes of it.
 
     Parameters
     ----------
-    body
+    system
         What is shaken.
     motion
         By what.
@@ -76,15 +76,15 @@ def frames_svg(body: Body, motion: Motion, amplitudes_g: Sequence[float]) -> tup
     -------
     The drawing, and its words.
     """
-    tall = body.height if isinstance(body, Block) else body.pedestal.height + body.statue.height
+    tall = system.height
     scale = min(120 / tall, 170 / (1.6 * tall))
     parts, words = [], []
     for place, peak in enumerate(amplitudes_g):
-        response = simulate(body, scale_to_pga(motion, peak))
+        response = simulate(system, scale_to_pga(motion, peak))
         theta, verdict = _moment(response)
         shift = (place + 0.5) * _WIDTH
         for block, colour in zip(
-            outlines(body, theta), ("--red", "--blue")[-len(theta) :], strict=True
+            outlines(system, theta), ("--red", "--blue")[-len(theta) :], strict=True
         ):
             points = " ".join(
                 f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block

@@ -4,13 +4,9 @@ from rockfrag.report.part import Part
 from rockfrag.report.sections.amplitudes import AMPLITUDES
 from rockfrag.report.sections.as_recorded import AS_RECORDED
 from rockfrag.report.sections.bodies import BODIES
-from rockfrag.report.sections.building import BUILDING
 from rockfrag.report.sections.comparisons import COMPARISONS
-from rockfrag.report.sections.explanation import EXPLANATION
 from rockfrag.report.sections.floor_curves import FLOOR_CURVES
 from rockfrag.report.sections.fragility import FRAGILITY
-from rockfrag.report.sections.friction import FRICTION
-from rockfrag.report.sections.inversion import INVERSION
 from rockfrag.report.sections.left_out import LEFT_OUT
 from rockfrag.report.sections.measured import MEASURED
 from rockfrag.report.sections.measures import MEASURES
@@ -31,12 +27,8 @@ PARTS: tuple[Part, ...] = (
     FLOOR_CURVES,
     MEASURES,
     VALIDITY,
-    EXPLANATION,
-    INVERSION,
-    FRICTION,
     MEASURED,
     SHAKER,
-    BUILDING,
     MOTIONS,
     BODIES,
 )

@@ -1,5 +1,6 @@
 """Amplitudes side by side: objects, floors, with and without a pedestal."""
 
+from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.report.figures.amplitudes import (
     amplitudes_by_floor,
     amplitudes_by_object,
@@ -8,6 +9,7 @@ from rockfrag.report.figures.amplitudes import (
 from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
+from rockfrag.report.sides import sides_of
 from rockfrag.report.wording import counted
 
 _COLUMNS = (
@@ -70,14 +72,17 @@ def _by_floor(results: Results) -> FigureSpec:
 
 
 def _scatter(results: Results) -> FigureSpec:
-    ratio = ratio_of(results.table("pedestal/effects"))
-    alt = f"Amplitude with the pedestal against that without. {ratio('whole', 'all')}."
-    caption = "Amplitude with the pedestal against that without; the grey band is ±10 %, arrows are bounds."
+    about = sides_of(results.study)
+    ratio = ratio_of(results.table("pedestal/effects"), about)
+    pair = f"Amplitude {about.first} against that {about.second}"
+    alt = f"{pair}. {ratio('whole', 'all')}."
+    caption = f"{pair}; the grey band is ±10 %, arrows are bounds."
+    tests, _ = with_counterparts(results.tests, results.study.counterparts)
     return FigureSpec(
         "with_and_without_pedestal",
         alt,
         caption,
-        lambda: pedestal_scatter(results.tests, title=ratio("whole", "all")),
+        lambda: pedestal_scatter(tests, ratio("whole", "all"), about),
     )
 
 

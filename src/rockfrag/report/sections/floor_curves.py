@@ -1,7 +1,8 @@
-"""Fragility on each floor in the peak of that floor's own motion, for rocking and for overturning."""
+"""Fragility on each floor in the peak of that floor's own motion, for each limit state."""
 
 import pandas as pd
 
+from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Part, Results, Section
@@ -10,7 +11,7 @@ from rockfrag.report.wording import estimates, listed
 _COLUMNS = (
     Column("configuration", "Configuration"),
     Column("floor", "Floor"),
-    Column("state", "State"),
+    Column("state_text", "Limit state"),
     Column("im", "Measure"),
     Column("theta_text", "Median θ [g]", numeric=True),
     Column("beta_text", "Dispersion β", numeric=True),
@@ -27,7 +28,9 @@ def _section(results: Results) -> Section | None:
     files = sorted(name for name in names if not name.startswith("."))
     if shown.empty:
         return None
+    labels = {state.name: state.label for state in limit_states()}
     shown = shown.assign(
+        state_text=shown["state"].map(labels),
         theta_text=estimates(shown, ("theta", "theta_lower", "theta_upper")),
         beta_text=estimates(shown, ("beta", "beta_lower", "beta_upper")),
     )
@@ -39,7 +42,7 @@ def _section(results: Results) -> Section | None:
         words.append(f"Files for other programs are in the folder exports: {listed(files)}.")
     level = f"{100 * results.study.fragility.confidence:g} %"
     caption = f"Curves by floor, with {level} intervals where there are any."
-    message = _message(shown[shown["state"] == "overturned"])
+    message = _message(shown[shown["state"] == OVERTURNS])
     return Section(
         "floor_curves", "Fragility by floor", message, words, [table_html(shown, _COLUMNS, caption)]
     )
@@ -48,7 +51,7 @@ def _section(results: Results) -> Section | None:
 def _message(fallen: pd.DataFrame) -> str:
     """Say which configuration overturns earliest, and where."""
     if fallen.empty:
-        return "Curves exist for rocking only: too few objects overturned on a single floor."
+        return "No floor has a curve of overturning: too few objects overturned on a single one."
     weakest = min(fallen.to_dict("records"), key=lambda one: float(one["theta"]))
     return (
         f"{weakest['configuration']} on {weakest['floor']} is the most fragile: it overturns at a median of "

@@ -82,7 +82,7 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
     same, nonparametric, _ = compared_curves(same)
     specs = []
     for name in results.objects:
-        own = [one.name for one in results.study.configurations if one.object == name]
+        own = [one.name for one in results.study.configurations if one.names[-1] == name]
         chosen = same[same["configuration"].isin(own)]
         caption = (
             f"{name}: probability of overturning over {measure}, with {level} limits (band). Points are "

@@ -1,26 +1,30 @@
 """The motions: how strong they are as recorded, and what their floors add."""
 
+from rockfrag.motions.declared import intensity_measures
 from rockfrag.report.figures.motion import MOST_PANELS, acceleration_histories
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
 from rockfrag.report.wording import counted, listed
 from rockfrag.units import GRAVITY
 
-_COLUMNS = (
-    Column("name", "Motion"),
-    Column("pga_g", "PGA [g]", 3),
-    Column("pgv_cm_s", "PGV [cm/s]", 1),
-    Column("pgd_cm", "PGD [cm]", 2),
-    Column("pgv_over_pga_s", "PGV/PGA [s]", 3),
-    Column("mean_period_s", "Mean period [s]", 2),
-    Column("d5_95_s", "Significant duration, 5–95 % [s]", 1),
-    Column("arias_m_s", "Arias intensity [m/s]", 2),
-)
+
+def _columns() -> list[Column]:
+    shown = [one for one in intensity_measures() if one.decimals is not None]
+    titles = (f"{one.title or one.label} [{one.unit or '-'}]" for one in shown)
+    return [
+        Column("name", "Motion"),
+        *(
+            Column(one.column, title, one.decimals)
+            for one, title in zip(shown, titles, strict=True)
+        ),
+    ]
 
 
 def _section(results: Results) -> Section:
     measures = results.table("measures")
-    table = table_html(measures, _COLUMNS, "Intensity of every motion as recorded.", "measures.csv")
+    table = table_html(
+        measures, _columns(), "Intensity of every motion as recorded.", "measures.csv"
+    )
     return Section("motions", "Motions", _floors(results), [], [table, _accelerations(results)])
 
 

@@ -10,7 +10,8 @@ from rockfrag.report.figures.effects import forest_figure
 from rockfrag.report.findings import pedestal_effect, ratio_of, ratio_text
 from rockfrag.report.page import MOST_TABLE_ROWS, Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section, opened
-from rockfrag.report.wording import estimate, has_interval, listed, number, probability
+from rockfrag.report.sides import WITH_PEDESTAL, Sides, sides_of
+from rockfrag.report.wording import estimate, has_interval, listed, number, probability, sentence
 from rockfrag.shaketable.readings import READING
 from rockfrag.study.study import Study
 
@@ -32,7 +33,6 @@ EFFECT_COLUMNS = (
 _METHODS = (
     Column("reading", "Reading"),
     Column("method", "Method"),
-    Column("ratio_text", "With/without pedestal [95 % interval]", numeric=True),
     Column("p_text", "p", numeric=True),
     Column("smallest_text", "Smallest possible p", numeric=True),
     Column("remark", "Remark"),
@@ -68,9 +68,11 @@ def _detectable(row: Mapping[Hashable, Any]) -> str:
 
 
 def _section(results: Results) -> Section:
+    study = results.study
     effects, whole = results.table("pedestal/effects"), results.table("pedestal/whole")
     here = effects[effects["reading"] == READING]
-    found = pedestal_effect(effects)
+    about = sides_of(study)
+    found = pedestal_effect(effects, about)
     parts: list[Any] = []
     if len(here):
         methods = whole.assign(
@@ -83,11 +85,11 @@ def _section(results: Results) -> Section:
             smallest_text=[probability(p) for p in whole["smallest_p"]],
         )
         parts = [
-            _forest(here),
-            _table(here),
+            _forest(here, about),
+            _table(here, about),
             table_html(
                 methods,
-                _METHODS,
+                [_METHODS[0], _METHODS[1], _ratio_column(about), *_METHODS[2:]],
                 "All pairs, by other methods and other ways to read the amplitude.",
             ),
         ]
@@ -95,12 +97,12 @@ def _section(results: Results) -> Section:
     notes = notes[notes["reading"] == READING] if len(notes) else notes
     return Section(
         "pedestal",
-        "Effect of the pedestal",
+        "Arrangements compared" if study.counterparts else "Effect of the pedestal",
         f"{found[0].headline}.",
         [
             *opened(found[0]),
             *(one.said for one in found[1:]),
-            "The ratio is the overturning amplitude with the pedestal divided by that without, paired by "
+            f"The ratio is the overturning a{about.divided[1:]}, paired by "
             "object and motion. Motions of one earthquake are not independent, so intervals are over "
             "earthquakes where there are several. “Detectable” is the smallest ratio found with 80 % power. "
             "There is neither interval nor test where all amplitudes agree to the steps tested. p values are "
@@ -111,13 +113,20 @@ def _section(results: Results) -> Section:
     )
 
 
-def _table(effects: pd.DataFrame) -> Markup:
+def _ratio_column(about: Sides) -> Column:
+    # a name that the user gave stays as it is
+    title = sentence(about.ratio) if about is WITH_PEDESTAL else about.ratio
+    return Column("ratio_text", f"{title} [95 % interval]", numeric=True)
+
+
+def _table(effects: pd.DataFrame, about: Sides) -> Markup:
     caption = "Effect by scope, step protocol."
     if len(effects) > MOST_TABLE_ROWS:
         of_events = effects["scope"] == "event"
         caption += f" Each of the {of_events.sum()} earthquakes is in pedestal/effects.csv."
         effects = effects[~of_events]
-    return table_html(shown_effects(effects), EFFECT_COLUMNS, caption, "pedestal/effects.csv")
+    columns = [_ratio_column(about) if one.name == "ratio_text" else one for one in EFFECT_COLUMNS]
+    return table_html(shown_effects(effects), columns, caption, "pedestal/effects.csv")
 
 
 def _plain(note: str) -> str:
@@ -126,20 +135,20 @@ def _plain(note: str) -> str:
     return text if text.endswith(".") else f"{text}."
 
 
-def _forest(effects: pd.DataFrame) -> FigureSpec:
+def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
     shown, left_out = effects, []
     for scope in ("cell", "event"):
         if len(shown) > MOST_ROWS:
             shown = shown[shown["scope"] != scope]
             left_out.append({"cell": "floors by object", "event": "earthquakes"}[scope])
     caption = (
-        "Overturning amplitude with pedestal divided by that without, with 95 % intervals; grey is ±10 %, the "
-        "range that counts as no effect. Step protocol."
+        f"Overturning a{about.divided[1:]}, with 95 % intervals; grey is ±10 %, the range "
+        " that counts as no effect. Step protocol."
     )
     if left_out:
         caption += f" Not drawn, and in the table only: {listed(left_out)}."
-    alt = f"Ratios by scope. All pairs: {ratio_of(effects)('whole', 'all')}."
-    return FigureSpec("pedestal_effect", alt, caption, lambda: forest_figure(shown))
+    alt = f"Ratios by scope. All pairs: {ratio_of(effects, about)('whole', 'all')}."
+    return FigureSpec("pedestal_effect", alt, caption, lambda: forest_figure(shown, about))
 
 
 PEDESTAL = Part(("pedestal/effects", "pedestal/whole", "pedestal/notes"), _section, asked=has_pairs)

@@ -16,10 +16,10 @@ from rockfrag.study.study import Study
 _COLUMNS = (
     Column("configuration", "Object"),
     Column("pair", "Measures"),
-    Column("c0", "c0", 2),
-    Column("c1", "c1", 2),
-    Column("c2", "c2", 2),
-    Column("c12", "c12", 2),
+    Column("c0", "b₀", 2),
+    Column("c1", "b₁", 2),
+    Column("c2", "b₂", 2),
+    Column("c12", "b₁₂", 2),
     Column("aic", "AIC", 1),
     Column("p_interaction", "p of no interaction", 3),
     Column("p_fit", "p of the fit", 3),
@@ -42,11 +42,11 @@ def _section(results: Results) -> Section | None:
         "Fragility in two measures",
         _message(found, rejected),
         [
-            "The probability of overturning is Φ(c0 + c1 ln IM1 + c2 ln IM2 + c12 ln IM1 ln IM2). The product "
+            "The probability of overturning is Φ(b₀ + b₁ ln IM₁ + b₂ ln IM₂ + b₁₂ ln IM₁ ln IM₂). The product "
             "stands "
             f"in it where a score test over earthquakes rejects its absence at {INTERACTION_LEVEL:.0%} and it "
             f"improves the "
-            f"prediction of held-out earthquakes; c12 is 0 otherwise. Bands are {level} intervals over "
+            f"prediction of held-out earthquakes; b₁₂ is 0 otherwise. Bands are {level} intervals over "
             f"earthquakes "
             "(jackknife). The p of the fit is from simulated tests in which each motion has one capacity.",
             *dict.fromkeys(note for note in fits["warnings"] if note),
@@ -70,7 +70,7 @@ def _pairs(fits: pd.DataFrame) -> list[str]:
 def _message(found: pd.DataFrame, rejected: pd.DataFrame) -> str:
     pairs = ", ".join(dict.fromkeys(_pairs(found)))
     if rejected.empty:
-        return f"Fits in {pairs} describe the tests of all {len(found)} objects and measures."
+        return f"Every fit in {pairs} describes its tests."
     return (
         f"Of {len(found)} fits in {pairs}, {len(rejected)} do not describe their tests; use the observed "
         f"probabilities "

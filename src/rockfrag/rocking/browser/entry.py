@@ -13,6 +13,7 @@ from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.record import BALANCE, SUMMARY
 from rockfrag.engines.kernels.single import Scratch, Shaking, march
 from rockfrag.engines.kernels.taylor import SERIES
+from rockfrag.laws import position, ratio
 from rockfrag.system import geometry
 
 _F, _I = np.float64, np.int64
@@ -66,8 +67,8 @@ def describe(call):
         geometry.fill_block(body, statue)
         if body.measured:
             # of a lone block all laws are the same
-            body.after2r.law, body.after2r.value = geometry.RATIO, call.interface
-            body.after2l.law, body.after2l.value = geometry.RATIO, call.interface
+            body.after2r.law, body.after2r.value = ratio.NUMBER, call.interface
+            body.after2l.law, body.after2l.value = ratio.NUMBER, call.interface
             _check_restitution(call, statue, call.interface)
         call.fastest = max(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
         call.slowest = min(geometry.frequency(statue, 1, g), geometry.frequency(statue, -1, g))
@@ -105,8 +106,8 @@ def _measure(call, block, restitution, right, left):
     """Fill how a contact comes off its impacts, where that was measured."""
     if math.isnan(restitution):
         return
-    right.law, right.value = geometry.by_position(block, restitution, 1)
-    left.law, left.value = geometry.by_position(block, restitution, -1)
+    right.law, right.value = position.tell(block, restitution, 1)
+    left.law, left.value = position.tell(block, restitution, -1)
     _check_restitution(call, block, restitution)
 
 

@@ -7,7 +7,7 @@ unlike those of stacks (``scheduler``).
 
 With ψ = θc - |θ|, A the ground acceleration over g, positive where it pushes the block back down, and W gravity
 over g, 1 unless the ground moves vertically, the equation of motion on either pole is ψ'' = p² (W sin ψ + A cos ψ)
-(thesis eq. 2.4).  Time is counted in samples.
+(Housner, 1963).  Time is counted in samples.
 """
 
 import math

@@ -118,7 +118,7 @@ def next_uplift(motions, k, tau, last, factor, interval):
     k, tau : the time: ``tau`` after sample k
     last : last sample of the motion
     factor : on its samples
-    interval : (low, high), which holds 0, that the acceleration over the weight has to leave (thesis eq. 2.1)
+    interval : (low, high), which holds 0, that the acceleration over the weight has to leave (Kirkpatrick, 1927)
     """
     samples = motions.samples
     low, high = interval

@@ -1,0 +1,133 @@
+"""What the simulation says of a campaign before any of its outcomes is used, beside what was measured."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from rockfrag.campaign.comparison import curves_of, fragility_beside
+from rockfrag.campaign.validation import Bools, Floats
+from rockfrag.errors import InputError
+
+LEVEL = 0.90
+"""Confidence of intervals."""
+
+REPLICATES = 400
+"""Resamples of input motions behind the standard error of a ratio of medians."""
+
+_Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
+
+
+@dataclass(frozen=True)
+class BlindAnswer:
+    """Median of the fragility, blind and measured.
+
+    Attributes
+    ----------
+    measured
+        Measured median.
+    median, lower, upper
+        Median over the ways in which the object may stand, with 5 and 95 % of them.
+    sampling
+        Standard error of ln(simulated over measured), from resampled input motions [-].
+    dispersion
+        Middle dispersion of the ways [-].
+    """
+
+    measured: float
+    median: float
+    lower: float
+    upper: float
+    sampling: float
+    dispersion: float
+
+    @property
+    def error(self) -> float:
+        """ln(simulated over measured median) [-]."""
+        return math.log(self.median / self.measured)
+
+    @property
+    def ways(self) -> float:
+        """Standard deviation of ln median between the ways to stand [-]: 90 % of them as those of a normal."""
+        return math.log(self.upper / self.lower) / (2 * _Z)
+
+    def interval(self, model: float = 0.0) -> tuple[float, float]:
+        """Limits of the median with what is not known of the body, of the motions and of the model (90 %).
+
+        Parameters
+        ----------
+        model
+            Standard deviation of ln median that stands for the model [-].
+        """
+        other = _Z * math.hypot(self.sampling, model)
+        low = math.hypot(math.log(self.median / self.lower), other)
+        high = math.hypot(math.log(self.upper / self.median), other)
+        return self.median * math.exp(-low), self.median * math.exp(high)
+
+
+def blind_answer(
+    measure: Floats, measured: Bools, simulated: Bools, groups: np.ndarray, seed: int
+) -> BlindAnswer:
+    """Hold the ways in which an object may stand against what was measured; no way is chosen by it.
+
+    Parameters
+    ----------
+    measure
+        Intensity measure of each test, shape (tests,).
+    measured
+        Whether each test overturned, shape (tests,).
+    simulated
+        Whether each would in each way, shape (ways, tests).
+    groups
+        Input motion of each test, from 0 up, shape (tests,).
+    seed
+        Of the resampling.
+
+    Raises
+    ------
+    InputError
+        If outcomes do not rise with the measure.
+    """
+    table = fragility_beside(
+        measure, measured, {"blind": simulated.mean(axis=0)}, groups,
+        level=LEVEL, replicates=REPLICATES, seed=seed,
+    ).set_index("who")  # fmt: skip
+    each = curves_of(measure, simulated.astype(np.float64), np.ones(simulated.shape))
+    # a way in which nothing overturns has its median beyond all tests, one in which all does below them
+    bound = np.where(simulated.mean(axis=1) < measured.mean(), np.inf, 0.0)
+    medians = np.where(np.isfinite(each[:, 0]), each[:, 0], bound)
+    low, middle, high = np.quantile(
+        medians, [(1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2], method="nearest"
+    )
+    theta = float(table["theta"].to_dict()["measured"])
+    ratio = table.loc["blind", ["theta_ratio_lower", "theta_ratio_upper"]].astype(float)
+    if not (np.isfinite([theta, *ratio]).all() and 0 < middle < math.inf):
+        raise InputError("the outcomes do not rise with the measure, so they have no median.")
+    sampling = float(np.log(ratio.iloc[1] / ratio.iloc[0])) / (2 * _Z)
+    dispersion = float(np.nanmedian(each[:, 1]))
+    return BlindAnswer(theta, float(middle), float(low), float(high), sampling, dispersion)
+
+
+def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
+    """Standard deviation of ln median that blind answers of one kind of body show [-].
+
+    The mean square error, and what of it exceeds the variance of the ways to stand (the moment estimate of a
+    variance between studies, DerSimonian and Laird 1986, with equal weights). To each the variance of sampling is
+    added: agreement by chance is no proof of a model without error.
+
+    Parameters
+    ----------
+    answers
+        Of at least one campaign.
+
+    Returns
+    -------
+    tuple of float
+        All of it, and what is beyond the ways to stand.
+    """
+    square = float(np.mean([one.error**2 for one in answers]))
+    sampling = float(np.mean([one.sampling**2 for one in answers]))
+    ways = float(np.mean([one.ways**2 for one in answers]))
+    return math.sqrt(square + sampling), math.sqrt(max(0.0, square - ways) + sampling)

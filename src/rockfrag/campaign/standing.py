@@ -1,0 +1,158 @@
+"""How an object stands, which nobody measured: a distribution for each unknown, with its source.
+
+A scan says where the surface is, not which of its points carry; nor is it known where the object faces and what
+its impacts take.  A cut block stands on the edges that were measured, so that little is open.  Whoever measures
+one of the unknowns puts its value in the place of the distribution.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import pandas as pd
+from scipy.stats import norm, qmc
+
+from rockfrag.campaign.trials import Trials, block_of, possible_restitution
+from rockfrag.errors import InputError
+from rockfrag.fragility.model_error import CUT, SCAN
+from rockfrag.rocking.options import system_of
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import Shape
+
+SCAN_ACCURACY_MM = 0.5
+"""Standard deviation of the height of a scanned point where none is stated [mm], of ours."""
+
+LEAST_ANGLE_DEG = 2.0
+"""Critical angle below which an object is not set up to stand free [degrees]: of ours; tan 2° is 0.035 g, which a
+floor out of level and a push reach."""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """Something about how an object stands that nobody measured.
+
+    Attributes
+    ----------
+    words
+        What it is.
+    source
+        Where its distribution comes from.
+    quantile
+        Its quantile function.
+    """
+
+    words: str
+    source: str
+    quantile: Callable[[float], float]
+
+
+def _uniform(low: float, high: float, fraction: float) -> float:
+    return low + (high - low) * fraction
+
+
+def _lognormal(median: float, spread: float, fraction: float) -> float:
+    return median * math.exp(spread * float(norm.ppf(fraction)))
+
+
+def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Unknown]:
+    """Distributions of what nobody measured.
+
+    Parameters
+    ----------
+    kind
+        ``scan`` or ``cut block``.
+    scan_accuracy_mm
+        Standard deviation of the height of a scanned point [mm]; None if it is not known.
+    """
+    if kind == CUT:
+        return {
+            "edge_retreat_mm": Unknown(
+                "how far the edges carry further in",
+                "uniform from 0 to 2 mm, of ours: edges of cut stone are broken by a millimetre or two",
+                partial(_uniform, 0.0, 2.0),
+            ),
+            "restitution_ratio": Unknown(
+                "the restitution over that of momentum",
+                "normal, 1 ± 0.05, of ours, about Housner (1963)",
+                lambda fraction: 1 + 0.05 * float(norm.ppf(fraction)),
+            ),
+        }
+    spread = 0.5 if scan_accuracy_mm is None else 0.3
+    median = 2 * (scan_accuracy_mm or SCAN_ACCURACY_MM)
+    return {
+        "direction_deg": Unknown(
+            "the direction of shaking", "uniform: any direction", partial(_uniform, 0.0, 360.0)
+        ),
+        "contact_tolerance_mm": Unknown(
+            "the height up to which points carry",
+            f"lognormal, median {median:g} mm (two standard deviations of a scanned height, which is as much as "
+            f"noise lowers the lowest of many points), ± {100 * spread:g} %, of ours",
+            partial(_lognormal, median, spread),
+        ),
+        "edge_retreat_mm": Unknown(
+            "how far the edges carry further in",
+            "uniform from 0 to 10 mm, of ours: natural and worn edges are round",
+            partial(_uniform, 0.0, 10.0),
+        ),
+        "restitution_ratio": Unknown(
+            "the restitution over that of momentum",
+            "uniform from 0.7 to 1, of ours: a body on few points takes more than momentum; 0.6 to 0.98 were "
+            "plausible for a granite rock",
+            partial(_uniform, 0.7, 1.0),
+        ),
+    }
+
+
+def ways_to_stand(
+    thing: Shape | Block, unknowns: Mapping[str, Unknown], count: int, seed: int
+) -> Trials:
+    """Draw ways in which an object may stand, evenly over the distributions (scrambled Sobol points).
+
+    Ways in which it would not have been set up (:data:`LEAST_ANGLE_DEG`) are left out.
+
+    Parameters
+    ----------
+    thing
+        A shape, or the planar block of a cut one.
+    unknowns
+        Distributions, as :func:`unknowns_of` gives them.
+    count
+        Number of draws; a power of two fills the distributions most evenly.
+    seed
+        Of the scrambling.
+
+    Raises
+    ------
+    InputError
+        If it could stand in none of them.
+    """
+    points = qmc.Sobol(len(unknowns), scramble=True, rng=np.random.default_rng(seed)).random(count)
+    rows, systems = [], []
+    for point in points:
+        way = {
+            name: one.quantile(u) for (name, one), u in zip(unknowns.items(), point, strict=True)
+        }
+        try:
+            block = block_of(thing, way)
+        except InputError:
+            continue
+        angle = math.degrees(min(block.critical_angle(+1), block.critical_angle(-1)))
+        if angle < LEAST_ANGLE_DEG:
+            continue
+        momentum = min(block.momentum_restitution(+1), block.momentum_restitution(-1))
+        rows.append(way | {"width_m": block.width, "alpha_deg": angle})
+        ratio = possible_restitution(block, way["restitution_ratio"] * momentum)
+        systems.append(system_of(block, restitution=ratio))
+    if not rows:
+        raise InputError(
+            f"under none of {count} guesses of what was not measured could the object stand at "
+            f"{LEAST_ANGLE_DEG:g}° or more; check that it stands as its mesh does, and its unit."
+        )
+    return Trials(pd.DataFrame(rows), tuple(systems), count - len(rows))
+
+
+def kind_of(thing: Shape | Block) -> str:
+    """Kind of a body: scanned, or cut to measured edges."""
+    return SCAN if isinstance(thing, Shape) else CUT

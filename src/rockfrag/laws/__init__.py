@@ -1,0 +1,128 @@
+"""Laws of impacts: what a contact does when it closes, one file a law (``docs/restitution.md``).
+
+A file ends with ``LAW = declare(...)``: its name, what the kernels are told of a measured restitution, and the
+rate at which it lets a contact come off, a function that the kernels inline.  A new law is one file and its name
+in ``BUILT_IN``; a law without a rate of its own only makes the number of another law of what was measured.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+
+from rockfrag.errors import InputError
+from rockfrag.system.geometry import Shape
+
+BUILT_IN = ("momentum", "position", "couple", "ratio")
+"""Files of the laws, in the order of the numbers by which the kernels know them; the second is the usual one."""
+
+Told = tuple[int, float]
+"""What the kernels are told of the impacts that end on a pivot: number of a law, and the law's own number."""
+
+Rate = Callable[[float, float, float, float], float]
+
+
+@dataclass(frozen=True)
+class Law:
+    """One law of impacts.
+
+    Attributes
+    ----------
+    name
+        Name in files and messages.
+    number
+        Number by which the kernels know it.
+    tell
+        Function of the shape of the lone body, its measured ratio of the angular velocities after and before
+        an impact [-] and the pivot on which the impact ends: what the kernels are told.
+    rate
+        Function that the kernels inline: of the law's number, the rate at which momentum lets the contact come
+        off, the rate before the impact and the one that impulses moved as the law says leave, the rate at which
+        the contact comes off [rad/s, or m/s]. None: of another law.
+    moves_impulse
+        Whether the law's number is where the impulse acts, from the middle (0) to the new pivot (1) of the base.
+    scales_momentum
+        Whether the law multiplies what momentum leaves, so that it has nothing to say where that is nothing.
+    """
+
+    name: str
+    number: int
+    tell: Callable[[Shape, float, int], Told]
+    rate: Rate | None = None
+    moves_impulse: bool = False
+    scales_momentum: bool = False
+
+
+_LAWS: dict[str, Law] = {}
+
+
+def declare(
+    name: str,
+    tell: Callable[[Shape, float, int], Told],
+    rate: Rate | None = None,
+    *,
+    moves_impulse: bool = False,
+    scales_momentum: bool = False,
+) -> Law:
+    """Declare a law of impacts.
+
+    Parameters
+    ----------
+    name, tell, rate, moves_impulse, scales_momentum
+        As of :class:`Law`.  With a rate it must be declared before anything is simulated, as kernels are compiled
+        with the laws that there are.
+
+    Raises
+    ------
+    InputError
+        If the name is taken.
+    """
+    if name in _LAWS:
+        raise InputError(
+            f"law of impacts {name!r} is declared twice; give the second another name."
+        )
+    last = max(len(BUILT_IN) - 1, *map(_number, _LAWS.values()), 0)
+    number = BUILT_IN.index(name) if name in BUILT_IN else last + 1
+    law = Law(name, number, tell, rate, moves_impulse, scales_momentum)
+    _LAWS[name] = law
+    return law
+
+
+def _number(law: Law) -> int:
+    return law.number
+
+
+@cache
+def _load_built_in() -> None:
+    for name in BUILT_IN:
+        import_module(f"{__name__}.{name}")
+
+
+def laws() -> tuple[Law, ...]:
+    """Return all laws, conservation of momentum first."""
+    _load_built_in()
+    return tuple(sorted(_LAWS.values(), key=_number))
+
+
+def law_names() -> tuple[str, ...]:
+    """Return the names of the laws that a measured restitution may follow, the usual one first."""
+    return tuple(law.name for law in laws()[1:])
+
+
+def law_named(name: str) -> Law:
+    """Return the law of a name.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    laws()
+    if name not in _LAWS:
+        raise InputError(f"restitution: the law {name!r} is none of {', '.join(law_names())}.")
+    return _LAWS[name]
+
+
+def forget_law(name: str) -> None:
+    """Take back a declaration, as a plugin that is unloaded does."""
+    _LAWS.pop(name, None)

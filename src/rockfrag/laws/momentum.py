@@ -1,0 +1,19 @@
+"""Conservation of angular momentum about the new pivot (Housner 1963): the law where nothing was measured."""
+
+from rockfrag.laws import BUILT_IN, Told, declare
+from rockfrag.system.geometry import Shape
+
+NUMBER = BUILT_IN.index("momentum")
+
+
+def tell(shape: Shape, restitution: float, pivot: int) -> Told:
+    """Return what the kernels are told, whatever was measured."""
+    return NUMBER, 1.0
+
+
+def rate(value: float, by_momentum: float, before: float, moved: float) -> float:
+    """Rate that momentum gives."""
+    return by_momentum
+
+
+LAW = declare("momentum", tell, rate)

@@ -1,0 +1,26 @@
+"""The impulse acts nearer the middle of the base than the new pivot, where momentum leaves less than was measured.
+
+Material points of the base meet away from the corner, because the surfaces are uneven or yield.  The lone body
+then conserves its momentum about the point of the impulse, which gives the point (``docs/restitution.md``, eq. 4).
+Where momentum leaves more there is no such point within the base, and a couple brakes.
+"""
+
+from rockfrag.laws import BUILT_IN, Told, couple, declare
+from rockfrag.system.geometry import Shape, impulse_position, momentum_restitution
+
+NUMBER = BUILT_IN.index("position")
+
+
+def tell(shape: Shape, restitution: float, pivot: int) -> Told:
+    """Return the place of the impulse, or the couple that brakes."""
+    if restitution >= momentum_restitution(shape, pivot):
+        return NUMBER, impulse_position(shape, restitution, pivot)
+    return couple.tell(shape, restitution, pivot)
+
+
+def rate(value: float, by_momentum: float, before: float, moved: float) -> float:
+    """Rate that the moved impulse leaves."""
+    return moved
+
+
+LAW = declare("position", tell, rate, moves_impulse=True)

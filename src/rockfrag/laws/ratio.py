@@ -1,0 +1,22 @@
+"""Newton's hypothesis for the rotation: the ratio of the rates after and before an impact is the contact's own.
+
+It is the measured one, whatever the bodies weigh (``docs/restitution.md``, "Ratio").
+"""
+
+from rockfrag.laws import BUILT_IN, Told, declare
+from rockfrag.system.geometry import Shape
+
+NUMBER = BUILT_IN.index("ratio")
+
+
+def tell(shape: Shape, restitution: float, pivot: int) -> Told:
+    """Return the measured ratio."""
+    return NUMBER, restitution
+
+
+def rate(value: float, by_momentum: float, before: float, moved: float) -> float:
+    """Rate as a multiple of that before the impact."""
+    return value * before
+
+
+LAW = declare("ratio", tell, rate)

@@ -1,0 +1,65 @@
+"""What other distributions add to studies: keys of the configuration, rules of the workflow, parts of the report.
+
+A distribution names its :class:`Plugin` under the entry point group ``rockfrag.study``. A study has the plugin if
+its configuration holds one of the plugin's keys; without the distribution such a key is not known.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import entry_points
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rockfrag.report.part import Answer, Part, Results
+    from rockfrag.study.study import Study
+
+    Parts = Sequence[Part]
+    FirstPage = Callable[[Results], Answer]
+
+GROUP = "rockfrag.study"
+"""Group of entry points that name plugins."""
+
+
+@dataclass(frozen=True)
+class Plugin:
+    """What a distribution adds to a study.
+
+    Attributes
+    ----------
+    schema
+        Its keys of a study's configuration, each with its JSON schema.
+    settings
+        Reads them out of the configuration, which has passed the schema, and checks them against the study.
+    rules
+        Its rules of the workflow, a file of Snakemake in the package's folder; what the report shows of their
+        outputs they append to the list ``ADDED``.
+    report
+        Returns the parts of the study's report, and what makes its first page, from those of any study.
+    """
+
+    schema: Mapping[str, Any]
+    settings: Callable[[Mapping[str, Any], "Study"], Any]
+    rules: Path
+    report: "Callable[[Study, Parts, FirstPage], tuple[Parts, FirstPage]]"
+
+
+@cache
+def plugins() -> dict[str, Plugin]:
+    """Return the installed plugins by name."""
+    return {one.name: one.load() for one in sorted(entry_points(group=GROUP))}
+
+
+def plugins_asked(content: Mapping[str, Any]) -> dict[str, Plugin]:
+    """Return the plugins of which a study's configuration holds a key."""
+    return {
+        name: plugin
+        for name, plugin in plugins().items()
+        if any(content.get(key) is not None for key in plugin.schema)
+    }
+
+
+def plugins_of(study: Any) -> list[Plugin]:
+    """Return the plugins that a study of any kind has."""
+    return [plugins()[name] for name in getattr(study, "added", ())]

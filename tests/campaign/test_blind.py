@@ -1,0 +1,93 @@
+"""Blind answers: no outcome is used, the interval holds the truth, and the model error is what campaigns print."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from rockfrag.campaign.blind import BlindAnswer, blind_answer, model_error
+from rockfrag.campaign.standing import LEAST_ANGLE_DEG, unknowns_of, ways_to_stand
+from rockfrag.errors import InputError
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
+from rockfrag.stages.model_error import main
+from rockfrag.system.blocks import Block
+
+from .conftest import Laboratory
+from .test_study import configured, granite
+
+
+def fallen(measure, theta, beta, random):
+    return random.random(len(measure)) < stats.norm.cdf(np.log(measure / theta) / beta)
+
+
+def test_a_model_that_errs_by_a_factor_is_seen_to_err_by_it():
+    random = np.random.default_rng(4)
+    measure = np.exp(random.uniform(-1.5, 1.5, 1200))
+    groups = np.arange(1200) % 60
+    measured = fallen(measure, 1.0, 0.4, random)
+    ways = np.array([fallen(measure, 1.4 * f, 0.4, random) for f in np.geomspace(0.8, 1.25, 21)])
+    found = blind_answer(measure, measured, ways, groups, 1)
+    assert found.error == pytest.approx(math.log(1.4), abs=0.1)
+    assert found.ways == pytest.approx(math.log(1.25 / 0.8) / 3.29, rel=0.2)
+    low, high = found.interval()
+    assert low < found.lower < found.median < found.upper < high
+    assert found.interval(0.3)[0] < low
+    # outcomes of the laboratory move the measured median only
+    other = blind_answer(measure, fallen(measure, 1.3, 0.4, random), ways, groups, 1)
+    assert other.median == found.median and other.measured > 1.2 * found.measured
+
+
+def test_what_ways_to_stand_explain_is_not_counted_twice_nor_is_luck_a_proof():
+    def seen(error: float, ways: float) -> BlindAnswer:
+        half = 1.645 * ways
+        return BlindAnswer(
+            1.0, math.exp(error), math.exp(error - half), math.exp(error + half), 0.05, 0.4
+        )
+
+    whole, beyond = model_error([seen(0.3, 0.1), seen(-0.3, 0.1)])
+    assert whole == pytest.approx(math.hypot(0.3, 0.05))
+    assert beyond == pytest.approx(math.sqrt(0.3**2 - 0.1**2 + 0.05**2), rel=1e-3)
+    assert model_error([seen(0.0, 0.4)]) == pytest.approx((0.05, 0.05))
+
+
+def test_a_cut_block_leaves_less_open_than_a_scan():
+    scan, cut = unknowns_of(SCAN), unknowns_of(CUT)
+    for name in cut:
+        width = [one[name].quantile(0.95) - one[name].quantile(0.05) for one in (scan, cut)]
+        assert width[1] < width[0]
+    stated = unknowns_of(SCAN, 0.5)["contact_tolerance_mm"].quantile
+    guessed = scan["contact_tolerance_mm"].quantile
+    assert stated(0.5) == guessed(0.5) and stated(0.95) < guessed(0.95)
+    ways = ways_to_stand(Block(0.1, 0.8, 30.0), cut, 64, 1)
+    assert ways.table["width_m"].between(0.096, 0.1).all() and ways.table["width_m"].std() > 5e-4
+    with pytest.raises(InputError, match=f"stand at {LEAST_ANGLE_DEG:g}"):
+        ways_to_stand(Block(0.02, 0.8, 30.0), cut, 64, 1)
+
+
+def test_the_command_prints_the_error_of_a_synthetic_laboratory(
+    tmp_path: Path, laboratory: Laboratory, capsys
+):
+    assert main([str(configured(tmp_path, laboratory))]) == 0
+    said = capsys.readouterr().out
+    error = float(re.search(r"ln ratio (-?[\d.]+)", said)[1])
+    # the outcomes are those of the model itself, with edges up to 2 mm of 40 mm further out than the guesses
+    assert -2 * 2 / 40 < error < 0.03
+    assert re.search(rf"{CUT}: blind 0\.\d+, beyond the ways to stand 0\.\d+ of ln median", said)
+    assert main([str(tmp_path / "absent.yaml")]) == 2
+
+
+@pytest.mark.slow
+def test_the_stated_model_error_is_what_the_command_prints(tmp_path: Path, shared: Path, capsys):
+    assert main([str(granite(tmp_path, shared))]) == 0
+    said = re.search(
+        r"scan: blind ([\d.]+), beyond the ways to stand ([\d.]+)", capsys.readouterr().out
+    )
+    stated = MODEL_ERRORS[SCAN]
+    assert (float(said[1]), float(said[2])) == (stated.blind, stated.beyond)
+    assert (
+        MODEL_ERRORS[CUT].blind == stated.blind
+        and "no campaign of a cut block" in MODEL_ERRORS[CUT].words
+    )

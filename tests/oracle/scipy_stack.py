@@ -1,0 +1,177 @@
+"""A statue on a pedestal by scipy's ``solve_ivp``, the counterpart of ``competitors.scipy_lone``.
+
+The mechanics (contact states, impacts, what a closed contact can hold) is that of
+`rocking_model`, with plain floats where every stage of a step calls it.
+"""
+
+import math
+from collections.abc import Callable
+from itertools import pairwise, product
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from rockfrag.system.blocks import Body, Stack
+
+from .competitors import SLOWEST_IMPACT, Array, G
+from .rocking_integrator import LONGEST_TAIL
+from .rocking_model import Model, Pair, State
+
+Ground = Callable[[float], float]
+Watch = Callable[[float, Array], float]
+
+SLACK = 1e-10
+"""What a closed contact may pull before it opens, of weight times half width [-]: it then parts at once."""
+
+JUST_OPEN = 1e-300
+"""A gap at the start of an integration [rad]: where a contact has just opened no closing is found."""
+
+
+class FloatModel(Model):
+    """The mechanics with its arms worked out once, so that a rate takes no vectors."""
+
+    def __init__(self, body: Body, g: float) -> None:
+        super().__init__(body, g)
+        poles = product((1, -1), repeat=2)
+        self.arms = {pair: sum(self.fields(pair, (0.0, 0.0)), ()) for pair in poles}
+
+    def terms(
+        self, poles: State, theta: Pair, omega: Pair, pull: Pair
+    ) -> tuple[float, float, float, float, float]:
+        """Return M11, M12, M22, f1, f2 of M θ'' + f = τ."""
+        x1, y1, xd, yd, x2, y2 = self.arms[poles]
+        c, s = math.cos(theta[0]), math.sin(theta[0])
+        x1, y1, xd, yd = x1 * c + y1 * s, y1 * c - x1 * s, xd * c + yd * s, yd * c - xd * s
+        c, s = math.cos(theta[1]), math.sin(theta[1])
+        x2, y2 = x2 * c + y2 * s, y2 * c - x2 * s
+        m1, m2 = self.m1, self.m2
+        a, g = pull
+        v1, v2 = omega[0] * omega[0], omega[1] * omega[1]
+        ax, ay = a - v1 * xd - v2 * x2, g - v1 * yd - v2 * y2
+        # the pedestal's own centripetal acceleration has no moment about its pole
+        return (
+            self.i1 + m1 * (x1 * x1 + y1 * y1) + m2 * (xd * xd + yd * yd),
+            m2 * (xd * x2 + yd * y2),
+            self.i2 + m2 * (x2 * x2 + y2 * y2),
+            m1 * (y1 * a - x1 * g) + m2 * (yd * ax - xd * ay),
+            m2 * (y2 * ax - x2 * ay),
+        )
+
+
+def piecewise_linear(values: list[float], dt: float) -> Ground:
+    """Acceleration of the ground [m/s²], zero after the last sample."""
+    slopes = [b - a for a, b in pairwise(values)]
+
+    def ground(t: float) -> float:
+        x = t / dt
+        k = int(x)
+        return values[k] + (x - k) * slopes[k] if k < len(slopes) else 0.0
+
+    return ground
+
+
+def rest_interval(model: Model) -> tuple[float, float]:
+    """Accelerations of the ground [m/s²] between which what is at rest stays so."""
+    still, pushed = (model.margins((0, 0), (0.0, 0.0), (0.0, 0.0), (a, G)) for a in (0.0, 1.0))
+    limits = [still[key] / (still[key] - pushed[key]) for key in still]
+    return max(a for a in limits if a < 0), min(a for a in limits if a > 0)
+
+
+def watches(model: Model, state: State, start: float, ground: Ground) -> list[Watch]:
+    """Events of a contact state that starts at ``start``: at ground and interface, and a fall."""
+
+    def gap(t: float, y: Array, i: int) -> float:
+        theta = y.tolist()
+        return state[i] * (theta[i] - i * theta[0]) if t > start else JUST_OPEN
+
+    def hold(t: float, y: Array) -> float:
+        th1, th2, w1, w2 = y.tolist()
+        pull = ground(t), G
+        return min(model.margins(state, (th1, th2), (w1, w2), pull).values()) + SLACK
+
+    def falls(t: float, y: Array) -> float:
+        th1, th2, _, _ = y.tolist()
+        return math.pi / 2 - max(abs(th1), abs(th2), abs(th2 - th1))
+
+    events: list[Watch] = [(lambda t, y, i=i: gap(t, y, i)) if state[i] else hold for i in (0, 1)]
+    for event in (*events, falls):
+        event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+    return [*events, falls]
+
+
+def landed(
+    model: Model, state: State, shut: list[int], theta: Pair, omega: Pair, a: float
+) -> tuple[State, Pair]:
+    """Contact state and velocities after the contacts ``shut`` have closed, without chatter."""
+    closing = (state[0] if 0 in shut else 0, state[1] if 1 in shut else 0)
+    new, after, _ = model.impact(state, closing, theta, omega)
+    while True:
+        q1, q2 = model.accelerations(new, theta, after, (a, G))
+        parts, pulls = (after[0], after[1] - after[0]), (q1, q2 - q1)
+        weak = [
+            (closing[i] or not state[i])
+            and abs(parts[i]) < SLOWEST_IMPACT
+            and new[i] * pulls[i] < 0
+            for i in (0, 1)
+        ]
+        if not any(weak):
+            return new, after
+        new = (0 if weak[0] else new[0], 0 if weak[1] else new[1])
+        after = model.projected((new[0] or 1, new[1] or 1), new, state, theta, omega)
+
+
+def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
+    """Statue on pedestal by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as events.
+
+    ``by_sample`` as in ``scipy_lone``.
+    """
+    assert isinstance(body, Stack)
+    model = FloatModel(body, G)
+    values = [*acceleration.tolist(), 0.0]
+    ground = piecewise_linear(values, dt)
+    low, high = rest_interval(model)
+    moves = (np.array(values) < low) | (np.array(values) > high)
+    end = (len(values) - 1) * dt + LONGEST_TAIL / model.frequency
+    t, state, theta, omega = 0.0, (0, 0), (0.0, 0.0), (0.0, 0.0)
+    while t < end:
+        if state == (0, 0) and low <= ground(t) <= high:
+            k = int(t / dt) + 1
+            later = np.flatnonzero(moves[k:])
+            if not later.size:
+                return False
+            k += int(later[0])
+            before, after = max(t, (k - 1) * dt), k * dt
+            a0, a1 = ground(before), values[k]
+            limit = high if a1 > high else low
+            t = before + (after - before) * (limit - a0) / (a1 - a0) + 1e-9
+        state = model.settled(state, theta, omega, (ground(t), G))
+        if state == (0, 0):
+            continue
+
+        def rates(t: float, y: Array, state: State = state) -> tuple[float, float, float, float]:
+            th1, th2, w1, w2 = y.tolist()
+            pull = ground(t), G
+            return w1, w2, *model.accelerations(state, (th1, th2), (w1, w2), pull)
+
+        # from an event just before a sample on to the one after
+        stop = (int(t / dt + 1e-7) + 1) * dt if by_sample else end
+        run = solve_ivp(
+            rates, (t, stop), np.array([*theta, *omega]), method="DOP853", rtol=1e-10, atol=1e-13,
+            first_step=min(dt, stop - t), max_step=dt, events=watches(model, state, t, ground),
+        )  # fmt: skip
+        if run.t_events[2].size:
+            return True
+        t = float(run.t[-1])
+        th1, th2, w1, w2 = run.y[:, -1].tolist()
+        gaps, parts = (th1, th2 - th1), (w1, w2 - w1)
+        shut = [
+            i
+            for i, c in enumerate(state)
+            if c and (run.t_events[i].size or (c * gaps[i] < 1e-13 and c * parts[i] < 0))
+        ]
+        th1 = 0.0 if 0 in shut or state[0] == 0 else th1
+        theta = (th1, th1 if 1 in shut or state[1] == 0 else th2)
+        omega = (w1, w1 if state[1] == 0 else w2)
+        if shut:
+            state, omega = landed(model, state, shut, theta, omega, ground(t))
+    return False

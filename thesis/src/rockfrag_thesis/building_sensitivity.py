@@ -1,0 +1,201 @@
+"""The building as an axis: overturning amplitudes along its assumptions.
+
+One assumption is varied at a time around the building of a YAML file.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.building.drift import judge_drift
+from rockfrag.building.floors import respond, response_motions
+from rockfrag.building.model import ShearBuilding
+from rockfrag.building.settings import make_building
+from rockfrag.errors import InputError
+from rockfrag.motions.scaling import scale
+from rockfrag.records.motion import Motion
+from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.readings import tests_from_sweep
+from rockfrag.stages.sweep import sweep_table
+from rockfrag.system.system import System
+
+Floats = NDArray[np.float64]
+
+AXES = ("first_period_s", "damping_ratio", "base_shear", "ground_scale", "floors")
+"""Assumptions that can be varied: first period and damping of the elastic model, shear strength over
+weight of the hysteretic one and the factor on the ground motion that it feels, and the level of each
+labelled floor."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One building of a sensitivity study.
+
+    Attributes
+    ----------
+    axis
+        Assumption that differs from the reference, one of ``AXES``, or ``reference``.
+    value
+        Its value; for ``floors`` the level of the highest floor.
+    label
+        The same for a reader.
+    building
+        The building.
+    ground_scale
+        Factor on the ground motions that it feels; its floors' motions are scaled to the amplitudes
+        of the tests in any case, so this matters for a hysteretic building alone.
+    """
+
+    axis: str
+    value: float
+    label: str
+    building: ShearBuilding
+    ground_scale: float = 1.0
+
+
+def building_variants(
+    settings: Mapping[str, Any], axes: Mapping[str, Sequence[Any]], source: str = "building"
+) -> list[Variant]:
+    """Buildings that differ from one in a single assumption each, after the one itself.
+
+    Parameters
+    ----------
+    settings
+        Mapping of the reference building, as :func:`rockfrag.building.settings.make_building` takes.
+    axes
+        Values for any of ``AXES``; each of ``floors`` is a mapping from labels of the building to
+        levels, in place of those that the building gives them.
+    source
+        Where the mapping comes from, for messages.
+
+    Raises
+    ------
+    InputError
+        If an axis is unknown or a building makes no sense.
+    """
+    for axis in axes:
+        if axis not in AXES:
+            raise InputError(
+                f"{source}: axis {axis!r} of the sensitivity is unknown; known are {', '.join(AXES)}."
+            )
+    variants = [Variant("reference", 0.0, "reference", make_building(settings, source))]
+    for axis, values in axes.items():
+        variants.extend(_variant(settings, axis, value, source) for value in values)
+    return variants
+
+
+def _variant(settings: Mapping[str, Any], axis: str, value: Any, source: str) -> Variant:
+    def changed(**changes: Any) -> ShearBuilding:
+        kept = {k: v for k, v in settings.items() if k != "storey_stiffnesses_N_m"}
+        return make_building(kept | changes, source)
+
+    if axis == "floors":
+        levels = {**settings.get("floors", {}), **value}
+        named = ", ".join(f"{label} {level}" for label, level in value.items())
+        return Variant(axis, float(max(value.values())), f"levels {named}", changed(floors=levels))
+    if axis == "first_period_s":
+        return Variant(axis, value, f"first period {value:g} s", changed(first_period_s=value))
+    if axis == "damping_ratio":
+        damping = {**settings.get("damping", {}), "ratio": value}
+        return Variant(axis, value, f"damping {value:.0%}", changed(damping=damping))
+    if axis == "base_shear":
+        law = {**settings.get("masonry", {}), "base_shear": value}
+        building = changed(model="hysteretic", masonry=law)
+        return Variant(axis, value, f"masonry, {value:g} W", building)
+    building = changed(model="hysteretic")
+    return Variant(axis, value, f"masonry, {value:g} × record", building, value)
+
+
+def building_sensitivity(
+    variants: Sequence[Variant],
+    motions: Sequence[Motion],
+    specimens: Sequence[System],
+    amplitudes_g: Floats,
+    protocol: Protocol,
+    threads: int = 1,
+    progress: Callable[[int], None] = lambda done: None,
+) -> pd.DataFrame:
+    """Overturning amplitudes for every variant.
+
+    Parameters
+    ----------
+    variants
+        Buildings, each with the floors that are to be shaken.
+    motions
+        Ground motions, with ``event`` in their metadata.
+    specimens
+        What stands on the table: each object with and without its pedestal, named as tables call it.
+    amplitudes_g
+        Amplitudes of the sweeps [g], rising.
+    protocol
+        Protocol of the laboratory.
+    threads
+        Threads to use; the results do not depend on it.
+    progress
+        Called with the number of variants done, after each.
+
+    Returns
+    -------
+    Table of tests of all variants and readings, with the variant's ``axis``, ``value`` and ``label``,
+    and ``credible``, whether the building's model is to be believed under all motions.
+    """
+    tables: list[pd.DataFrame] = []
+    ground = _Ground(specimens, amplitudes_g, threads)
+    for done, variant in enumerate(variants, start=1):
+        sweep, credible = _sweep(variant, motions, ground)
+        tests = tests_from_sweep(sweep, protocol)
+        tables.append(
+            tests.assign(
+                axis=variant.axis, value=variant.value, label=variant.label, credible=credible
+            )
+        )
+        progress(done)
+    return pd.concat(tables, ignore_index=True)
+
+
+class _Ground:
+    """Sweeps of motions, which remembers those of the ground: they are the same for every variant."""
+
+    def __init__(self, specimens: Sequence[System], amplitudes_g: Floats, threads: int) -> None:
+        self.specimens = specimens
+        self.amplitudes_g = amplitudes_g
+        self.threads = threads
+        self.known: dict[str, pd.DataFrame] = {}
+
+    def sweep(self, motion: Motion) -> pd.DataFrame:
+        """Sweep of a motion, from memory if it is one of the ground."""
+        if motion.metadata["level"] != 0:
+            return self._shake(motion)
+        if motion.name not in self.known:
+            self.known[motion.name] = self._shake(motion)
+        return self.known[motion.name]
+
+    def _shake(self, motion: Motion) -> pd.DataFrame:
+        tables: list[pd.DataFrame] = [
+            sweep_table(one, [motion], self.amplitudes_g, self.threads).to_pandas()
+            for one in self.specimens
+        ]
+        event = motion.metadata.get("event") or motion.metadata["ground_motion"]
+        found = pd.concat(tables, ignore_index=True)
+        return found.assign(event=event)
+
+
+def _sweep(
+    variant: Variant, motions: Sequence[Motion], ground: _Ground
+) -> tuple[pd.DataFrame, bool]:
+    """Sweep all floors of a variant, and say whether its model is to be believed."""
+    credible = True
+    tables = []
+    for motion in motions:
+        felt = scale(motion, variant.ground_scale)
+        response = respond(variant.building, felt)
+        credible &= judge_drift(variant.building, response).credible
+        for floor in response_motions(
+            variant.building, felt, response, list(variant.building.floors)
+        ):
+            tables.append(ground.sweep(floor))
+    return pd.concat(tables, ignore_index=True), credible

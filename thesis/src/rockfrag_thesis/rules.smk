@@ -1,0 +1,107 @@
+# What only a study asks for that has a key of the thesis: compare_with, building_sensitivity, explanation.
+from rockfrag_thesis.settings import settings_of
+
+ASKED = settings_of(STUDY)
+EXPLAINED = ASKED.explanation
+MEASURED = ["measured"] if STUDY.more.measured_tests else []
+BUILDINGS = ["building_sensitivity"] if ASKED.sensitivity else []
+
+
+if ASKED.sensitivity:
+
+    rule building_sensitivity:
+        """Repeat the tests on the floors of other buildings, one assumption changed at a time."""
+        input:
+            read("motions/ground"),
+            bodies=STUDY.body_files,
+            building=STUDY.building_file or [],
+        output:
+            table("building_sensitivity/tests", "building_sensitivity/means"),
+        log:
+            f"{RESULTS}/logs/building_sensitivity.log",
+        conda:
+            ENVIRONMENT
+        threads: CORES
+        resources:
+            mem_mb=MEMORY_MB,
+            runtime=120,
+        params:
+            stage="rockfrag_thesis.stages.sensitivity:run",
+            study=STUDY_FILE,
+            settings=settings(
+                *("building_sensitivity", "building", "bodies", "amplitudes"),
+                *("protocol", "friction"),
+            ),
+        script:
+            RUN_STAGE
+
+    ADDED.append(rules.building_sensitivity.output)
+
+
+if EXPLAINED:
+
+    rule explanation:
+        """Simulate what could produce an effect of the pedestal, one departure from the ideal model at a time."""
+        input:
+            read("motions/floors"),
+            bodies=STUDY.body_files,
+        output:
+            table("explanation/ratios", "explanation/effects"),
+            friction=(
+                table("explanation/friction_ratios", "explanation/friction")
+                if EXPLAINED.friction
+                else []
+            ),
+            inversion=table("explanation/inversion") if EXPLAINED.wanted_percent else [],
+        log:
+            f"{RESULTS}/logs/explanation.log",
+        priority: 3
+        conda:
+            ENVIRONMENT
+        # half of the cores, so that tests and fragility need not wait for it
+        threads: max(1, CORES // 2)
+        resources:
+            mem_mb=MEMORY_MB,
+            runtime=120,
+        params:
+            stage="rockfrag_thesis.stages.explanation:run",
+            study=STUDY_FILE,
+            settings=settings("explanation", "bodies", "amplitudes", "protocol", "seed"),
+        script:
+            RUN_STAGE
+
+    ADDED.append(rules.explanation.output)
+
+
+if ASKED.compares:
+
+    rule thesis:
+        """Set the printed tables beside computed ones, and judge every statement."""
+        input:
+            read("motions/ground", "motions/floors", "tests", "validity", "measures"),
+            read(*[f"{folder}/tests" for folder in MEASURED + BUILDINGS]),
+            bodies=STUDY.body_files,
+        output:
+            table("table_3_1", "table_3_3", "table_4_1", "claims_theory", "standing"),
+            pairs=table("claims", "contradictions") if STUDY.has_pairs else [],
+            measured=table(*[f"{folder}/claims" for folder in MEASURED]),
+            buildings=table(*[f"{folder}/margins" for folder in BUILDINGS]),
+        log:
+            f"{RESULTS}/logs/thesis.log",
+        priority: 2
+        conda:
+            ENVIRONMENT
+        resources:
+            mem_mb=MEMORY_MB,
+            runtime=120,
+        params:
+            stage="rockfrag_thesis.stages.statements:run",
+            study=STUDY_FILE,
+            settings=settings(
+                *("bodies", "seed", "amplitudes", "protocol"),
+                *("measured_tests", "building_sensitivity"),
+            ),
+        script:
+            RUN_STAGE
+
+    ADDED.append(rules.thesis.output)

@@ -1,0 +1,53 @@
+"""What stands first on the page of a study that is compared with the thesis."""
+
+from rockfrag.report.answer import could_change, questions, rests_on, study_answer
+from rockfrag.report.findings import FRICTION
+from rockfrag.report.part import Answer, FigureSpec, Results
+from rockfrag.report.wording import agree, of_all
+from rockfrag.shaketable.readings import READING
+from rockfrag_thesis.figures.answer import has_thesis_floors, ratios_figure
+from rockfrag_thesis.first_page import first_page
+from rockfrag_thesis.sections.explanation import asks_explanation
+from rockfrag_thesis.sections.inversion import asks_inversion
+from rockfrag_thesis.settings import settings_of
+
+
+def thesis_answer(results: Results) -> Answer:
+    """Return what the thesis reports, what the model gives, and what would give an effect."""
+    study = results.study
+    if not study.has_pairs:
+        return study_answer(results)
+    effects = results.table("pedestal/effects")
+    explanation = results.table("explanation/effects") if asks_explanation(study) else None
+    inversion = results.table("explanation/inversion") if asks_inversion(study) else None
+    settings = settings_of(study).explanation
+    wanted = {} if settings is None else settings.wanted_percent
+    found = first_page(effects, results.table("claims"), explanation, inversion, wanted)
+    here = effects[effects["reading"] == READING]
+    return Answer(
+        asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
+        sentences=found,
+        figure=FigureSpec(
+            "answer",
+            f"Amplitude with over amplitude without pedestal, with what the thesis reports. {found[0].headline}.",
+            "Ratio with/without pedestal, 95 % intervals; grey: ±10 %."
+            + (" Arrows: thesis." if has_thesis_floors(here) else ""),
+            lambda: ratios_figure(here),
+        ),
+        advice=_advice(results),
+        rests_on=rests_on(results),
+        could_change=could_change(results),
+        questions=questions(results),
+    )
+
+
+def _advice(results: Results) -> list[str]:
+    """What to measure: the friction that rocking without sliding needs, where that is much."""
+    validity = results.table("validity")
+    if results.study.slides or validity.empty:
+        return []
+    with_pedestal = validity[validity["pedestal"] == "P"]
+    beyond = int((~(with_pedestal["friction_demand"].astype(float) <= FRICTION)).sum())
+    who = of_all(beyond, len(with_pedestal), "test with", "tests with")
+    verb = agree(beyond, len(with_pedestal), "needs", "need")
+    return [f"Measure the friction under the statue: {who} pedestal {verb} more than {FRICTION:g}."]

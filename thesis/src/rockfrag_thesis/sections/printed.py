@@ -1,0 +1,116 @@
+"""Tables 3.1, 3.3 and 4.1: computed values with the printed ones below them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+from markupsafe import Markup
+
+from rockfrag.report.page import cell_html, framed
+from rockfrag.report.part import Part, Results, Section
+from rockfrag.report.wording import listed, number
+
+_CAPTIONS = {
+    "table_3_1": "Table 3.1: critical angle, radius, frequency parameter and slenderness of the "
+    "blocks.",
+    "table_3_3": "Table 3.3: peaks of the ground motions, integrated exactly for an acceleration "
+    "that is linear between samples.",
+    "table_4_1": "Table 4.1: least acceleration that starts rocking, of both bodies as one "
+    "(pattern 3) and of the object alone (pattern 4).",
+}
+
+
+def _section(results: Results) -> Section:
+    return Section(
+        "printed",
+        "The thesis’s printed tables",
+        _message(results),
+        [
+            *_differing(results),
+            "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s². "
+            "GF is the ground motion itself; F3 and F5 are floors of an assumed building, which the "
+            "thesis does not describe. The printed value is below each computed one, with ✓ where they agree "
+            "to its digits.",
+        ],
+        [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()],
+    )
+
+
+def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:
+    """Render computed values with the printed ones below them, a row per name.
+
+    Parameters
+    ----------
+    comparison
+        See :func:`rockfrag_thesis.printed_tables.compare`.
+    caption
+        What the table shows.
+    """
+    # a lone block has no pattern 3: the order of the columns is that of the fullest row
+    fullest = max((part for _, part in comparison.groupby("name")), key=len)
+    titles = {
+        row["quantity"]: row["quantity"]
+        if row["unit"] == "-"
+        else f"{row['quantity']} [{row['unit']}]"
+        for row in fullest.to_dict("records")
+    }
+    rows: dict[tuple[str, str], Any] = {
+        (r["name"], r["quantity"]): r for r in comparison.to_dict("records")
+    }
+    head = Markup('<th scope="col">Name</th>') + Markup("").join(
+        Markup('<th scope="col" class="number">{}</th>').format(title) for title in titles.values()
+    )
+    body = Markup("").join(
+        Markup("<tr>{}{}</tr>").format(
+            cell_html(name, "Name", "short"),
+            Markup("").join(
+                cell_html(_compared(rows.get((name, quantity))), title, "number")
+                for quantity, title in titles.items()
+            ),
+        )
+        for name in dict.fromkeys(comparison["name"])
+    )
+    return framed(caption, head, body, 1 + len(titles))
+
+
+def _compared(row: Mapping[str, Any] | None) -> Markup:
+    if row is None:
+        return Markup("–")
+    if not row["printed"]:
+        return Markup("{}").format(number(row["computed"], 4))
+    sign = "✓" if row["agrees"] else "≠"
+    return Markup("<span>{}<br><small>{} {}</small></span>").format(
+        number(row["computed"], 4), row["printed"], sign
+    )
+
+
+def _known(results: Results) -> pd.DataFrame:
+    comparison = pd.concat([results.table(name) for name in _CAPTIONS], ignore_index=True)
+    return comparison[comparison["agrees"].notna()]
+
+
+def _reproduced(right: int, total: int) -> str:
+    if right == total:
+        return f"All {total} printed values of Tables 3.1, 3.3 and 4.1 are"
+    return f"{right} of {total} printed values of Tables 3.1, 3.3 and 4.1 are"
+
+
+def _differing(results: Results) -> list[str]:
+    known = _known(results)
+    wrong = known[~known["agrees"].astype(bool)]
+    return (
+        [f"Different: {listed(list(wrong['name'] + ' ' + wrong['quantity']))}."]
+        if len(wrong)
+        else []
+    )
+
+
+def _message(results: Results) -> str:
+    known = _known(results)
+    if known.empty:
+        return "None of these values is printed in the thesis."
+    right = int(known["agrees"].sum())
+    return f"{_reproduced(right, len(known))} reproduced."
+
+
+PRINTED = Part(tuple(_CAPTIONS), _section)

@@ -1,0 +1,164 @@
+"""Which readings of a test stand when motion and body differ a little, and which are a matter of luck."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockfrag.motions.scaling import factors_to_pga
+from rockfrag.records.motion import Motion
+from rockfrag.rocking import overturns
+from rockfrag.rocking.case_list import overturned_cases
+from rockfrag.rocking.ensemble import Options, prepared
+from rockfrag.shaketable.protocols import Protocol
+from rockfrag.shaketable.readings import always_overturning, first_overturning, step_protocol
+from rockfrag.system.perturbation import perturbed
+from rockfrag.system.system import System
+
+SIZES = (1e-9, 1e-6, 1e-4)
+"""Relative differences of the motion and of every width and height, at most."""
+
+COPIES = 4
+"""Perturbed copies of a test for each of them."""
+
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Bounds = tuple[float, float]
+Copy = tuple[System, float]
+"""A perturbed system and the factor on its motion."""
+
+CLIMBING = ("step_protocol", "first_overturning")
+"""Readings that see nothing above the amplitude at which they end."""
+
+
+def standing_readings(
+    configurations: Sequence[System],
+    motions: Sequence[Motion],
+    amplitudes_g: Floats,
+    protocol: Protocol,
+    seed: int,
+    threads: int = 1,
+) -> pd.DataFrame:
+    """Read every sweep again with perturbed copies of motion and body.
+
+    Parameters
+    ----------
+    configurations, motions
+        What was tested, and with what.
+    amplitudes_g
+        Peaks of the sweep [g], rising.
+    protocol
+        Protocol of the laboratory.
+    seed
+        Seed of the perturbations.
+    threads
+        Threads to use; the result does not depend on it.
+
+    Returns
+    -------
+    One row per test and reading: ``test``, ``configuration``, ``motion``, ``reading``, ``lower_g``,
+    ``upper_g`` (bounds of the amplitude [g]; NaN above if it never overturned), and for each of `SIZES`
+    ``stands_1e-09`` and so on: whether every copy has the same bounds.
+    """
+    scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
+    rng = np.random.default_rng(seed)
+    rows = []
+    for one in configurations:
+        copies = [[_copy(one, size, rng) for _ in range(COPIES)] for size in SIZES]
+        fell = overturns(
+            one,
+            [motion.acceleration for motion in motions],
+            [motion.dt for motion in motions],
+            scales,
+            threads=threads,
+        ).overturned[0]
+        found = [_readings(amplitudes_g, verdicts, protocol) for verdicts in fell]
+        stands = {
+            (k, i, name): True
+            for k in range(len(SIZES))
+            for i in range(len(motions))
+            for name in found[i]
+        }
+        for number in range(COPIES):
+            tried = [each[number] for each in copies]
+            wanted = _asked(amplitudes_g, found, stands)
+            ends = _verdicts(tried, motions, scales, wanted, threads)
+            for k, i in np.ndindex(wanted.shape[:2]):
+                # where a copy was not shaken its verdict changes no reading that is still in question
+                verdicts = np.where(wanted[k, i], ends[k, i], fell[i])
+                for name, bounds in _readings(amplitudes_g, verdicts, protocol).items():
+                    stands[k, i, name] &= _same(bounds, found[i][name])
+        for i, motion in enumerate(motions):
+            rows += [
+                {
+                    "test": f"{one.name} {motion.name}",
+                    "configuration": one.name,
+                    "motion": motion.name,
+                    "reading": name,
+                    "lower_g": bounds[0],
+                    "upper_g": bounds[1],
+                    **{f"stands_{size:.0e}": stands[k, i, name] for k, size in enumerate(SIZES)},
+                }
+                for name, bounds in found[i].items()
+            ]
+    return pd.DataFrame(rows)
+
+
+def _copy(system: System, size: float, rng: np.random.Generator) -> Copy:
+    near = perturbed(system, size, rng)
+    return near, 1 + size * float(rng.uniform(-1, 1))
+
+
+def _readings(amplitudes_g: Floats, verdicts: Flags, protocol: Protocol) -> dict[str, Bounds]:
+    """Bounds by reading."""
+    outcomes = {
+        "step_protocol": step_protocol(amplitudes_g, verdicts, protocol),
+        "first_overturning": first_overturning(amplitudes_g, verdicts),
+        "always_overturning": always_overturning(amplitudes_g, verdicts),
+    }
+    return {name: (one.lower_g, one.upper_g) for name, one in outcomes.items()}
+
+
+def _asked(
+    amplitudes_g: Floats,
+    found: Sequence[Mapping[str, Bounds]],
+    stands: Mapping[tuple[int, int, str], bool],
+) -> Flags:
+    """Amplitudes that can tell whether a reading stands that does so far, shape (sizes, motions, amplitudes).
+
+    What climbs until the first overturning does not see the amplitudes above it; the amplitude from which
+    everything overturns does not see those below the last survived one.
+    """
+    asked = np.zeros((len(SIZES), len(found), len(amplitudes_g)), dtype=bool)
+    for (k, i, name), so_far in stands.items():
+        lower, upper = found[i][name]
+        if not so_far:
+            continue
+        if name in CLIMBING:
+            asked[k, i] |= amplitudes_g <= (math.inf if math.isnan(upper) else upper)
+        else:
+            asked[k, i] |= amplitudes_g >= lower
+    return asked
+
+
+def _verdicts(
+    copies: Sequence[Copy],
+    motions: Sequence[Motion],
+    scales: Floats,
+    wanted: Flags,
+    threads: int,
+) -> Flags:
+    """Whether each copy overturns in the wanted cases, shape (copies, motions, amplitudes); False elsewhere."""
+    copy, motion, amplitude = np.nonzero(wanted)
+    factors = np.array([factor for _, factor in copies])
+    ends = np.zeros(wanted.shape, dtype=bool)
+    systems = [system for system, _ in copies]
+    cases = prepared(systems, motions, None, (1.0,), Options(threads=threads))
+    ends[wanted] = overturned_cases(cases, copy, motion, scales[motion, amplitude] * factors[copy])
+    return ends
+
+
+def _same(one: Bounds, other: Bounds) -> bool:
+    return np.array_equal(one, other, equal_nan=True)
