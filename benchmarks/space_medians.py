@@ -41,11 +41,12 @@ def bodies(study: dict[str, Any]) -> Iterator[tuple[str, float, float, Block]]:
         for slenderness in study["slenderness"]:
             for height in study["heights_m"]:
                 width = height / slenderness
-                depth = None if base == "round" else width * (2 if base == "one to two" else 1)
+                is_round = base.startswith("round")
+                depth = None if is_round else width * (2 if base == "one to two" else 1)
                 mass = DENSITY * width * (depth or width) * height
                 yield (
                     base, slenderness, height,
-                    Block(width, height, mass, depth=depth, round=base == "round"),
+                    Block(width, height, mass, depth=depth, round=is_round),
                 )  # fmt: skip
 
 
@@ -60,7 +61,7 @@ def median(shares: NDArray[np.float64], levels: NDArray[np.float64]) -> float:
 
 
 def answers(
-    body: Block, pairs: list[Pair], scales: NDArray[np.float64], directions: int
+    body: Block, pairs: list[Pair], scales: NDArray[np.float64], directions: int, lossless: bool
 ) -> dict[str, NDArray[np.float64]]:
     """Fraction of directions in which each record topples a body at each level, shape (records, levels)."""
     shaking = [GroundMotion(one, other) for one, other in pairs]
@@ -70,8 +71,7 @@ def answers(
     )
     angles = np.arange(directions) * 180 / directions
     turned = [rotate(one, other, angle) for one, other in pairs for angle in angles]
-    # a rim rolls and loses nothing
-    loss = [1.0] if body.round else None
+    loss = [1.0] if lossless else None
     fell = overturns(plane, turned, scales=np.repeat(scales, directions, axis=0), restitution=loss)
     around = fell.overturned[0].reshape(len(pairs), directions, -1)
     quarter = directions // 2
@@ -120,7 +120,9 @@ def main(study: dict[str, Any], folder: Path) -> None:
     for base, slenderness, height, body in bodies(study):
         spread = np.geomspace(study["lowest"], study["highest"], study["levels"])
         levels = spread / slenderness
-        found = answers(body, pairs, levels * G / peaks[:, None], study["directions"])
+        found = answers(
+            body, pairs, levels * G / peaks[:, None], study["directions"], "loss" in base
+        )
         every = np.arange(len(pairs))
         cells = [f"{median(found['space'].mean(0), levels):.2f}"]
         for name in planar:
