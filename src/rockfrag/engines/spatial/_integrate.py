@@ -674,7 +674,8 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
         if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
             break
         k += 1
-    record(history, k, y, out, s)
+    if out[FELL] == 0.0:
+        record(history, k, y, out, s)
     out[END_TIME] = k * dt
     out[LEDGER] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
 
