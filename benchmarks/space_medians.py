@@ -32,7 +32,7 @@ def records(folder: Path, every: int) -> tuple[list[Pair], NDArray[Any]]:
     """Pairs of components, and the earthquake of each."""
     found = motion_set(Records(), Place(), folder)
     pairs = [common_pair(found, pair) for pair in found.pairs[::every]]
-    return pairs, np.array([found.events[pair[0]] for pair in found.pairs[::every]])
+    return pairs, np.array([found.contact_events[pair[0]] for pair in found.pairs[::every]])
 
 
 def bodies(study: dict[str, Any]) -> Iterator[tuple[str, float, float, Block]]:
@@ -50,9 +50,9 @@ def bodies(study: dict[str, Any]) -> Iterator[tuple[str, float, float, Block]]:
                 )  # fmt: skip
 
 
-def median(shares: NDArray[np.float64], levels: NDArray[np.float64]) -> float:
+def median(fractions: NDArray[np.float64], levels: NDArray[np.float64]) -> float:
     """Level at which half of the motions topple a body, between levels by the logarithm; NaN beyond them."""
-    rising = np.maximum.accumulate(shares)
+    rising = np.maximum.accumulate(fractions)
     k = int(np.searchsorted(rising, 0.5))
     if k == 0 or k == rising.size:
         return float("nan")
@@ -64,13 +64,13 @@ def answers(
     body: Block, pairs: list[Pair], scales: NDArray[np.float64], directions: int, lossless: bool
 ) -> dict[str, NDArray[np.float64]]:
     """Fraction of directions in which each record topples a body at each level, shape (records, levels)."""
-    shaking = [GroundMotion(one, other) for one, other in pairs]
+    shaking = [GroundMotion(pair, other) for pair, other in pairs]
     space = run_in_space([body], shaking, scales, threads=2).overturned[0].astype(float)
     plane = Block(
         body.width, body.height, body.mass, body.body.tensor[1, 1] if body.round else None
     )
     angles = np.arange(directions) * 180 / directions
-    turned = [rotate(one, other, angle) for one, other in pairs for angle in angles]
+    turned = [rotate(pair, other, angle) for pair, other in pairs for angle in angles]
     loss = [1.0] if lossless else None
     fell = overturns(plane, turned, scales=np.repeat(scales, directions, axis=0), restitution=loss)
     around = fell.overturned[0].reshape(len(pairs), directions, -1)
@@ -93,17 +93,20 @@ def ratio(
 def interval(
     found: dict[str, NDArray[np.float64]],
     name: str,
-    events: NDArray[Any],
+    contact_events: NDArray[Any],
     study: dict[str, Any],
     levels: Any,
 ) -> tuple[float, float]:
     """90 % of the ratios of resampled earthquakes."""
     rng = np.random.default_rng(study["seed"])
-    of_event = [np.flatnonzero(events == event) for event in np.unique(events)]
+    of_contact_event = [
+        np.flatnonzero(contact_events == contact_event)
+        for contact_event in np.unique(contact_events)
+    ]
     ratios = []
     for _ in range(study["resamples"]):
-        drawn = rng.integers(0, len(of_event), len(of_event))
-        rows = np.concatenate([of_event[k] for k in drawn])
+        drawn = rng.integers(0, len(of_contact_event), len(of_contact_event))
+        rows = np.concatenate([of_contact_event[k] for k in drawn])
         ratios.append(ratio(found, name, rows, levels))
     low, high = np.nanquantile(ratios, [0.05, 0.95])
     return float(low), float(high)
@@ -111,9 +114,9 @@ def interval(
 
 def main(study: dict[str, Any], folder: Path) -> None:
     """Print the table."""
-    pairs, events = records(folder, study["every"])
-    peaks = np.array([np.sqrt(one.pga * other.pga) for one, other in pairs])
-    print(f"{len(pairs)} records of {len(set(events))} earthquakes")
+    pairs, contact_events = records(folder, study["every"])
+    peaks = np.array([np.sqrt(pair.pga * other.pga) for pair, other in pairs])
+    print(f"{len(pairs)} records of {len(set(contact_events))} earthquakes")
     planar = ("one component", "mean of directions", "worst direction")
     print("| base | H/B | H [m] | in space [g] | " + " | ".join(f"over {p}" for p in planar) + " |")
     print("|---|--:|--:|--:|" + "--:|" * len(planar))
@@ -126,7 +129,7 @@ def main(study: dict[str, Any], folder: Path) -> None:
         every = np.arange(len(pairs))
         cells = [f"{median(found['space'].mean(0), levels):.2f}"]
         for name in planar:
-            low, high = interval(found, name, events, study, levels)
+            low, high = interval(found, name, contact_events, study, levels)
             cells.append(f"{ratio(found, name, every, levels):.2f} ({low:.2f}-{high:.2f})")
         print(
             f"| {base} | {slenderness} | {height} | " + " | ".join(cells) + " |",

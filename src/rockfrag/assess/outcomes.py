@@ -267,10 +267,10 @@ def outcomes_of_each(
         The levels.
     """
     every = [
-        (one, body) for one, named in zip(objects, bodies, strict=True) for body in named.values()
+        (item, body) for item, named in zip(objects, bodies, strict=True) for body in named.values()
     ]
-    systems = [one.system_of(body) for one, body in every]
-    rolling = [one.rolling(body) for one, body in every]
+    systems = [item.system_of(body) for item, body in every]
+    rolling = [item.rolling(body) for item, body in every]
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
     found: list[ObjectOutcomes] = []
     for i in range(0, len(systems), most):
@@ -290,12 +290,12 @@ def _shaken(
     On a pedestal that may lift both answers count: what falls in either falls.
     """
     if motions.worst:
-        planar = [i for i, one in enumerate(rolling) if one is None or systems[i].count > 1]
+        planar = [i for i, item in enumerate(rolling) if item is None or systems[i].count > 1]
         fallen = _shaken_from_all_sides([systems[i] for i in planar], motions, intensity_levels)
         found = dict(zip(planar, fallen, strict=True))
-        for i, one in enumerate(rolling):
-            if one is not None:
-                rolled = _rolled(one, motions, intensity_levels)
+        for i, item in enumerate(rolling):
+            if item is not None:
+                rolled = _rolled(item, motions, intensity_levels)
                 found[i] = found[i].joined(rolled) if i in found else rolled
         return [found[i] for i in range(len(systems))]
     scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
@@ -352,10 +352,10 @@ def _rolled(body: System, motions: MotionSet, intensity_levels: IntensityLevels)
     moves = limit_state_named("rocks").reached(result)
     place = np.zeros(len(motions.base), dtype=np.intp)
     place[first] = np.arange(len(first))
-    for one, other in motions.pairs:
-        place[other] = place[one]
+    for item, other in motions.pairs:
+        place[other] = place[item]
     fell, rocked = result.overturned[0][place], moves[0][place]
-    return ObjectOutcomes(intensity_levels, fell, rocked, motions.events)
+    return ObjectOutcomes(intensity_levels, fell, rocked, motions.earthquakes)
 
 
 def _shaken_from_all_sides(

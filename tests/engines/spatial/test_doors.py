@@ -80,7 +80,7 @@ def test_the_usual_doors_answer_in_space_under_two_components():
     np.testing.assert_array_equal(found.turn, expected.turn)
     assert simulate(BLOCKS[0], motions[0]).overturned == overturns(BLOCKS[0], motions[0]).overturned
     thresholds = find_thresholds(
-        BLOCKS[1], motions[0], None, highest=0.6, tolerance=0.01, smallest_window=0.2
+        BLOCKS[1], motions[0], None, highest=0.6, tolerance=0.01, narrowest_resurrection=0.2
     )
     first = float(thresholds.table.first_overturning[0])
     either_side = overturns(BLOCKS[1], motions[0], scales=[first - 0.011, first])

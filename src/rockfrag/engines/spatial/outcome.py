@@ -65,7 +65,8 @@ class SpatialOutcome:
     residual
         What the balance of energy does not close by [J/kg].
     gained
-        Energy that events added, which they must not: rounding, and the tilt with which a rim leaves rest [J/kg].
+        Energy that contact events added, which they must not: rounding, and the tilt with which a rim leaves rest
+        [J/kg].
     """
 
     overturned: bool
