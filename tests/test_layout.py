@@ -71,6 +71,19 @@ def test_the_library_has_no_word_of_the_thesis():
         assert set(words) <= {"hypothesis", "parenthesis"}, path
 
 
+def test_tests_import_neither_tests_nor_benchmarks():
+    tests = Path(__file__).parent
+    benchmarks = {path.stem for path in (tests.parent / "benchmarks").glob("*.py")} | {"benchmarks"}
+    for path in tests.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ImportFrom):
+                home = (node.module or "").split(".")
+                assert not home[-1].startswith("test_"), path
+                assert node.level or home[0] not in benchmarks, path
+            elif isinstance(node, ast.Import):
+                assert not {alias.name for alias in node.names} & benchmarks, path
+
+
 def test_nothing_imports_snakemake():
     for path in SOURCE.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

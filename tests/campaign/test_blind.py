@@ -16,7 +16,7 @@ from rockfrag.stages.model_error import main
 from rockfrag.system.blocks import Block
 
 from .conftest import Laboratory
-from .test_study import configured, granite
+from .studies import configured, granite
 
 
 def fallen(measure, theta, beta, random):

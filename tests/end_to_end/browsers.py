@@ -295,3 +295,11 @@ BROWSERS = {
     "firefox": (Firefox, _firefox()),
 }
 """Each with the path of its program, or None where there is none."""
+
+
+READY = """
+new Promise(done => {
+  const look = () => document.getElementById('live').dataset.ready ? done(true) : setTimeout(look, 20);
+  look();
+})
+"""

@@ -11,8 +11,7 @@ from rockfrag.report.play_page import write_play_page
 from rockfrag.rocking import Block, Stack
 
 from .browsers import BROWSERS, Browser
-from .studies import run
-from .test_foreign_studies import STUDIES
+from .studies import STUDIES, run
 
 
 @pytest.fixture(scope="session", params=list(BROWSERS))

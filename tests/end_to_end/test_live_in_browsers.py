@@ -9,8 +9,7 @@ import pytest
 
 from rockfrag.rocking import Block, Stack, simulate
 
-from .browsers import Browser
-from .test_pages_in_browsers import READY
+from .browsers import READY, Browser
 
 pytestmark = pytest.mark.slow
 

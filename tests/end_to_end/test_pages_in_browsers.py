@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from .browsers import Browser
+from .browsers import READY, Browser
 
 pytestmark = pytest.mark.slow
 
@@ -21,13 +21,6 @@ TOO_WIDE = """
   + ': ' + one.textContent.trim().slice(0, 60))
 """
 """Elements that reach beyond their room, or beyond the window."""
-
-READY = """
-new Promise(done => {
-  const look = () => document.getElementById('live').dataset.ready ? done(true) : setTimeout(look, 20);
-  look();
-})
-"""
 
 
 @pytest.fixture(params=["report", "play_page"])

@@ -13,9 +13,11 @@ NUMBER = BUILT_IN.index("position")
 
 def tell(shape: Shape, restitution: float, pivot: int) -> Told:
     """Return the place of the impulse, or the couple that brakes."""
-    if restitution >= momentum_restitution(shape, pivot):
-        return NUMBER, impulse_position(shape, restitution, pivot)
-    return couple.tell(shape, restitution, pivot)
+    # one way out: Numba takes the numbers of two returns for constants, and keeps one of them for both
+    number, value = NUMBER, impulse_position(shape, restitution, pivot)
+    if restitution < momentum_restitution(shape, pivot):
+        number, value = couple.tell(shape, restitution, pivot)
+    return number, value
 
 
 def rate(value: float, by_momentum: float, before: float, moved: float) -> float:

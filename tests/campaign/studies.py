@@ -1,0 +1,69 @@
+"""Configurations of campaigns: of the synthetic laboratory, and of the granite rock where its data are."""
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from .conftest import BLOCK, DT, Laboratory
+
+ROOT = Path(__file__).parents[2]
+
+BY_HAND = {
+    "left_m": BLOCK.b + BLOCK.cg_offset,
+    "right_m": BLOCK.b - BLOCK.cg_offset,
+    "cg_height_m": 0.3,
+    "height_m": 0.6,
+    "mass_kg": 60.0,
+    "inertia_kg_m2": BLOCK.centroidal_inertia,
+}
+
+
+def configured(folder: Path, laboratory: Laboratory, **changes: Any) -> Path:
+    """Write the study of the synthetic laboratory, with keys of the campaign changed."""
+    content: dict[str, Any] = {
+        "study": "synthetic",
+        "title": "A synthetic laboratory",
+        "seed": 1,
+        "campaign": {
+            "tests": str(laboratory.folder / "synthetic_tests.csv"),
+            "columns": {
+                "test": "test",
+                "motion": "motion",
+                "group": "input",
+                "overturned": "overturned",
+            },
+            "motions": str(laboratory.folder / "synthetic_motions.npz"),
+            "unit": "m/s2",
+            "dt_s": DT,
+            "measures": {"pga_g": ["pga_g"]},
+        },
+        "object": BY_HAND,
+        "unknowns": {"edge_retreat_mm": [0, 10], "restitution": [0.8, 1.0]},
+        "trials": 64,
+        "repeats": 4,
+    }
+    for key, value in changes.items():
+        part, _, name = key.partition("__")
+        if name:
+            content[part] = {**content[part], name: value}
+        else:
+            content[part] = value
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def granite(folder: Path, shared: Path, **changes: Any) -> Path:
+    """Write the configuration of the granite rock for the place where its data are."""
+    data = (shared / "measured").resolve()
+    content = yaml.safe_load((ROOT / "config" / "granite.yaml").read_text())
+    content["campaign"] |= {
+        "tests": str(data / "granite_rock_1.csv"),
+        "motions": str(data / "granite" / "table_accelerations.npz"),
+        "other_codes": str(data / "granite" / "rock_1_discrete_element.csv"),
+    }
+    content["object"]["mesh"] = str(data / "granite" / "rock_1.ply")
+    path = folder / "granite.yaml"
+    path.write_text(yaml.safe_dump({**content, **changes}))
+    return path
