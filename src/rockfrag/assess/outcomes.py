@@ -361,7 +361,7 @@ def _rolled(body: System, motions: MotionSet, intensity_levels: IntensityLevels)
 def _shaken_from_all_sides(
     systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
 ) -> list[ObjectOutcomes]:
-    """ObjectOutcomes by records, each in its worst direction; both components get that of the record."""
+    """Outcomes by records, each in its worst direction; both components get that of the record."""
     if not systems:
         return []
     records = motions.turned(WORST_STEP_DEG)

@@ -72,7 +72,7 @@ def simulate(
     Returns
     -------
     Response
-        Histories, contact contact events, energies and forces; of a body in space under both components a
+        Histories, contact events, energies and forces; of a body in space under both components a
         :class:`rockfrag.engines.spatial.SpatialResponse`.
 
     Raises

@@ -1,4 +1,4 @@
-"""One analysis: a body, a motion of the ground, contact contact event by contact contact event."""
+"""One analysis: a body, a motion of the ground, contact event by contact event."""
 
 import math
 
@@ -71,7 +71,7 @@ SHORTEST = 1e-11
 """Shortest step [s]."""
 
 MANY = 40
-"""Contact contact events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
+"""Contact events in one interval after which the velocity below which contacts stay closed is doubled [-]."""
 
 HURRY = 1000
 """Steps in one interval after which errors of COARSE are allowed: slip that hardly begins is stiff [-]."""
@@ -92,7 +92,8 @@ COARSE = 1e-6
 OUTCOME = 21
 (
     FELL, FALL_TIME, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, PEAK_WALK, WALK_X,
-    WALK_Y, TURN, STEPS, LOST, ENERGY_BALANCE, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, CONTACT_CONTACT_EVENTS, GAINED,
+    WALK_Y, TURN, STEPS, LOST, ENERGY_BALANCE, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, CONTACT_EVENTS,
+    GAINED,
 ) = range(OUTCOME)  # fmt: skip
 
 COLUMNS = 17
@@ -544,7 +545,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         y[i] = s.new[i]
     normalise(y)
     if what != NOTHING:
-        out[CONTACT_CONTACT_EVENTS] += 1
+        out[CONTACT_EVENTS] += 1
         note_loss(happen(body, what, tau + h, y, cut, stuck, s), out)
         return tau + h, dt, h
     before = energy(body, y, g)
@@ -606,7 +607,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     out
         Outcome, shape (OUTCOME,).
     s
-        A CASE for the analysis to work in; afterwards its counters are the numbers of contact contact events by
+        A CASE for the analysis to work in; afterwards its counters are the numbers of contact events by
         kind.
     """
     for i in range(OUTCOME):
@@ -633,7 +634,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
         if k > last and cannot_fall(body, y, s, g):
             break
         tau = 0.0
-        many, seen = 0, out[CONTACT_CONTACT_EVENTS]
+        many, seen = 0, out[CONTACT_EVENTS]
         s.close = CLOSE
         while dt - tau > 1e-12 * dt:
             if kind_of(s) == REST:
@@ -660,8 +661,8 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                 lost_track += 1
                 if many > 2 * GIVE_UP:
                     break
-            if out[CONTACT_CONTACT_EVENTS] - seen >= MANY:
-                seen = out[CONTACT_CONTACT_EVENTS]
+            if out[CONTACT_EVENTS] - seen >= MANY:
+                seen = out[CONTACT_EVENTS]
                 s.close = min(2.0 * s.close, 1e-3)
             if stuck > 100:
                 # nothing is consistent here: let the motion go on as it is for a moment
