@@ -9,7 +9,6 @@ ln median that :mod:`rockfrag.fragility.model_error` states.
 import argparse
 import logging
 import sys
-import warnings
 from collections.abc import Sequence
 from datetime import UTC, datetime
 
@@ -21,7 +20,6 @@ from rockfrag.campaign.standing import kind_of, unknowns_of, ways_to_stand
 from rockfrag.campaign.tests import MEASURED, Campaign
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.stages.campaign import campaign_with_motions, object_of
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
@@ -47,10 +45,7 @@ def blind_of(
     thing = object_of(study)
     unknowns = unknowns_of(kind_of(thing), study.object.get("scan_tolerance_mm"))
     ways = ways_to_stand(thing, unknowns, WAYS, study.seed)
-    with warnings.catch_warnings():
-        # a guess may be squat where the object is not
-        warnings.simplefilter("ignore", LightBodies)
-        simulated, _ = simulate_tests(ways, motions, threads)
+    simulated, _ = simulate_tests(ways, motions, threads)
     tests = campaign.tests
     measured, groups = tests[MEASURED].to_numpy(), pd.factorize(tests["group"])[0]
     found = {
