@@ -80,7 +80,7 @@ bench: .venv/installed
 	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]" || \
 		echo "Not all other programs can be had here: rows of those that are absent are left out"
 	@.venv/bin/python benchmarks/run.py
-	@.venv/bin/python benchmarks/waits.py
+	@.venv/bin/python benchmarks/latency.py
 
 .venv/installed: pyproject.toml thesis/pyproject.toml constraints.txt $(wildcard hashes/*.txt)
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; name another with make PYTHON=…")'

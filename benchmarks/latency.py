@@ -1,8 +1,8 @@
 """What a user waits for: whole studies and the tests, on this machine, in wall seconds.
 
-``python benchmarks/waits.py`` takes about ten minutes on two idle cores; ``--only smoke`` one study.  Studies
+``python benchmarks/latency.py`` takes about ten minutes on two idle cores; ``--only smoke`` one study.  Studies
 run as ``make run`` runs them, in a copy of the project that shares its environment and its fetched records, so
-that results of yours stay as they are.  Everything goes to ``results/bench/waits.csv``.
+that results of yours stay as they are.  Everything goes to ``results/bench/latency.csv``.
 """
 
 import argparse
@@ -89,7 +89,7 @@ def main() -> None:
     table = pd.DataFrame(rows)
     if fractions:
         table = table.merge(pd.DataFrame(fractions), on="wait", how="left")
-    write_table(table, ROOT / "results" / "bench" / "waits.csv")
+    write_table(table, ROOT / "results" / "bench" / "latency.csv")
 
 
 def copy_of_project(scratch: Path) -> Path:

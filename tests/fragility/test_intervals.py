@@ -28,14 +28,14 @@ def swept_motions(n, seed=0, theta=0.35, beta=0.4):
 
 def test_the_refit_with_unit_weights_is_the_estimator():
     data = swept_motions(12)
-    fit, groups = outcome_fitter(data, data.motion)
+    fit, groups = outcome_fitter(data, "motion")
     assert groups == 12
     assert fit(np.ones((1, 12)))[0] == pytest.approx(fit_lognormal(data).coefficients, abs=1e-6)
 
 
 def test_leaving_a_motion_out_by_its_weight_equals_leaving_its_rows_out():
     data = swept_motions(5)
-    fit, _ = outcome_fitter(data, data.motion)
+    fit, _ = outcome_fitter(data, "motion")
     kept = data.motion != "m2"
     table = pd.DataFrame(
         {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}

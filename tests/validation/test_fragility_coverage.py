@@ -102,11 +102,9 @@ def coverage(n: int, over: str) -> pd.DataFrame:
         brackets, outcomes = simulated(earthquakes, each, rng)
         fitters = {
             "brackets": bracket_fitter(brackets, over),
-            "outcomes": outcome_fitter(
-                outcomes, outcomes.motion if over == "motion" else outcomes.earthquake
-            ),
+            "outcomes": outcome_fitter(outcomes, over),
         }
-        _, notes = population(n, earthquakes, over)
+        _, notes = population(brackets, over)
         for name, (fit, groups) in fitters.items():
             interval = resampled_interval(fit, groups, over=over, notes=notes)
             found[name].append(holds(interval))

@@ -38,7 +38,7 @@ rule fragility:
     output:
         table("fragility", "fragility_bands", "fragility_bins", "fragility_fractions"),
         table("fragility_floors", "fragility_floors_fractions"),
-        table("find_resurrections", "measure_selection"),
+        table("resurrections", "measure_selection"),
         table("fragility_two_measures", "fragility_contours", "fragility_cells"),
         exports=directory(f"{RESULTS}/exports"),
     log:

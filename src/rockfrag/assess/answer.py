@@ -255,7 +255,7 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    few = brief or request.objects.many
+    few = brief or request.objects.many or request.objects.round
     fewer = motions.thinned() if few else motions
     fewer = fewer.thinned() if brief else fewer
     return Plan(

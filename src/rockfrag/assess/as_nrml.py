@@ -1,10 +1,9 @@
 """The counted fractions of motions as a fragility function that OpenQuake reads (NRML 0.5, discrete)."""
 
-from xml.etree import ElementTree
-
 from rockfrag.assess.answer import Assessment
 from rockfrag.fragility.identifiers import identifiers
-from rockfrag.fragility.nrml import NAMESPACE
+from rockfrag.fragility.nrml import discrete_function, model_text
+from rockfrag.outcomes.limit_states import OVERTURNS
 
 
 def as_nrml(found: Assessment) -> str:
@@ -18,34 +17,14 @@ def as_nrml(found: Assessment) -> str:
     found
         The assessment.
     """
-    outcomes = found.outcomes
-    name = found.request.name
-    taxonomy = identifiers([name], "_:-")[name]
-    root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
-    model = ElementTree.SubElement(
-        root,
-        "fragilityModel",
-        {"id": "rockfrag", "assetCategory": "contents", "lossCategory": "contents"},
+    name, outcomes = found.request.name, found.outcomes
+    function = discrete_function(
+        identifiers([name], "_:-")[name],
+        found.measure.name,
+        outcomes.intensity_levels.levels,
+        {OVERTURNS: outcomes.fractions()},
     )
-    ElementTree.SubElement(
-        model, "description"
-    ).text = (
+    words = (
         f"{name}, {found.request.place.words}: fraction of {found.motions.words} that topple it."
     )
-    ElementTree.SubElement(model, "limitStates").text = "overturned"
-    function = ElementTree.SubElement(
-        model, "fragilityFunction", {"id": taxonomy, "format": "discrete"}
-    )
-    levels = outcomes.intensity_levels.levels
-    imls = ElementTree.SubElement(
-        function, "imls", {"imt": found.measure.name, "noDamageLimit": f"{levels[0]:.10g}"}
-    )
-    imls.text = " ".join(f"{level:.10g}" for level in levels)
-    poes = ElementTree.SubElement(function, "poes", {"ls": "overturned"})
-    poes.text = " ".join(f"{fraction:.10g}" for fraction in outcomes.fractions())
-    ElementTree.indent(root)
-    return (
-        '<?xml version="1.0" encoding="utf-8"?>\n'
-        + ElementTree.tostring(root, encoding="unicode")
-        + "\n"
-    )
+    return model_text(words, [OVERTURNS], [function])

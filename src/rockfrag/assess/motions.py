@@ -120,7 +120,7 @@ class MotionSet:
         """The same records, each from its worst direction; one without a second component as it is."""
         words = self.words
         if self.pairs:
-            words += f", {len(self.pairs)} records each in its worst direction"
+            words += f", {len(self.pairs)} records each with both components"
         return replace(self, worst=True, words=words)
 
     def turned(self, step_deg: int) -> list[tuple[int, list[Motion]]]:

@@ -16,7 +16,7 @@ from rockfrag.rocking.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.mesh import Shape, read_shape
-from rockfrag.system.system import System, uplift_ratios
+from rockfrag.system.system import System, diagonal, round_inertia, uplift_ratios
 
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
@@ -50,8 +50,7 @@ class Objects:
     friction
         Coefficient of friction of all contacts [-]; None if nothing slides.
     round
-        Whether the base of the object is round: it then rolls on its rim, loses nothing and falls in the worst
-        direction.
+        Whether the base of the object is round: it then rolls on its rim in space and loses nothing.
     scan
         The scan and the ways in which it may stand; None where dimensions were given.
     livelier
@@ -139,6 +138,21 @@ class Objects:
         measured = ROLLING if rolls else self.restitution
         e = geometry.momentum_restitution(shape, pivot) if measured is None else measured
         return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pivot))
+
+    def rolling(self, body: Body) -> System | None:
+        """The round object in space where it is free to roll in an arrangement; None where there is none.
+
+        Parameters
+        ----------
+        body
+            An arrangement of the object, with or without changes; under it a pedestal stays where it is.
+        """
+        top = body.blocks[-1]
+        if not self.round or top.height != self.statue.height:
+            return None
+        across = top.centroidal_inertia
+        along = top.mass * top.width**2 / 8
+        return replace(top, round=True, inertia=diagonal(across, across, along)).system()
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
@@ -274,12 +288,10 @@ _ON_POINTS = Assumption(
 def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
     if is_round:
         return Assumption(
-            "the round base loses no energy and meets its worst direction",
-            "The base is round: it rolls on its rim, which takes no energy. Until bodies are simulated in "
-            "space, it "
-            "rocks in a plane with a restitution of 1, in the worst direction of each record; impacts that "
-            "conserve "
-            "momentum would overstate by a factor of about two the shaking that a round object survives.",
+            "the round base rolls on its rim in space and loses no energy",
+            "The base is round: it is simulated in space under both components of each record, where it rolls on "
+            "its rim, which takes no energy; planar impacts that conserve momentum would overstate by a factor of "
+            "about two the shaking that a round object survives.",
         )
     if is_mesh:
         return Assumption(
@@ -383,7 +395,9 @@ def _from_dimensions(
         width=width,
         height=height,
         mass=float(mass),
-        inertia=settings.get("inertia_kg_m2"),
+        inertia=settings.get("inertia_kg_m2", round_inertia(width, height, float(mass)))
+        if is_round
+        else settings.get("inertia_kg_m2"),
         cg_height=cg_height,
         cg_offset=float(settings.get("cg_offset_m", 0.0)),
     )

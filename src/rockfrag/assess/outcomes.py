@@ -9,14 +9,17 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from rockfrag.assess.hazard.measure import Measure
-from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.motions import MotionSet, common_pair
 from rockfrag.assess.objects import Objects
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.observations import Outcomes
 from rockfrag.outcomes.limit_states import limit_state_named
 from rockfrag.outcomes.outcomes import Outcomes as Simulated
 from rockfrag.plausibility import LARGEST_PEAK
+from rockfrag.records.ground_motion import GroundMotion
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
+from rockfrag.rocking.inputs import checked_threads
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
@@ -176,6 +179,20 @@ class ObjectOutcomes:
         first = self.first()
         return np.where(first >= 0, self.intensity_levels.levels[first], np.inf)
 
+    def joined(self, other: "ObjectOutcomes") -> "ObjectOutcomes":
+        """What happens in one of two answers about the same motions.
+
+        Parameters
+        ----------
+        other
+            The other answer.
+        """
+        return replace(
+            self,
+            overturned=self.overturned | other.overturned,
+            rocked=self.rocked | other.rocked,
+        )
+
     def outcomes(self) -> Outcomes:
         """All tests with their level, as :mod:`rockfrag.fragility` fits them."""
         motion, level = np.nonzero(self.intensity_levels.allowed)
@@ -249,25 +266,38 @@ def outcomes_of_each(
     intensity_levels
         The levels.
     """
-    systems = [
-        item.system_of(body)
-        for item, named in zip(objects, bodies, strict=True)
-        for body in named.values()
+    every = [
+        (item, body) for item, named in zip(objects, bodies, strict=True) for body in named.values()
     ]
+    systems = [item.system_of(body) for item, body in every]
+    rolling = [item.rolling(body) for item, body in every]
     most = max(1, MOST_TESTS // intensity_levels.scales.size)
     found: list[ObjectOutcomes] = []
     for i in range(0, len(systems), most):
-        found += _shaken(systems[i : i + most], motions, intensity_levels)
+        found += _shaken(systems[i : i + most], rolling[i : i + most], motions, intensity_levels)
     each = iter(found)
     return [{name: next(each) for name in named} for named in bodies]
 
 
 def _shaken(
-    systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
+    systems: Sequence[System],
+    rolling: Sequence[System | None],
+    motions: MotionSet,
+    intensity_levels: IntensityLevels,
 ) -> list[ObjectOutcomes]:
-    """Outcomes of planar bodies; an engine in space would take both components of a record here."""
+    """Outcomes of planar bodies; round ones that are free to roll are shaken in space.
+
+    On a pedestal that may lift both answers count: what falls in either falls.
+    """
     if motions.worst:
-        return _shaken_from_all_sides(systems, motions, intensity_levels)
+        planar = [i for i, item in enumerate(rolling) if item is None or systems[i].count > 1]
+        fallen = _shaken_from_all_sides([systems[i] for i in planar], motions, intensity_levels)
+        found = dict(zip(planar, fallen, strict=True))
+        for i, item in enumerate(rolling):
+            if item is not None:
+                rolled = _rolled(item, motions, intensity_levels)
+                found[i] = found[i].joined(rolled) if i in found else rolled
+        return [found[i] for i in range(len(systems))]
     scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)
     scales = np.minimum(scales, believable_scales(motions.base))
     result, light = simulated(systems, motions.base, scales)
@@ -309,10 +339,31 @@ def simulated(
     return result, any(light)
 
 
+def _rolled(body: System, motions: MotionSet, intensity_levels: IntensityLevels) -> ObjectOutcomes:
+    """Outcomes of a round body in space under both components of each record, where it has two."""
+    paired = {i for pair in motions.pairs for i in pair}
+    shaking = [GroundMotion(*common_pair(motions, pair)) for pair in motions.pairs]
+    shaking += [GroundMotion(m) for i, m in enumerate(motions.base) if i not in paired]
+    first = [pair[0] for pair in motions.pairs]
+    first += [i for i in range(len(motions.base)) if i not in paired]
+    scales = np.where(intensity_levels.allowed, intensity_levels.scales, AT_REST)[first]
+    scales = np.minimum(scales, believable_scales(motions.base)[first])
+    result = run_in_space([body], shaking, scales, threads=checked_threads(None))
+    moves = limit_state_named("rocks").reached(result)
+    place = np.zeros(len(motions.base), dtype=np.intp)
+    place[first] = np.arange(len(first))
+    for item, other in motions.pairs:
+        place[other] = place[item]
+    fell, rocked = result.overturned[0][place], moves[0][place]
+    return ObjectOutcomes(intensity_levels, fell, rocked, motions.earthquakes)
+
+
 def _shaken_from_all_sides(
     systems: Sequence[System], motions: MotionSet, intensity_levels: IntensityLevels
 ) -> list[ObjectOutcomes]:
-    """Outcomes by records, each in its worst direction; both components of a record get that of the record."""
+    """Outcomes by records, each in its worst direction; both components get that of the record."""
+    if not systems:
+        return []
     records = motions.turned(WORST_STEP_DEG)
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])

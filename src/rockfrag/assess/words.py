@@ -312,7 +312,7 @@ def safest(found: Assessment) -> str:
 def worst_direction(found: Assessment) -> str:
     """In which plane it rocks, and whether the worst direction is counted."""
     if found.request.objects.round:
-        return "The base is round; each record meets it from its worst direction, which is counted."
+        return "The base is round; it rolls in space under both components of each record, and falls anywhere."
     plane = f"It rocks {found.request.objects.plane}."
     directions = found.directions
     if directions is None or not math.isfinite(directions.factor):
@@ -477,7 +477,7 @@ def quality_flags(found: Assessment) -> list[str]:
             )
     if found.request.objects.round and not found.motions.pairs:
         lines.append(
-            "No record has two components, so that the worst direction of a round base could not be tried."
+            "No record has two components; the round base was shaken by one, which may understate what it feels."
         )
     if found.outcomes.light:
         lines.append(

@@ -42,7 +42,7 @@ class EnergyBalance:
 
     @property
     def gap(self) -> float:
-        """Largest gap of the ledger over the largest input [-]."""
+        """Largest gap of the energy balance over the largest input [-]."""
         spent = self.kinetic + self.strain + self.damping + self.hysteretic
         return float(np.abs(self.input - spent).max() / np.abs(self.input).max())
 
@@ -60,7 +60,7 @@ class BuildingResponse:
     drift
         Drift of every storey over its height [-], shape (storeys, n).
     energy
-        Energy up to each sample, if the model keeps a ledger.
+        Energy up to each sample, if the model keeps the balance.
     """
 
     time: Floats

@@ -293,7 +293,7 @@ def _energy_table(
     contact_events: NDArray[np.void],
     lone: bool,
 ) -> pd.DataFrame:
-    """Ledger of energy by cause over time [J]."""
+    """Balance of energy by cause over time [J]."""
     from rockfrag.engines.kernels.equations import STATE
     from rockfrag.engines.kernels.jit import compiling_alone
     from rockfrag.engines.kernels.record import OPENING, fill_energies

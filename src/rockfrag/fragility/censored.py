@@ -17,7 +17,6 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import (
     MOST_BLOCKS,
     Interval,
-    Over,
     WeightedFit,
     population,
     resampled_interval,
@@ -31,14 +30,14 @@ from rockfrag.fragility.lognormal import (
     FragilityFit,
     curve_parameters,
 )
-from rockfrag.fragility.observations import Floats, labels, name_and_unit, numbers
+from rockfrag.fragility.observations import Floats, Grouped, Over, labels, name_and_unit, numbers
 from rockfrag.short_repr import short_repr
 
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 
 
 @dataclass(frozen=True)
-class Brackets:
+class Brackets(Grouped):
     """Overturning amplitudes known to lie between two bounds.
 
     Attributes
@@ -147,7 +146,7 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
     """
     low, high = _logs(brackets)
     n, fell = low.size, brackets.n_overturned
-    motions = len(pd.unique(pd.Series(brackets.motion)))
+    motions = brackets.n_motions
     notes: tuple[str, ...] = ()
 
     def result(curve: Curve, log_likelihood: float, method: str) -> FragilityFit:
@@ -203,8 +202,7 @@ def fit_brackets(brackets: Brackets) -> FragilityFit:
 
 def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedFit, int]:
     """Make the function that refits θ and β to reweighted motions or earthquakes."""
-    groups = brackets.motion if over == "motion" else brackets.earthquake
-    codes, names = pd.factorize(pd.Series(groups))
+    codes, names = pd.factorize(pd.Series(brackets.groups(over)))
     low, high = _logs(brackets)
 
     def fit(weights: Floats) -> Floats:
@@ -232,10 +230,7 @@ def bracket_interval(
     -------
     The :class:`Interval`.
     """
-    motions, earthquakes = (
-        len(pd.unique(pd.Series(of))) for of in (brackets.motion, brackets.earthquake)
-    )
-    over, notes = population(motions, earthquakes, over)
+    over, notes = population(brackets, over)
     fit, groups = bracket_fitter(brackets, over)
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
     if found.method == "none" and groups > 1 and brackets.n_overturned:

@@ -9,12 +9,13 @@ import pandas as pd
 from numpy.typing import NDArray
 from statsmodels.stats.diagnostic import lilliefors
 
+from rockfrag.fragility.censored import Brackets
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
 from rockfrag.fragility.goodness import GoodnessOfFit, goodness_of_fit
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
-from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.observations import Outcomes
 
 TAILS = (
     "The limits of β assume lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
@@ -86,24 +87,15 @@ def checks_of_outcomes(
         p_fit, test = found.p_value, f"deviance, parametric bootstrap of {found.dependence}"
         apart = (found.calibration["observed"] - found.calibration["predicted"]).to_numpy()
         residual = float(apart[np.abs(apart).argmax()])
-    groups = outcomes.motion if interval.over == "motion" else outcomes.earthquake
+    groups = outcomes.groups(interval.over)
     fractions = fractions_of_outcomes(outcomes, groups, interval.level)
     checks = _checks(fit, interval, groups, (p_fit, test, residual), fractions)
     return replace(checks, goodness=found)
 
 
-def checks_of_brackets(
-    lower: Floats, upper: Floats, groups: NDArray[np.object_], fit: FragilityFit, interval: Interval
-) -> Checks:
-    """Judge a lognormal capacity fitted to brackets, by Lilliefors' test of the middles of ln amplitude.
-
-    Parameters
-    ----------
-    lower, upper
-        Bounds of each capacity, shape (n,).
-    groups
-        Label of each capacity's motion or earthquake, as ``interval`` resampled them, shape (n,).
-    """
+def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval) -> Checks:
+    """Judge a lognormal capacity fitted to brackets, by Lilliefors' test of the middles of ln amplitude."""
+    lower, upper = brackets.lower, brackets.upper
     closed = np.isfinite(upper) & (lower > 0)
     middle = 0.5 * np.log(lower[closed] * upper[closed])
     p_fit, residual, test = float("nan"), float("nan"), "none: too few, or open brackets"
@@ -116,6 +108,7 @@ def checks_of_brackets(
     # a motion that never overturned counts above all others
     middles = np.where(np.isfinite(upper), 0.5 * np.log(np.maximum(lower, 1e-300) * upper), np.inf)
     capacity = np.where(lower > 0, middles, -np.inf)
+    groups = brackets.groups(interval.over)
     fractions = fractions_of_capacities(capacity, groups, interval.level)
     return _checks(fit, interval, groups, (p_fit, test, residual), fractions)
 

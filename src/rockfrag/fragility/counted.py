@@ -220,7 +220,7 @@ class CountedIda:
         return FloorIda(self, floor)
 
     def resurrections(self, floor: str) -> pd.DataFrame:
-        """Survival windows of the IDA curves on a floor, a row a motion."""
+        """Structural resurrections of the IDA curves on a floor, a row a motion."""
         rows = self._resurrections
         return rows if not floor else rows[rows["floor"] == floor]
 

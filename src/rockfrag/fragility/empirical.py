@@ -185,7 +185,7 @@ def find_resurrections(
 
 
 def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
-    """Survival windows of IDA curves, part after part, by configuration, earthquake, floor and motion.
+    """Structural resurrections of IDA curves, part after part, by configuration, earthquake, floor and motion.
 
     Parameters
     ----------

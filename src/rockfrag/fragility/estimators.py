@@ -275,9 +275,7 @@ def fit_step_tests(
 def fragility_of_brackets(brackets: Brackets, level: float) -> Fragility:
     """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known."""
     fit, interval = fit_brackets(brackets), bracket_interval(brackets, level=level)
-    groups = brackets.motion if interval.over == "motion" else brackets.earthquake
-    checks = checks_of_brackets(brackets.lower, brackets.upper, groups, fit, interval)
-    return Fragility(fit, interval, checks)
+    return Fragility(fit, interval, checks_of_brackets(brackets, fit, interval))
 
 
 def _pooled(outcomes: Outcomes) -> Outcomes:

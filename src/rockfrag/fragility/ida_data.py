@@ -13,7 +13,7 @@ class IdaData(Protocol):
     """IDA curves of one configuration."""
 
     def resurrections(self, amplitude: str, by: list[str]) -> pd.DataFrame:
-        """Survival windows, a row a motion, see :func:`rockfrag.fragility.empirical.find_resurrections`."""
+        """Structural resurrections, a row a motion: :func:`rockfrag.fragility.empirical.find_resurrections`."""
 
     def outcomes(self, column: str) -> Outcomes:
         """All outcomes with a measure."""

@@ -7,7 +7,6 @@ bootstrap covers less often.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -17,7 +16,7 @@ from scipy import special, stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import Link, fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE
-from rockfrag.fragility.observations import Floats, Outcomes
+from rockfrag.fragility.observations import Floats, Grouped, Outcomes, Over
 from rockfrag.fragility.pooling import cells, counts
 from rockfrag.short_repr import short_repr
 
@@ -30,7 +29,6 @@ MOST_BLOCKS = 100
 BETA_POWER = -0.1
 """Power of β that is jackknifed. With ln β limits held in 86 % where earthquakes dominate, see the validation."""
 
-Over = Literal["motion", "earthquake"]
 WeightedFit = Callable[[Floats], Floats]
 """Turns weights of the groups, shape (batch, groups), into (intercept, slope), shape (batch, 2)."""
 
@@ -67,7 +65,7 @@ class Interval:
     level: float
     method: str
     groups: int
-    over: str
+    over: Over
     estimate: tuple[float, float]
     replicates: Floats
     link: Link = "probit"
@@ -88,8 +86,9 @@ class Interval:
         return np.asarray(function(centre - half)), np.asarray(function(centre + half))
 
 
-def population(motions: int, earthquakes: int, over: Over | None) -> tuple[Over, tuple[str, ...]]:
-    """Choose what to resample, and warn where motions stand in for the few earthquakes they share."""
+def population(tests: Grouped, over: Over | None) -> tuple[Over, tuple[str, ...]]:
+    """Choose what to leave out, and warn where motions stand in for the few earthquakes they share."""
+    motions, earthquakes = tests.n_motions, tests.n_earthquakes
     if over is None:
         over = "earthquake" if earthquakes < motions else "motion"
     if over == "motion" and earthquakes < motions:
@@ -101,7 +100,7 @@ def population(motions: int, earthquakes: int, over: Over | None) -> tuple[Over,
 
 
 def outcome_fitter(
-    outcomes: Outcomes, labels: NDArray[np.object_], link: Link = "probit"
+    outcomes: Outcomes, over: Over, link: Link = "probit"
 ) -> tuple[WeightedFit, int]:
     """Make the function that refits a curve to reweighted groups of tests.
 
@@ -110,7 +109,7 @@ def outcome_fitter(
     with the penalised likelihood, as the estimator itself would; replicates in which all tests
     agree give an intercept of -∞ (all survive) or +∞ (all overturn) and a slope of NaN.
     """
-    codes, names = pd.factorize(pd.Series(labels))
+    codes = pd.factorize(pd.Series(outcomes.groups(over)))[0]
     column, values = cells(outcomes.log_im)
     fell = counts(codes, column, outcomes.overturned)
     total = counts(codes, column, outcomes.trials)
@@ -136,7 +135,7 @@ def outcome_fitter(
         result[y.sum(axis=1) == m.sum(axis=1), 0] = np.inf
         return result
 
-    return fit, len(names)
+    return fit, outcomes.n_motions if over == "motion" else outcomes.n_earthquakes
 
 
 def interval_over_motions(
@@ -160,10 +159,8 @@ def interval_over_motions(
     -------
     The :class:`Interval`, with limits of median and dispersion.
     """
-    over, notes = population(outcomes.n_motions, outcomes.n_earthquakes, over)
-    labels = outcomes.motion if over == "motion" else outcomes.earthquake
-    fit = outcome_fitter(outcomes, labels, link)[0]
-    groups = outcomes.n_motions if over == "motion" else outcomes.n_earthquakes
+    over, notes = population(outcomes, over)
+    fit, groups = outcome_fitter(outcomes, over, link)
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level, link=link)
     apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0)[0]
     if not apart:

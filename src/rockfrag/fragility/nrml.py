@@ -118,14 +118,7 @@ def write_nrml(
         states[state] = row
     used = {state for states in rows.values() for state in states}
     known = [state.name for state in limit_states() if state.name in used]
-    root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
-    model = ElementTree.SubElement(
-        root,
-        "fragilityModel",
-        {"id": identifier, "assetCategory": "contents", "lossCategory": "contents"},
-    )
-    description = ElementTree.SubElement(model, "description")
-    ElementTree.SubElement(model, "limitStates").text = " ".join(known)
+    functions: list[Any] = []
     warned: list[str] = []
     for name in sorted(rows):
         lacking = [state for state in known if state not in rows[name]]
@@ -138,19 +131,35 @@ def write_nrml(
             f"{state}: {curve_facts({**rows[name][state], 'warnings': ''})}" for state in known
         )
         # two hyphens would end the comment
-        model.append(ElementTree.Comment(f" {name}: {said} ".replace("--", "- -")))
+        functions.append(ElementTree.Comment(f" {name}: {said} ".replace("--", "- -")))
         warned += [str(rows[name][state].get("warnings") or "") for state in known]
-        model.append(_function(name, {state: rows[name][state] for state in known}, by, fractions))
-    description.text = " ".join(
-        [
-            "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
-            "goodness of fit and the number of its motions.",
-            *said_once(warned),
-        ]
-    )
+        functions.append(
+            _function(name, {state: rows[name][state] for state in known}, by, fractions)
+        )
+    description = [
+        "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
+        "goodness of fit and the number of its motions.",
+        *said_once(warned),
+    ]
+    write_text(model_text(" ".join(description), known, functions, identifier), path)
+
+
+def model_text(
+    description: str,
+    states: Sequence[str],
+    functions: Sequence[Any],
+    identifier: str = "rockfrag",
+) -> str:
+    """NRML 0.5 of a fragility model with some limit states and functions."""
+    root = ElementTree.Element("nrml", {"xmlns": NAMESPACE})
+    about = {"id": identifier, "assetCategory": "contents", "lossCategory": "contents"}
+    model = ElementTree.SubElement(root, "fragilityModel", about)
+    ElementTree.SubElement(model, "description").text = description
+    ElementTree.SubElement(model, "limitStates").text = " ".join(states)
+    model.extend(functions)
     ElementTree.indent(root, space="  ")
     text = ElementTree.tostring(root, encoding="unicode")
-    write_text('<?xml version="1.0" encoding="UTF-8"?>\n' + text + "\n", path)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
 def said_once(notes: Sequence[str]) -> list[str]:
@@ -198,7 +207,7 @@ def _function(
         )
     levels, chances, lowered = _nested(curves, free)
     if free or lowered > CROSSING:
-        return _discrete(taxonomy, measures.pop(), levels, chances)
+        return discrete_function(taxonomy, measures.pop(), levels, chances)
     function = ElementTree.Element(
         "fragilityFunction", {"id": taxonomy, "format": "continuous", "shape": "logncdf"}
     )
@@ -244,7 +253,7 @@ def _nested(
     return levels, found, lowered
 
 
-def _discrete(
+def discrete_function(
     taxonomy: str, imt: str, levels: Floats, chances: Mapping[str, Floats]
 ) -> ElementTree.Element:
     """Function of levels and probabilities."""

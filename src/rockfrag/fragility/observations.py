@@ -1,6 +1,7 @@
 """The observations that every fragility estimator starts from, checked once at the door."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import pandas as pd
@@ -15,9 +16,33 @@ from rockfrag.short_repr import short_repr
 Floats = NDArray[np.float64]
 """An array of floating-point numbers."""
 
+Over = Literal["motion", "earthquake"]
+"""What tests are grouped by: those of a group are not independent."""
+
+
+class Grouped:
+    """Tests that are labelled with their motion and earthquake."""
+
+    motion: NDArray[np.object_]
+    earthquake: NDArray[np.object_]
+
+    @property
+    def n_motions(self) -> int:
+        """Number of different motions."""
+        return len(pd.unique(pd.Series(self.motion)))
+
+    @property
+    def n_earthquakes(self) -> int:
+        """Number of different earthquakes."""
+        return len(pd.unique(pd.Series(self.earthquake)))
+
+    def groups(self, over: Over) -> NDArray[np.object_]:
+        """Label of each test's motion or earthquake, shape (n,)."""
+        return self.motion if over == "motion" else self.earthquake
+
 
 @dataclass(frozen=True)
-class Outcomes:
+class Outcomes(Grouped):
     """Overturned or not, at known values of one intensity measure.
 
     Attributes
@@ -61,16 +86,6 @@ class Outcomes:
     def n_overturned(self) -> int:
         """Number of tests that overturned."""
         return int(self.overturned.sum())
-
-    @property
-    def n_motions(self) -> int:
-        """Number of different motions."""
-        return len(pd.unique(pd.Series(self.motion)))
-
-    @property
-    def n_earthquakes(self) -> int:
-        """Number of different earthquakes."""
-        return len(pd.unique(pd.Series(self.earthquake)))
 
     @property
     def n_repeated(self) -> int:

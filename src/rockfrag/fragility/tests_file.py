@@ -8,7 +8,7 @@ is not is refused in one sentence that names file, row (the header is row 1) and
 import csv
 import os
 import warnings
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 
@@ -92,24 +92,18 @@ def read_tests(
     factors = [item for recipe in recipes.values() for item in recipe if isinstance(item, str)]
     labels = [name for name in (motion, earthquake, *keep) if name is not None]
     needed = list(dict.fromkeys([overturned, *labels, *factors, *given]))
-    parts, first = [], 0
-    with closing(_pieces(path, source, needed)) as pieces:
-        for piece, decimal_comma in pieces:
-            number = _Numbers(piece, source, first, decimal_comma)
-            columns: dict[str, object] = {
-                "motion": number.labels(motion),
-                "earthquake": number.labels(earthquake if earthquake is not None else motion),
-                "overturned": number.outcomes(overturned),
-            }
-            for name, recipe in recipes.items():
-                columns[name] = number.product(recipe)
-            columns |= {name: number.numbers(name) for name in given}
-            columns |= {name: number.labels(name) for name in keep}
-            parts.append(pd.DataFrame(columns))
-            first += len(piece)
-    if not first:
-        raise InputError(f"{source}: there is no row below the header; give at least one test.")
-    table = pd.concat(parts, ignore_index=True)
+
+    def columns(read: _Numbers) -> dict[str, object]:
+        return {
+            "motion": read.labels(motion),
+            "earthquake": read.labels(earthquake if earthquake is not None else motion),
+            "overturned": read.outcomes(overturned),
+            **{name: read.product(recipe) for name, recipe in recipes.items()},
+            **{name: read.numbers(name) for name in given},
+            **{name: read.labels(name) for name in keep},
+        }
+
+    table = _read(path, needed, columns)
     for name in recipes:
         _warn_of_peaks(table, name, source)
     return table
@@ -163,16 +157,28 @@ def read_columns(
     InputError
         As :func:`read_tests`.
     """
+
+    def columns(read: _Numbers) -> dict[str, object]:
+        return {
+            **{name: read.labels(name) for name in labels},
+            **{name: read.product([name]) for name in positive},
+            **{name: read.outcomes(name) for name in outcomes},
+        }
+
+    return _read(path, list(dict.fromkeys([*labels, *positive, *outcomes])), columns)
+
+
+def _read(
+    path: str | os.PathLike[str],
+    needed: Sequence[str],
+    columns: Callable[["_Numbers"], dict[str, object]],
+) -> pd.DataFrame:
+    """Read the needed columns piece by piece, each by its own reader."""
     source = Path(path).name
-    needed = list(dict.fromkeys([*labels, *positive, *outcomes]))
     parts, first = [], 0
     with closing(_pieces(path, source, needed)) as pieces:
         for piece, decimal_comma in pieces:
-            number = _Numbers(piece, source, first, decimal_comma)
-            columns: dict[str, object] = {name: number.labels(name) for name in labels}
-            columns |= {name: number.product([name]) for name in positive}
-            columns |= {name: number.outcomes(name) for name in outcomes}
-            parts.append(pd.DataFrame(columns))
+            parts.append(pd.DataFrame(columns(_Numbers(piece, source, first, decimal_comma))))
             first += len(piece)
     if not first:
         raise InputError(f"{source}: there is no row below the header; give at least one test.")

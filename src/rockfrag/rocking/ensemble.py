@@ -208,7 +208,11 @@ def shaken(cases: Cases) -> Outcomes:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
         outcomes.minimum_gravity_ratio[:] = _minimum_gravity_ratio(cases)
-    stuck = np.array([not system.loose for system in cases.systems])
+    # a body that is answered in space leaves the ground where it has to
+    in_space = any(motion.y is not None for motion in cases.motions)
+    stuck = np.array(
+        [not system.loose and (system.planar or not in_space) for system in cases.systems]
+    )
     if stuck.any() and not cases.request.forces:
         _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])
         _warn_of_lifting(cases, outcomes, stuck)

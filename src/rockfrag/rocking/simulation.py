@@ -72,7 +72,8 @@ def simulate(
     Returns
     -------
     Response
-        Histories, contact events, energies and forces.
+        Histories, contact events, energies and forces; of a body in space under both components a
+        :class:`rockfrag.engines.spatial.SpatialResponse`.
 
     Raises
     ------

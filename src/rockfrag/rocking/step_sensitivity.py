@@ -26,7 +26,7 @@ from rockfrag.units import GRAVITY
 
 @dataclass(frozen=True)
 class StepSizeSensitive:
-    """Outcomes that change when every step is halved: numerically fragile ones.
+    """Step-size-sensitive outcomes: those that change when every step is halved.
 
     Attributes
     ----------

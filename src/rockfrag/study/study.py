@@ -198,7 +198,7 @@ class Study:
 
     @property
     def tested_blocks(self) -> dict[str, Block]:
-        """Blocks of the objects tested and, as ``P``, the first pedestal: the ledger's names."""
+        """Blocks of the objects tested and, as ``P``, the first pedestal: the names of tables."""
         blocks = {
             configuration.names[-1]: self.specimens[configuration.names[-1]]
             for configuration in self.configurations

@@ -33,6 +33,7 @@ def compare(boxes, pairs, seed):
     return found, expected
 
 
+@pytest.mark.slow
 def test_a_few_outcomes_are_those_of_a_plain_time_stepping():
     found, expected = compare(2, 1, 3)
     assert (found == expected).mean() >= 10 / 12

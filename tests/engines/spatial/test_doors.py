@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rockfrag import find_thresholds, overturns, simulate
 from rockfrag.engines.spatial import (
     flip_rate,
     run_in_space,
@@ -64,6 +65,34 @@ def test_flip_rate_counts_cases_that_end_otherwise():
     other = spread_vertices(BOX, 0.01, np.random.default_rng(0))
     moved = np.array(other.bodies[0].base.vertices) - np.array(BOX.bodies[0].base.vertices)
     assert 0 < np.abs(moved).max() <= 0.0035
+
+
+BLOCKS = [Block(0.35, 1.2, 300.0, depth=0.35), Block(0.3, 1.0, 100.0, round=True)]
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_usual_doors_answer_in_space_under_two_components():
+    motions = [ground_motion(seed, 1.0) for seed in range(2)]
+    scales = [0.2, 0.4, 0.6]
+    found = overturns(BLOCKS, motions, scales=scales)
+    expected = run_in_space(BLOCKS, motions, scales)
+    np.testing.assert_array_equal(found.overturned, expected.overturned)
+    np.testing.assert_array_equal(found.turn, expected.turn)
+    assert simulate(BLOCKS[0], motions[0]).overturned == overturns(BLOCKS[0], motions[0]).overturned
+    thresholds = find_thresholds(
+        BLOCKS[1], motions[0], None, highest=0.6, tolerance=0.01, narrowest_resurrection=0.2
+    )
+    first = float(thresholds.table.first_overturning[0])
+    either_side = overturns(BLOCKS[1], motions[0], scales=[first - 0.011, first])
+    assert either_side.overturned.tolist() == [[[False, True]]]
+
+
+def test_under_one_component_a_block_with_a_depth_is_a_planar_one():
+    motion = Motion(ground_motion(0, 0.5).x.acceleration, DT)
+    planar, deep = (Block(0.35, 1.2, 300.0, depth=depth) for depth in (None, 0.35))
+    found = overturns([planar, deep], motion)
+    assert found.peak_rotation[0] == found.peak_rotation[1]
+    assert np.isnan(found.turn).all()
 
 
 def test_planar_bodies_and_stacks_are_refused_in_one_sentence():

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from rockfrag.engines.spatial._body import SIZE
 from rockfrag.engines.spatial.body import standing
@@ -167,8 +169,8 @@ def planar_case(rng):
 
 
 def compare_with_plane(rng, count):
-    """Number of equal outcomes, and largest difference of angles in the first second of rocking."""
-    same, worst = 0, 0.0
+    """Number of equal outcomes, and each case's largest difference of angles in the first second of rocking."""
+    same, worst = 0, []
     for _ in range(count):
         width, depth, height, motion = planar_case(rng)
         angle = rng.uniform(0, 2 * math.pi)
@@ -181,17 +183,27 @@ def compare_with_plane(rng, count):
         tilt = history_table(history, DT, height / 2).tilt_rad.to_numpy()
         theta = np.abs(planar.theta[:, 0])
         n = min(len(tilt), len(theta), int((theta > 0).argmax()) + 100)
-        worst = max(worst, float(np.abs(tilt[:n] - theta[:n]).max()))
+        worst.append(float(np.abs(tilt[:n] - theta[:n]).max()))
         assert abs(outcome.residual) < 1e-7
         assert outcome.dissipated[0] >= 0
     return same, worst
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:the peak")
+def test_two_hundred_boxes_in_a_plane_of_symmetry_are_the_planar_block():
+    same, worst = compare_with_plane(np.random.default_rng(12), 200)
+    assert same == 200
+    # rattling at the cut-off energy before a block rocks in earnest differs by more
+    assert np.median(worst) < 1e-7
+    assert np.quantile(worst, 0.9) < 1e-6
 
 
 @pytest.mark.filterwarnings("ignore:the peak")
 def test_in_a_plane_of_symmetry_it_is_the_planar_block():
     same, worst = compare_with_plane(np.random.default_rng(11), 8)
     assert same == 8
-    assert worst < 1e-5
+    assert max(worst) < 1e-5
 
 
 def test_a_turned_and_a_mirrored_case_are_the_same_case():
@@ -204,3 +216,26 @@ def test_a_turned_and_a_mirrored_case_are_the_same_case():
         second, _ = run_case(body, mirrored, DT)
         assert first.overturned == second.overturned
         assert first.turn == pytest.approx(-second.turn, abs=1e-6)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(
+    seed=st.integers(0, 10_000),
+    friction=st.floats(math.log(0.2), math.log(20)).map(math.exp),
+    slenderness=st.floats(1.0, 6.0),
+    level=st.floats(0.7, 4.0),
+    is_round=st.booleans(),
+)
+def test_energy_never_grows_and_its_balance_closes(seed, friction, slenderness, level, is_round):
+    rng = np.random.default_rng(seed)
+    width = rng.uniform(0.2, 0.8)
+    height = slenderness * width
+    if is_round:
+        body = cylinder(width / 2, height, friction)
+    else:
+        body = box(width, width * rng.uniform(0.4, 1.5), height, friction)
+    motion = synthetic_motion(rng, 3, 8.0) * (level / slenderness)
+    outcome, _ = run_case(body, motion, DT)
+    # a fall from rest over the base's edge takes some 0.1 J/kg
+    assert outcome.gained < 1e-5
+    assert abs(outcome.residual) < 1e-5

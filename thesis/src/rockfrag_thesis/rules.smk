@@ -1,4 +1,4 @@
-# What only a study asks for that has a key of the thesis: compare_with, building_sensitivity, explanation.
+# What only a study asks for that has a key of the thesis: compare_with, building_sensitivity, sensitivity_analysis.
 from rockfrag_thesis.settings import settings_of
 
 ASKED = settings_of(STUDY)
@@ -48,11 +48,18 @@ if ANALYSED:
         output:
             table("sensitivity_analysis/ratios", "sensitivity_analysis/effects"),
             friction=(
-                table("sensitivity_analysis/friction_ratios", "sensitivity_analysis/friction")
+                table(
+                    "sensitivity_analysis/friction_ratios",
+                    "sensitivity_analysis/friction",
+                )
                 if ANALYSED.friction
                 else []
             ),
-            inverse_problem=table("sensitivity_analysis/inverse_problem") if ANALYSED.wanted_percent else [],
+            inverse_problem=(
+                table("sensitivity_analysis/inverse_problem")
+                if ANALYSED.wanted_percent
+                else []
+            ),
         log:
             f"{RESULTS}/logs/sensitivity_analysis.log",
         priority: 3
@@ -66,7 +73,9 @@ if ANALYSED:
         params:
             stage="rockfrag_thesis.stages.sensitivity_analysis:run",
             study=STUDY_FILE,
-            settings=settings("sensitivity_analysis", "bodies", "amplitudes", "protocol", "seed"),
+            settings=settings(
+                "sensitivity_analysis", "bodies", "amplitudes", "protocol", "seed"
+            ),
         script:
             RUN_STAGE
 
@@ -82,7 +91,9 @@ if ASKED.compares:
             read(*[f"{folder}/tests" for folder in MEASURED + BUILDINGS]),
             bodies=STUDY.body_files,
         output:
-            table("table_3_1", "table_3_3", "table_4_1", "hypotheses_theory", "standing"),
+            table(
+                "table_3_1", "table_3_3", "table_4_1", "hypotheses_theory", "standing"
+            ),
             pairs=table("hypotheses", "contradictions") if STUDY.has_pairs else [],
             measured=table(*[f"{folder}/hypotheses" for folder in MEASURED]),
             buildings=table(*[f"{folder}/margins" for folder in BUILDINGS]),

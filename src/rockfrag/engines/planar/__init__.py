@@ -1,1 +1,1 @@
-"""Columns of planar bodies that stick, slide, rock, fly and land, event by contact event (``docs/contact.md``)."""
+"""Planar columns that stick, slide, rock, fly, contact event by contact event (``docs/contact.md``)."""

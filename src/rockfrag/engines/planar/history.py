@@ -185,7 +185,7 @@ def _grazings(contact_events: pd.DataFrame) -> int:
 
 
 def _energy_table(p: np.void, time: Array, history: Array, contact_events: Array) -> pd.DataFrame:
-    """Ledger of energy by cause over time [J]."""
+    """Balance of energy by cause over time [J]."""
     blocks = int(p["count"])
     coordinates = slice(0, 3 * blocks)
     inertia = 1.0 / p["inverse"][coordinates]

@@ -2,40 +2,40 @@
 
 import math
 
-from numba import njit
+from rockfrag.engines.kernels.jit import kernel
 
 
-@njit(cache=True)
+@kernel
 def dot(a, b):
     """Scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True)
+@kernel
 def cross(a, b):
     """Vector product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@njit(cache=True)
+@kernel
 def plus(a, b):
     """Sum."""
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit(cache=True)
+@kernel
 def minus(a, b):
     """Difference."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@njit(cache=True)
+@kernel
 def scaled(s, a):
     """Multiple."""
     return (s * a[0], s * a[1], s * a[2])
 
 
-@njit(cache=True)
+@kernel
 def times(matrix, a):
     """Matrix (3, 3) times vector."""
     return (
@@ -45,7 +45,7 @@ def times(matrix, a):
     )
 
 
-@njit(cache=True)
+@kernel
 def rotation(y):
     """Rows of R, which are the world's axes as the body sees them, from the quaternion y[3:7]."""
     w, x, i, z = y[3], y[4], y[5], y[6]
@@ -56,13 +56,13 @@ def rotation(y):
     )
 
 
-@njit(cache=True)
+@kernel
 def to_world(rows, a):
     """Components in the world of a vector of the body."""
     return (dot(rows[0], a), dot(rows[1], a), dot(rows[2], a))
 
 
-@njit(cache=True)
+@kernel
 def to_body(rows, a):
     """Components in the body of a vector of the world."""
     return (
@@ -72,7 +72,7 @@ def to_body(rows, a):
     )
 
 
-@njit(cache=True)
+@kernel
 def turn(y, angle):
     """Turn the quaternion y[3:7] by a small rotation vector of the body, and normalise it."""
     w, x, i, z = y[3], y[4], y[5], y[6]
@@ -84,7 +84,7 @@ def turn(y, angle):
     normalise(y)
 
 
-@njit(cache=True)
+@kernel
 def normalise(y):
     """Give the quaternion y[3:7] the length 1."""
     length = math.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5] + y[6] * y[6])
@@ -92,7 +92,7 @@ def normalise(y):
         y[i] /= length
 
 
-@njit(cache=True)
+@kernel
 def solve_symmetric(a, b, c, d, e, f, r):
     """Solve [[a, b, c], [b, d, e], [c, e, f]] x = r by Cramer's rule."""
     p, q, s = d * f - e * e, c * e - b * f, b * e - c * d
@@ -105,7 +105,7 @@ def solve_symmetric(a, b, c, d, e, f, r):
     )
 
 
-@njit(cache=True)
+@kernel
 def factor(matrix, order, n):
     """Factor matrix[:n, :n] in place into triangles, with rows exchanged as ``order`` says."""
     for k in range(n):
@@ -126,7 +126,7 @@ def factor(matrix, order, n):
     return True
 
 
-@njit(cache=True)
+@kernel
 def substitute(matrix, order, n, x):
     """Solve in place with the triangles of :func:`factor`."""
     for k in range(n):

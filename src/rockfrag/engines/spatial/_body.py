@@ -8,8 +8,8 @@ the energy lost by friction (14).  Everything is for a unit of mass: energies in
 import math
 
 import numpy as np
-from numba import njit
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import cross, dot, minus, plus, times, to_world
 
 SIZE = 15
@@ -20,7 +20,7 @@ MOST_VERTICES = 64
 
 BODY = np.dtype(
     [
-        ("count", np.int64),  # vertices of the base; of a round one, four points of its rim
+        ("count", np.int64),  # vertices of the base; of a round one, some points of its rim
         ("rim", np.float64),  # radius of a round base [m]; 0 for a polygon
         ("centre", np.float64, (2,)),  # centre of a round base [m]
         ("height", np.float64),  # of the centre of mass over the base [m]
@@ -37,7 +37,8 @@ BODY = np.dtype(
         (
             "pass_turn",
             np.float64,
-        ),  # turn of the contact of a round base that passes through flat [rad]
+        ),  # turn of the contact of a round base that passes through flat, rolling [rad]
+        ("slide_turn", np.float64),  # the same where it slides without friction [rad]
         ("inertia", np.float64, (3, 3)),  # tensor over the mass, about the centre of mass [m²]
         ("inverse", np.float64, (3, 3)),
         ("points", np.float64, (MOST_VERTICES, 3)),  # vertices, anticlockwise [m]
@@ -49,13 +50,13 @@ BODY = np.dtype(
 """A body on a base, in its own frame with the origin at the centre of mass and z up."""
 
 
-@njit(cache=True)
+@kernel
 def rim_contact(body):
     """Number of the contact that is the lowest point of a rim; polygons have none."""
     return body.count if body.rim > 0 else -1
 
 
-@njit(cache=True)
+@kernel
 def rim_direction(body, up):
     """Direction in the base from its centre to the lowest point of the rim, and the sine of the tilt."""
     sine = math.hypot(up[0], up[1])
@@ -64,7 +65,7 @@ def rim_direction(body, up):
     return (-up[0] / sine, -up[1] / sine, 0.0), sine
 
 
-@njit(cache=True)
+@kernel
 def arm(body, up, i):
     """Point i from the centre of mass, in the body, where ``up`` is the vertical as the body sees it."""
     if i == rim_contact(body):
@@ -77,7 +78,7 @@ def arm(body, up, i):
     return (body.points[i, 0], body.points[i, 1], body.points[i, 2])
 
 
-@njit(cache=True)
+@kernel
 def rim_drift(body, up, omega):
     """Velocity of the lowest point along the rim, in the body."""
     u, sine = rim_direction(body, up)
@@ -90,7 +91,7 @@ def rim_drift(body, up, omega):
     )
 
 
-@njit(cache=True)
+@kernel
 def bias(body, up, omega, p, i):
     """Acceleration of contact i that does not come from accelerations, ω × dρ/dt, in the body."""
     moved = cross(omega, p)
@@ -99,26 +100,26 @@ def bias(body, up, omega, p, i):
     return cross(omega, moved)
 
 
-@njit(cache=True)
+@kernel
 def gap(body, y, up, i):
     """Height of point i over the ground."""
     return y[2] + dot(up, arm(body, up, i))
 
 
-@njit(cache=True)
+@kernel
 def omega_of(y):
     """Angular velocity in the body."""
     return (y[10], y[11], y[12])
 
 
-@njit(cache=True)
+@kernel
 def point_velocity(y, rows, p):
     """Velocity in the world of the body's point p."""
     turned = to_world(rows, cross(omega_of(y), p))
     return (y[7] + turned[0], y[8] + turned[1], y[9] + turned[2])
 
 
-@njit(cache=True)
+@kernel
 def energy(body, y, g):
     """Kinetic energy and the energy of height over rest [J/kg]."""
     omega = omega_of(y)
@@ -126,7 +127,7 @@ def energy(body, y, g):
     return kinetic + g * (y[2] - body.height)
 
 
-@njit(cache=True)
+@kernel
 def free_spin(body, omega):
     """Angular acceleration without any moment, in the body."""
     moment = cross(omega, times(body.inertia, omega))
@@ -134,19 +135,19 @@ def free_spin(body, omega):
     return (-turned[0], -turned[1], -turned[2])
 
 
-@njit(cache=True)
+@kernel
 def first_candidate(body):
     """Number of the first point that may touch when the body is not flat: the rim, or vertex 0."""
     return body.count if body.rim > 0 else 0
 
 
-@njit(cache=True)
+@kernel
 def last_candidate(body):
     """One more than the number of the last such point."""
     return body.count + 1 if body.rim > 0 else body.count
 
 
-@njit(cache=True)
+@kernel
 def position_of_base(y, rows, p):
     """Where in the plan the body's point p is."""
     moved = to_world(rows, p)

@@ -9,8 +9,7 @@ slide and where to.
 
 import math
 
-from numba import njit
-
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import factor, substitute
 from rockfrag.engines.spatial._forces import MOST
 
@@ -26,7 +25,7 @@ CLOSE_ENOUGH = 1e-13
 NEWTON_STEPS = 60
 
 
-@njit(cache=True)
+@kernel
 def compliance(s, n):
     """Return the largest diagonal entry."""
     largest = 0.0
@@ -35,7 +34,7 @@ def compliance(s, n):
     return largest
 
 
-@njit(cache=True)
+@kernel
 def product(s, n, x, out):
     """Fill in out = W x + b."""
     for i in range(3 * n):
@@ -45,13 +44,13 @@ def product(s, n, x, out):
         out[i] = value
 
 
-@njit(cache=True)
+@kernel
 def in_set(mask, i):
     """Whether contact i belongs to a set."""
     return (mask >> i) & 1
 
 
-@njit(cache=True)
+@kernel
 def stick_together(s, n, mask, soft):
     """Solve for impulses at which all of a set stick (or slide the given way); the others get none."""
     size = 0
@@ -88,7 +87,7 @@ def stick_together(s, n, mask, soft):
     return True
 
 
-@njit(cache=True)
+@kernel
 def spread(s, n, mask):
     """Write the unknowns of a set to the impulses."""
     row = 0
@@ -109,7 +108,7 @@ def spread(s, n, mask):
                 row += 1
 
 
-@njit(cache=True)
+@kernel
 def fraction_between(s, first, second, edge):
     """Share the impulse along the edge between two sticking contacts so that both cones hold, if they can."""
     p, along = s.impulse, 0.0
@@ -128,7 +127,7 @@ def fraction_between(s, first, second, edge):
         p[3 * second + k] += (1.0 - part) * along * edge[k]
 
 
-@njit(cache=True)
+@kernel
 def cones_hold(s, n, mask, small):
     """Whether the impulses of a set push, and stay within the cones of the contacts that stick."""
     for i in range(n):
@@ -142,7 +141,7 @@ def cones_hold(s, n, mask, small):
     return True
 
 
-@njit(cache=True)
+@kernel
 def residuals(s, n, mask, x, pace, out):
     """Residuals of the projections; return the largest that counts as a velocity."""
     product(s, n, x, s.after)
@@ -167,7 +166,7 @@ def residuals(s, n, mask, x, pace, out):
     return worst / pace
 
 
-@njit(cache=True)
+@kernel
 def slopes_in_plane(s, i, x, pace, n):
     """Fill in the rows of the projection's derivative for the shear of a contact that may slide."""
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
@@ -190,7 +189,7 @@ def slopes_in_plane(s, i, x, pace, n):
         s.matrix[b, j] = (1.0 if j == b else 0.0) - ratio * (dv - along * f) - grow * f
 
 
-@njit(cache=True)
+@kernel
 def fill_slopes(s, n, mask, x, pace):
     """Fill in the derivative of the residuals."""
     for i in range(n):
@@ -213,7 +212,7 @@ def fill_slopes(s, n, mask, x, pace):
             s.matrix[k, k] += 1e-11
 
 
-@njit(cache=True)
+@kernel
 def newton(s, n, mask, pace, small):
     """Improve s.impulse until the residuals vanish; return whether they do."""
     x = s.impulse
@@ -241,7 +240,7 @@ def newton(s, n, mask, pace, small):
     return worst <= 100 * small
 
 
-@njit(cache=True)
+@kernel
 def start_sliding(s, n, mask, turned):
     """Begin with each contact of a set stopped alone, sliding the way it came, turned by an angle."""
     for i in range(n):
@@ -265,7 +264,7 @@ def start_sliding(s, n, mask, turned):
         s.impulse[a + 2] = normal
 
 
-@njit(cache=True)
+@kernel
 def others_open(s, n, mask, small):
     """Whether contacts outside of a set do not approach."""
     product(s, n, s.impulse, s.after)
@@ -275,7 +274,7 @@ def others_open(s, n, mask, small):
     return approaching == 0
 
 
-@njit(cache=True)
+@kernel
 def clip_to_cones(s, n, mask):
     """Shorten shears to the cones, from which Newton's method then begins."""
     for i in range(n):
@@ -288,28 +287,35 @@ def clip_to_cones(s, n, mask):
                 s.impulse[a + 1] *= limit / size
 
 
-@njit(cache=True)
+@kernel
 def bits(mask):
     """Return the number of contacts in a set."""
     return (mask & 1) + ((mask >> 1) & 1) + ((mask >> 2) & 1) + ((mask >> 3) & 1)
 
 
-@njit(cache=True)
-def solve_set(s, n, mask, scale):
-    """Solve for one set; return whether all of it pushes and nothing else approaches."""
+@kernel
+def stick_set(s, n, mask, scale):
+    """Solve for one set that sticks; return whether all of it pushes and nothing else approaches."""
+    small = 1e-11 * scale
     if mask == 0:
         for i in range(3 * n):
             s.impulse[i] = 0.0
-        return others_open(s, n, mask, 1e-11 * scale)
+        return others_open(s, n, mask, small)
     largest = compliance(s, n)
-    small = 1e-11 * scale
     if not stick_together(s, n, mask, SOFT * largest):
         return False
     if bits(mask) == 2:
         fraction_in_set(s, n, mask)
-    if cones_hold(s, n, mask, small / largest):
-        return others_open(s, n, mask, small)
-    pace = 1.0 / largest
+    return cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small)
+
+
+@kernel
+def slide_set(s, n, mask, scale):
+    """Solve for one set of which some slides; return whether all of it pushes and nothing else approaches."""
+    largest = compliance(s, n)
+    small, pace = 1e-11 * scale, 1.0 / largest
+    if mask == 0 or not stick_together(s, n, mask, SOFT * largest):
+        return False
     clip_to_cones(s, n, mask)
     found = newton(s, n, mask, pace, CLOSE_ENOUGH * scale)
     for k in range(4):
@@ -317,12 +323,10 @@ def solve_set(s, n, mask, scale):
             break
         start_sliding(s, n, mask, 1.5707963267948966 * k)
         found = newton(s, n, mask, pace, CLOSE_ENOUGH * scale)
-    if not (found and cones_hold(s, n, mask, small / largest)):
-        return False
-    return others_open(s, n, mask, small)
+    return found and cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small)
 
 
-@njit(cache=True)
+@kernel
 def fraction_in_set(s, n, mask):
     """Share along the edge between the two contacts of a set, if both may stick."""
     first, second = -1, -1
@@ -337,7 +341,7 @@ def fraction_in_set(s, n, mask):
     fraction_between(s, first, second, (s.edge[first, second, 0], s.edge[first, second, 1]))
 
 
-@njit(cache=True)
+@kernel
 def scale_of(s, n):
     """Largest velocity (or acceleration) that there is to stop."""
     largest = 1e-300
@@ -346,7 +350,7 @@ def scale_of(s, n):
     return largest
 
 
-@njit(cache=True)
+@kernel
 def energy_left(s, n):
     """Change of kinetic energy by the impulses: P·b + P·W P / 2."""
     change = 0.0
@@ -355,9 +359,9 @@ def energy_left(s, n):
     return change
 
 
-@njit(cache=True)
+@kernel
 def solve_cones(s, n, least):
-    """Find the impulses: the fewest contacts that push, and of those the least energy.
+    """Find the impulses: all that push stick if that is possible; the fewest that push; the least energy left.
 
     Parameters
     ----------
@@ -372,6 +376,20 @@ def solve_cones(s, n, least):
     -------
     The set that pushes as bits (-1 if none was found), and how many sets of that size would do.
     """
+    chosen, ways = -1, 0
+    for slide in range(2):
+        if chosen < 0:
+            chosen, ways = fewest(s, n, least, slide)
+    if chosen >= 0:
+        for i in range(3 * n):
+            s.impulse[i] = s.best[i]
+        product(s, n, s.impulse, s.after)
+    return chosen, ways
+
+
+@kernel
+def fewest(s, n, least, slide):
+    """Find the smallest set that sticks (or slides), with the least energy left, and how many are as small."""
     scale = scale_of(s, n)
     chosen, ways, size_found, lowest = -1, 0, 99, 0.0
     for k in range(1 << MOST):
@@ -379,15 +397,11 @@ def solve_cones(s, n, least):
         size = bits(mask)
         if mask >= (1 << n) or size < least or size > size_found:
             continue
-        if solve_set(s, n, mask, scale):
+        if slide_set(s, n, mask, scale) if slide else stick_set(s, n, mask, scale):
             ways += 1
             change = energy_left(s, n)
             if chosen < 0 or change < lowest - 1e-12 * scale * scale:
                 chosen, lowest, size_found = mask, change, size
                 for i in range(3 * n):
                     s.best[i] = s.impulse[i]
-    if chosen >= 0:
-        for i in range(3 * n):
-            s.impulse[i] = s.best[i]
-        product(s, n, s.impulse, s.after)
     return chosen, ways

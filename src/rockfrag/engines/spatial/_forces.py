@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import (
     cross,
     dot,
@@ -33,9 +33,9 @@ MOST = 4
 """Most contacts that carry at once."""
 
 STICKS, SLIDES = 0, 1
-FLIGHT, PIVOT, HINGE, GENERAL, REST = 0, 1, 2, 3, 4
+FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
 
-SLIP_FLOOR = 1e-5
+SLIP_FLOOR = 1e-4
 """Slip velocity below which a point does not slip yet, or no longer, and its direction is the one noted [m/s]."""
 
 SOFTNESS = 1e-9
@@ -49,6 +49,7 @@ CASE = np.dtype(
         # the mode: number of closed points, their numbers, which of them slide and where to, where they stick
         ("count", np.int64),
         ("rests", np.int64),
+        ("jammed", np.int64),  # nothing holds but what sticks; cones are not looked at
         ("closed", np.int64, (MOST,)),
         ("slides", np.int64, (MOST,)),
         ("direction", np.float64, (MOST, 2)),
@@ -89,7 +90,7 @@ CASE = np.dtype(
 """What an analysis changes in place; its record goes through all kernels."""
 
 
-@njit(cache=True)
+@kernel
 def kind_of(s):
     """Kind of a mode."""
     n = s.count
@@ -97,14 +98,14 @@ def kind_of(s):
         return REST
     if n == 0:
         return FLIGHT
-    if n == 1 and s.slides[0] == STICKS:
-        return PIVOT
+    if n == 1:
+        return PIVOT if s.slides[0] == STICKS else SLIDER
     if n == 2 and s.slides[0] == STICKS and s.slides[1] == STICKS:
         return HINGE
     return GENERAL
 
 
-@njit(cache=True)
+@kernel
 def response(body, rows, p, q, axis):
     """Velocity in the world of point p after a unit impulse along a world axis at point q."""
     push = rows[axis]
@@ -112,7 +113,7 @@ def response(body, rows, p, q, axis):
     return to_world(rows, plus(push, cross(turn, p)))
 
 
-@njit(cache=True)
+@kernel
 def fill_delassus(body, rows, which, n, delassus):
     """Fill in what impulses at the contacts do to their velocities, in world components."""
     up = rows[2]
@@ -125,7 +126,7 @@ def fill_delassus(body, rows, which, n, delassus):
                     delassus[3 * i + k, 3 * j + axis] = u[k]
 
 
-@njit(cache=True)
+@kernel
 def fill_velocities(body, y, rows, which, n, out):
     """Fill in the velocities of contacts."""
     for i in range(n):
@@ -134,7 +135,7 @@ def fill_velocities(body, y, rows, which, n, out):
             out[3 * i + k] = u[k]
 
 
-@njit(cache=True)
+@kernel
 def fill_accelerations(body, y, rows, weight, which, n, out):
     """Fill in the accelerations that contacts would have without contact forces.
 
@@ -150,7 +151,7 @@ def fill_accelerations(body, y, rows, weight, which, n, out):
             out[3 * i + k] = u[k]
 
 
-@njit(cache=True)
+@kernel
 def slip_direction(s, i, u, v):
     """Direction of slip of contact i whose velocity in the plan is (u, v)."""
     speed = math.hypot(u, v)
@@ -159,7 +160,7 @@ def slip_direction(s, i, u, v):
     return s.direction[i, 0], s.direction[i, 1]
 
 
-@njit(cache=True)
+@kernel
 def pivot_acceleration(body, up, omega, weight, i):
     """Angular acceleration about a sticking point, the force at it, both in the body."""
     p = arm(body, up, i)
@@ -179,7 +180,20 @@ def pivot_acceleration(body, up, omega, weight, i):
     return alpha, force
 
 
-@njit(cache=True)
+@kernel
+def slider_force(body, y, rows, omega, spin, weight, s):
+    """Force at the one contact, which slides; in the body."""
+    i = s.closed[0]
+    p = arm(body, rows[2], i)
+    u = point_velocity(y, rows, p)
+    way = slip_direction(s, 0, u[0], u[1])
+    d = to_body(rows, (-body.kinetic * way[0], -body.kinetic * way[1], 1.0))
+    gives = plus(d, cross(times(body.inverse, cross(p, d)), p))
+    free = plus(plus(weight, cross(spin, p)), bias(body, rows[2], omega, p, i))
+    return scaled(-dot(rows[2], free) / dot(rows[2], gives), d), p, u
+
+
+@kernel
 def hinge_acceleration(body, rows, omega, weight, i, j):
     """Angular acceleration about the edge from point i to j, force at i and at j along the edge shared evenly."""
     p, q = arm(body, rows[2], i), arm(body, rows[2], j)
@@ -197,7 +211,7 @@ def hinge_acceleration(body, rows, omega, weight, i, j):
     return alpha, whole, far, e
 
 
-@njit(cache=True)
+@kernel
 def fraction_along(whole, far, edge, friction, s):
     """Share the force along an edge between its ends so that both hold if they can; world components."""
     near = minus(whole, far)
@@ -212,7 +226,7 @@ def fraction_along(whole, far, edge, friction, s):
         s.lam[1, k] = far[k] + (1.0 - part) * along * edge[k]
 
 
-@njit(cache=True)
+@kernel
 def fill_general(body, y, rows, n, friction, s):
     """Fill in the system of a mode's unknown forces; return its size."""
     fill_delassus(body, rows, s.closed, n, s.delassus)
@@ -238,7 +252,7 @@ def fill_general(body, y, rows, n, friction, s):
     return size
 
 
-@njit(cache=True)
+@kernel
 def solve_general(body, y, rows, n, friction, s):
     """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
     size = fill_general(body, y, rows, n, friction, s)
@@ -277,7 +291,7 @@ def solve_general(body, y, rows, n, friction, s):
     return done
 
 
-@njit(cache=True)
+@kernel
 def largest_compliance(s, n):
     """Largest diagonal entry of the Delassus matrix of n contacts, as fill_general softens with."""
     largest = 0.0
@@ -286,7 +300,7 @@ def largest_compliance(s, n):
     return largest
 
 
-@njit(cache=True)
+@kernel
 def rates(body, tau, y, dy, s):
     """Fill in dy/dt, and the contact forces in world components.
 
@@ -316,6 +330,15 @@ def rates(body, tau, y, dy, s):
         pushed = to_world(rows, whole)
         fraction_along(pushed, to_world(rows, far), to_world(rows, e), body.static, s)
         acceleration = plus(pull, pushed)
+    elif kind == SLIDER:
+        spin = free_spin(body, omega)
+        force, p, u = slider_force(body, y, rows, omega, spin, weight, s)
+        pushed = to_world(rows, force)
+        for k in range(3):
+            s.lam[0, k] = pushed[k]
+        acceleration = plus(pull, pushed)
+        alpha = plus(spin, times(body.inverse, cross(p, force)))
+        lost = -pushed[0] * u[0] - pushed[1] * u[1]
     else:
         alpha = free_spin(body, omega)
         acceleration = pull
@@ -336,7 +359,7 @@ def rates(body, tau, y, dy, s):
     dy[14] = lost
 
 
-@njit(cache=True)
+@kernel
 def fill_rates(y, omega, alpha, acceleration, dy):
     """Fill in the rates of position, attitude and velocities."""
     w, x, i, z = y[3], y[4], y[5], y[6]
@@ -350,7 +373,7 @@ def fill_rates(y, omega, alpha, acceleration, dy):
         dy[10 + k] = alpha[k]
 
 
-@njit(cache=True)
+@kernel
 def push_at(body, y, rows, i, impulse):
     """Change the velocities by an impulse (world) at contact i."""
     p = arm(body, rows[2], i)

@@ -2,8 +2,7 @@
 
 import math
 
-from numba import njit
-
+from rockfrag.engines.kernels.jit import entry_kernel, kernel
 from rockfrag.engines.spatial._algebra import (
     cross,
     normalise,
@@ -19,11 +18,12 @@ from rockfrag.engines.spatial._body import (
     arm,
     energy,
     omega_of,
+    point_velocity,
     position_of_base,
     rim_contact,
     rim_direction,
 )
-from rockfrag.engines.spatial._forces import MOST, PIVOT, REST, SLIDES, STICKS, kind_of, rates
+from rockfrag.engines.spatial._forces import REST, SLIDES, STICKS, kind_of, rates
 from rockfrag.engines.spatial._modes import (
     AT_REST,
     CLOSE,
@@ -37,26 +37,31 @@ from rockfrag.engines.spatial._modes import (
     SLIDINGS,
     SLIP_ENDS,
     TOUCH,
+    UNSOLVED,
     anchor_all,
     choose_mode,
     come_to_rest,
     count_touching,
     edge_margin,
     gap,
+    hold,
     impact,
     insist,
+    jam,
     lay_flat,
     rest_margin,
     settle,
+    touching,
 )
 from rockfrag.engines.spatial._step import (
     attempt,
     begin_slips,
     dips,
     margin,
+    pressure_centre,
 )
 
-RIM_START = 1e-6
+RIM_START = 1e-7
 """Tilt with which a round base begins to roll: at none its contact has no direction [rad]."""
 
 FLAT_PASS = 1e-8
@@ -71,20 +76,31 @@ MANY = 40
 HURRY = 1000
 """Steps in one interval after which errors of COARSE are allowed: slip that hardly begins is stiff [-]."""
 
+GIVE_UP = 2000
+"""Steps in one interval after which a body that is next to flat is laid flat; after twice as many more the
+interval ends.  Both are counted as paradoxes [-]."""
+
+PATIENCE = 30
+"""Times that this may happen before an analysis ends as one that stood [-]."""
+
+MOST_STEPS = 400_000
+"""Steps after which an analysis ends as one that stood, which is counted as a paradox [-]."""
+
 COARSE = 1e-6
 """Error of a step that is allowed then [m, m/s, rad/s]."""
 
-OUTCOME = 20
+OUTCOME = 21
 (
     FELL, FALL_TIME, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, PEAK_WALK, WALK_X,
     WALK_Y, TURN, STEPS, LOST, ENERGY_BALANCE, END_TIME, CERTAIN_TIME, FIRST_MOTION, LEAST_GRAVITY, CONTACT_EVENTS,
+    GAINED,
 ) = range(OUTCOME)  # fmt: skip
 
 COLUMNS = 17
 """Columns of a history: y[0:13], turn about the vertical, number of closed points, and the first two of them."""
 
 
-@njit(cache=True)
+@kernel
 def set_field(field, acceleration, k, scale, dt, g):
     """Set the effective gravity of interval k; the ground is at rest one sample after the last."""
     last = acceleration.shape[0] - 1
@@ -96,13 +112,13 @@ def set_field(field, acceleration, k, scale, dt, g):
     field[6] = g
 
 
-@njit(cache=True)
+@kernel
 def pull_at(field, tau):
     """Effective gravity in the world."""
     return (field[0] + field[3] * tau, field[1] + field[4] * tau, field[2] + field[5] * tau)
 
 
-@njit(cache=True)
+@kernel
 def rest_ends(body, y, field, tau, dt):
     """When in an interval the ground no longer carries the body at rest; a negative number if it does throughout.
 
@@ -135,7 +151,7 @@ def rest_ends(body, y, field, tau, dt):
     return high
 
 
-@njit(cache=True)
+@kernel
 def leave_rest(body, y, tau, s):
     """Choose how the body leaves rest: slides, or tips over an edge, a vertex or the rim."""
     rows = rotation(y)
@@ -165,23 +181,20 @@ def leave_rest(body, y, tau, s):
     anchor_all(body, y, s)
 
 
-@njit(cache=True)
+@kernel
 def slide_or_jump(body, y, tau, s, pull, level, jumps):
     """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any way."""
     if jumps and choose_mode(body, tau, y, s):
         return
-    n = 0
-    rows = rotation(y)
-    for i in range(body.count):
-        if n < MOST and gap(body, y, rows[2], i) <= TOUCH:
-            s.closed[n], s.slides[n] = i, SLIDES
-            s.direction[n, 0], s.direction[n, 1] = pull[0] / level, pull[1] / level
-            n += 1
+    n = touching(body, y, rotation(y), s)
+    for i in range(n):
+        s.closed[i], s.slides[i] = s.which[i], SLIDES
+        s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
     s.count = n
     s.counters[SLIDINGS] += 1
 
 
-@njit(cache=True)
+@kernel
 def add_edge(body, y, rows, pull, i, j, small, s):
     """Close the ends of an edge that the body tips over; a vertex that two such edges share stays alone."""
     if edge_margin(body, y, rows, pull, i, j) > small:
@@ -196,7 +209,7 @@ def add_edge(body, y, rows, pull, i, j, small, s):
         s.count = 1
 
 
-@njit(cache=True)
+@kernel
 def start_rolling(body, y, x, z, s):
     """Tilt a round body from flat by RIM_START towards a direction of the base, about the point there."""
     size = max(math.hypot(x, z), 1e-300)
@@ -207,7 +220,7 @@ def start_rolling(body, y, x, z, s):
     settle(body, y, s)
 
 
-@njit(cache=True)
+@kernel
 def tilt_about(body, y, u, tilt):
     """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
     lay_flat(body, y)
@@ -219,25 +232,42 @@ def tilt_about(body, y, u, tilt):
     y[1] += before[1] - after[1]
 
 
-@njit(cache=True)
+@kernel
 def pass_flat(body, y, s):
-    """Let a rolling rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
+    """Let a rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
     up = rotation(y)[2]
     u, sine = rim_direction(body, up)
-    omega = omega_of(y)
-    sinking = cross(up, omega)
+    sinking = cross(up, omega_of(y))
+    if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
+        return
+    before = energy(body, y, s.field[6])
     rate = math.hypot(sinking[0], sinking[1])
-    sideways = sinking[0] * u[1] - sinking[1] * u[0]
-    angle = body.pass_turn if sideways <= 0 else -body.pass_turn
+    angle = body.slide_turn if s.slides[0] == SLIDES else body.pass_turn
+    if sinking[0] * u[1] - sinking[1] * u[0] > 0:
+        angle = -angle
     c, d = math.cos(angle), math.sin(angle)
     new = (c * u[0] - d * u[1], d * u[0] + c * u[1])
     tilt_about(body, y, new, max(2 * FLAT_PASS, sine))
-    y[10], y[11] = -rate * new[1], rate * new[0]
     s.counters[PASSES] += 1
-    settle(body, y, s)
+    rise(body, y, new, rate, s)
+    gained = energy(body, y, s.field[6]) - before
+    # a base that is not symmetrical would gain in the new direction
+    pay(body, y, gained, s)
 
 
-@njit(cache=True)
+@kernel
+def rise(body, y, u, rate, s):
+    """Let a body that is next to flat tilt up about the rim's point towards u at a rate."""
+    y[10], y[11] = -rate * u[1], rate * u[0]
+    if s.slides[0] == SLIDES:
+        rows = rotation(y)
+        p = arm(body, rows[2], rim_contact(body))
+        y[9] -= point_velocity(y, rows, p)[2]
+    else:
+        settle(body, y, s)
+
+
+@kernel
 def locate(body, tau, h, y, s):
     """Find the first instant in a step at which a margin vanishes; leave the state there in s.new.
 
@@ -266,7 +296,7 @@ def locate(body, tau, h, y, s):
             high, below = middle, value
             above *= 0.5 if side < 0 else 1.0
             side = -1
-        if abs(value) < 1e-14:
+        if abs(value) < 1e-12:
             return middle, what
         if high - low < 1e-14:
             break
@@ -275,7 +305,7 @@ def locate(body, tau, h, y, s):
     return high, what
 
 
-@njit(cache=True)
+@kernel
 def stop_slips(body, y, s):
     """Let points whose slip has ended stick, before the mode is chosen anew."""
     rows = rotation(y)
@@ -285,10 +315,10 @@ def stop_slips(body, y, s):
             turned = to_world(rows, cross(omega_of(y), p))
             if math.hypot(y[7] + turned[0], y[8] + turned[1]) < 2 * AT_REST:
                 s.slides[i] = STICKS
-    settle(body, y, s)
+    hold(body, y, rows, s)
 
 
-@njit(cache=True)
+@kernel
 def rim_instead_of_feet(body, y, s):
     """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry."""
     n = s.count
@@ -299,22 +329,48 @@ def rim_instead_of_feet(body, y, s):
         x += body.points[s.closed[i], 0] - body.centre[0]
         z += body.points[s.closed[i], 1] - body.centre[1]
         sliding = max(sliding, s.slides[i])
+    tip_over_rim(body, y, x, z, sliding, s)
+
+
+@kernel
+def tip_over_rim(body, y, x, z, sliding, s):
+    """Tilt a flat body towards a direction of the base, with the velocities that it has if it slides."""
     omega = omega_of(y)
     velocity = (y[7], y[8], y[9])
+    before = energy(body, y, s.field[6])
     start_rolling(body, y, x, z, s)
     if sliding == SLIDES:
         s.slides[0] = SLIDES
         y[10], y[11], y[12] = omega
         y[7], y[8], y[9] = velocity
+    pay(body, y, energy(body, y, s.field[6]) - before, s)
 
 
-@njit(cache=True)
+@kernel
+def pay(body, y, gained, s):
+    """Take energy that was gained from the velocities, as far as there is any."""
+    moving = energy(body, y, s.field[6]) - s.field[6] * (y[2] - body.height)
+    if gained > 0.0 and moving > 0.0:
+        for k in range(7, 13):
+            y[k] *= math.sqrt(max(1.0 - gained / moving, 0.0))
+
+
+@kernel
+def slides_any(s):
+    """Whether a closed point slides."""
+    found = False
+    for i in range(s.count):
+        found = found or s.slides[i] == SLIDES
+    return found
+
+
+@kernel
 def happen(body, what, tau, y, cut, stuck, s):
     """Let what ended a step change the velocities and the mode."""
     g = s.field[6]
     before = energy(body, y, g)
     if what == LANDS:
-        impact(body, y, 1, s)
+        impact(body, y, 0, s)
         rows = rotation(y)
         if body.rim == 0.0 and count_touching(body, y, rows) >= 3:
             # the points that open begin with no gap, not with one of rounding
@@ -324,19 +380,23 @@ def happen(body, what, tau, y, cut, stuck, s):
             come_to_rest(body, y, s)
     elif what == SLIP_ENDS:
         stop_slips(body, y, s)
-    if stuck > 3 and what in (OPENS, LEAVES_CONE):
+    if what == OPENS and body.rim > 0 and s.count >= 3:
+        x, z = pressure_centre(body, s)
+        tip_over_rim(body, y, x, z, SLIDES, s)
+    elif stuck > 3 and what in (OPENS, LEAVES_CONE):
         insist(body, what, y, s)
     elif kind_of(s) != REST and not choose_mode(body, tau, y, s):
-        # no forces do: the contacts jam, which is an impact without a collision
         s.counters[JAMS] += 1
-        impact(body, y, 1, s)
+        if slides_any(s):
+            # an impact without a collision
+            impact(body, y, 1, s)
         if not choose_mode(body, tau, y, s):
-            anchor_all(body, y, s)
+            jam(body, y, s)
     rim_instead_of_feet(body, y, s)
     return before - energy(body, y, g)
 
 
-@njit(cache=True)
+@kernel
 def critical_tilt(body, up):
     """Tilt at which the centre of mass is over the base's furthest point in the direction of the tilt."""
     u, _ = rim_direction(body, up)
@@ -349,7 +409,7 @@ def critical_tilt(body, up):
     return math.atan2(reach, body.height)
 
 
-@njit(cache=True)
+@kernel
 def note_peaks(body, y, start, out):
     """Keep the largest tilt, speed and walk; return the cosine of the tilt."""
     rows = rotation(y)
@@ -367,13 +427,13 @@ def note_peaks(body, y, start, out):
     return up[2]
 
 
-@njit(cache=True)
+@kernel
 def heading(y):
     """Turn about the vertical, of the attitude's part about it."""
     return 2.0 * math.atan2(y[6], y[3])
 
 
-@njit(cache=True)
+@kernel
 def note_turn(y, before, out):
     """Add what the heading has changed by; return it."""
     now = heading(y)
@@ -383,7 +443,7 @@ def note_turn(y, before, out):
     return now
 
 
-@njit(cache=True)
+@kernel
 def fall_is_certain(body, y, s, peaks, scale, g):
     """Whether the body leans so far and turns on so that no later acceleration of the ground brings it back.
 
@@ -401,7 +461,7 @@ def fall_is_certain(body, y, s, peaks, scale, g):
     return up[0] * turning[0] + up[1] * turning[1] > 0
 
 
-@njit(cache=True)
+@kernel
 def note_fall(y, s, time, lies, out):
     """Write down how the body fell, and when it lies or, before that, when its fall is certain."""
     rows = rotation(y)
@@ -413,7 +473,7 @@ def note_fall(y, s, time, lies, out):
     out[FALL_SECOND] = s.closed[1] if s.count > 1 else -1
 
 
-@njit(cache=True)
+@kernel
 def record(history, k, y, out, s):
     """Write a sample of the history, if there is one."""
     if k >= history.shape[0]:
@@ -426,25 +486,39 @@ def record(history, k, y, out, s):
     history[k, 16] = s.closed[1]
 
 
-@njit(cache=True)
+@kernel
 def cannot_fall(body, y, s, g):
     """Whether, on a ground at rest, the body stands or has too little energy left to fall."""
     return s.rests == 1 or energy(body, y, g) < body.barrier
 
 
-@njit(cache=True)
+@kernel
 def small_rim(body, y, tau, cut, s):
-    """Let a round body rest whose energy is below the cut-off while the ground would carry it at rest."""
-    left = energy(body, y, s.field[6])
-    if left >= cut * body.barrier:
-        return 0.0
-    if rest_margin(body, y, rotation(y), pull_at(s.field, tau)) < 0:
-        return 0.0
-    come_to_rest(body, y, s)
-    return left
+    """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat."""
+    pull = pull_at(s.field, tau)
+    rows = rotation(y)
+    if s.count != 1:
+        return
+    small = cut * body.barrier
+    if wobble_energy(body, y, rows, s.field[6]) >= small:
+        return
+    if rest_margin(body, y, rows, pull) >= 0 and energy(body, y, s.field[6]) < small:
+        come_to_rest(body, y, s)
+    elif s.slides[0] == SLIDES and body.kinetic * body.height < body.rim:
+        y[9] = y[10] = y[11] = 0.0
+        lay_flat(body, y)
+        if not choose_mode(body, tau, y, s):
+            jam(body, y, s)
 
 
-@njit(cache=True)
+@kernel
+def wobble_energy(body, y, rows, g):
+    """Energy of the motion that tilts a body, which is what it would lose by lying down [J/kg]."""
+    tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
+    return tilting + 0.5 * y[9] ** 2 + g * body.rim * math.hypot(rows[2][0], rows[2][1])
+
+
+@kernel
 def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
     g = s.field[6]
@@ -472,28 +546,39 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     normalise(y)
     if what != NOTHING:
         out[CONTACT_EVENTS] += 1
-        out[LOST] += happen(body, what, tau + h, y, cut, stuck, s)
+        note_loss(happen(body, what, tau + h, y, cut, stuck, s), out)
         return tau + h, dt, h
     before = energy(body, y, g)
     settle(body, y, s)
-    out[LOST] += before - energy(body, y, g)
+    note_loss(before - energy(body, y, g), out)
     if body.rim > 0:
         ahead = look_after_rim(body, y, tau + h, cut, ahead, s, out)
     return tau + h, ahead, h
 
 
-@njit(cache=True)
+@kernel
+def note_loss(loss, out):
+    """Add energy lost at once; what is gained is a defect, of which the whole is kept."""
+    out[LOST] += loss
+    out[GAINED] += max(-loss, 0.0)
+
+
+@kernel
 def look_after_rim(body, y, tau, cut, ahead, s, out):
     """Pass a rolling rim through flat, or let it rest."""
     up = rotation(y)[2]
-    if math.hypot(up[0], up[1]) < FLAT_PASS and kind_of(s) == PIVOT:
+    if s.count == 1 and math.hypot(up[0], up[1]) < FLAT_PASS:
+        before = energy(body, y, s.field[6])
         pass_flat(body, y, s)
+        note_loss(before - energy(body, y, s.field[6]), out)
         return 1e-9
-    out[LOST] += small_rim(body, y, tau, cut, s)
+    before = energy(body, y, s.field[6])
+    small_rim(body, y, tau, cut, s)
+    note_loss(before - energy(body, y, s.field[6]), out)
     return ahead
 
 
-@njit(cache=True, nogil=True)
+@entry_kernel
 def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s):
     """Integrate one analysis.
 
@@ -522,7 +607,8 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     out
         Outcome, shape (OUTCOME,).
     s
-        A CASE for the analysis to work in; afterwards its counters are the numbers of contact events by kind.
+        A CASE for the analysis to work in; afterwards its counters are the numbers of contact events by
+        kind.
     """
     for i in range(OUTCOME):
         out[i] = 0.0
@@ -530,7 +616,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     started = energy(body, y, g)
     start = position_of_base(y, rotation(y), (0.0, 0.0, -body.height))
     before = heading(y)
-    s.count = s.rests = 0
+    s.count = s.rests = s.jammed = 0
     for i in range(COUNTERS):
         s.counters[i] = 0
     choose_mode(body, 0.0, y, s)
@@ -539,7 +625,7 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     out[FIRST_MOTION] = -1.0
     out[FALL_TIME] = out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
-    stuck = 0
+    stuck = lost_track = 0
     ahead = dt
     k = 0
     while k <= last + extra:
@@ -557,7 +643,9 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                     break
                 if out[FIRST_MOTION] < 0:
                     out[FIRST_MOTION] = k * dt + tau
+                standing = energy(body, y, g)
                 leave_rest(body, y, tau, s)
+                note_loss(standing - energy(body, y, g), out)
                 ahead = dt
                 if kind_of(s) == REST:
                     break
@@ -565,6 +653,14 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             tau, ahead, h = advance(body, tau, dt, ahead, y, allowed, cut, stuck, s, out)
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
+            if out[STEPS] > MOST_STEPS:
+                s.counters[UNSOLVED] += 1
+                break
+            if many % GIVE_UP == 0:
+                note_loss(give_up(body, tau, y, s), out)
+                lost_track += 1
+                if many > 2 * GIVE_UP:
+                    break
             if out[CONTACT_EVENTS] - seen >= MANY:
                 seen = out[CONTACT_EVENTS]
                 s.close = min(2.0 * s.close, 1e-3)
@@ -577,24 +673,40 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
             if up <= 0.0 or fall_is_certain(body, y, s, peaks[min(k, last)], scale, g):
                 note_fall(y, s, (k + 1) * dt, up <= 0.0, out)
                 break
-        if out[FELL] > 0:
+        if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
             break
         k += 1
-    record(history, k, y, out, s)
+    if out[FELL] == 0.0:
+        record(history, k, y, out, s)
     out[END_TIME] = k * dt
     out[ENERGY_BALANCE] = energy(body, y, g) - started - y[WORK] + y[FRICTION] + out[LOST]
 
 
-@njit(cache=True)
+@kernel
+def give_up(body, tau, y, s):
+    """End a wobble that cannot be followed any more; return the energy lost."""
+    before = energy(body, y, s.field[6])
+    s.counters[UNSOLVED] += 1
+    up = rotation(y)[2]
+    if body.rim > 0 and math.hypot(up[0], up[1]) < 1e-3:
+        y[9] = y[10] = y[11] = 0.0
+        lay_flat(body, y)
+    if not choose_mode(body, tau, y, s):
+        jam(body, y, s)
+    return before - energy(body, y, s.field[6])
+
+
+@kernel
 def force_step(body, tau, dt, y, s):
     """Take a short step whatever the margins say."""
     h = min(1e-6, dt - tau)
     rates(body, tau, y, s.slopes[0], s)
-    attempt(body, tau, h, y, s)
+    while attempt(body, tau, h, y, s) > COARSE * 1e-3 and h > SHORTEST:
+        h *= 0.25
     for i in range(SIZE):
         y[i] = s.new[i]
     normalise(y)
-    s.counters[2] += 1
+    s.counters[UNSOLVED] += 1
     return tau + h
 
 

@@ -2,8 +2,7 @@
 
 import math
 
-from numba import njit
-
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import (
     dot,
     plus,
@@ -30,6 +29,7 @@ from rockfrag.engines.spatial._forces import (
     HINGE,
     MOST,
     PIVOT,
+    SLIDER,
     SLIDES,
     SLIP_FLOOR,
     STICKS,
@@ -51,6 +51,9 @@ there are too many [m/s]."""
 AT_REST = SLIP_FLOOR
 """Velocity below which points that touch do not slip when the mode is chosen [m/s]."""
 
+SLOW_SLIP = 30 * AT_REST
+"""The same where no mode was found otherwise: of two points one may slip hardly and the other hardly not [m/s]."""
+
 LEAVES = 1e-8
 """Velocity above which points that touch leave when the mode is chosen [m/s]."""
 
@@ -60,15 +63,14 @@ COUNTERS = 8
 IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS, PASSES, CHANGES = range(COUNTERS)
 
 
-@njit(cache=True)
+@kernel
 def touching(body, y, rows, s):
     """Fill in s.which with the points that touch, at most MOST, the fastest to approach; return their number."""
     n = 0
     speed = s.vector
-    flat = body.rim > 0 and math.hypot(rows[2][0], rows[2][1]) < 1e-9
-    low = 0 if flat else first_candidate(body)
-    high = body.count if flat else last_candidate(body)
-    for i in range(low, high):
+    if body.rim > 0 and math.hypot(rows[2][0], rows[2][1]) < 1e-9:
+        return stand_on_feet(body, y, rows, s)
+    for i in range(first_candidate(body), last_candidate(body)):
         if gap(body, y, rows[2], i) > TOUCH:
             continue
         u = point_velocity(y, rows, arm(body, rows[2], i))[2]
@@ -85,7 +87,26 @@ def touching(body, y, rows, s):
     return n
 
 
-@njit(cache=True)
+@kernel
+def stand_on_feet(body, y, rows, s):
+    """Fill in s.which with four points of a flat rim, the first where the body would tip; return their number."""
+    p = (body.centre[0], body.centre[1], -body.height)
+    u = point_velocity(y, rows, p)
+    if math.hypot(u[0], u[1]) < AT_REST:
+        u = (s.field[0], s.field[1], 0.0)
+    front = to_body(rows, (u[0], u[1], 0.0))
+    each = body.count // MOST
+    first = round(math.atan2(front[1], front[0]) / (2 * math.pi) * body.count) % body.count
+    n = 0
+    for k in range(MOST):
+        i = (first + k * each) % body.count
+        if gap(body, y, rows[2], i) <= TOUCH:
+            s.which[n] = i
+            n += 1
+    return n
+
+
+@kernel
 def fill_edges(body, y, rows, which, n, s):
     """Fill in the directions between contacts in the plan."""
     for i in range(n):
@@ -97,7 +118,7 @@ def fill_edges(body, y, rows, which, n, s):
             s.edge[i, j, 1] = (q[1] - p[1]) / length
 
 
-@njit(cache=True)
+@kernel
 def prepare_impact(body, y, rows, n, s):
     """Set up the problem of an impact at the contacts s.which; points that slid keep kinetic friction."""
     fill_delassus(body, rows, s.which, n, s.delassus)
@@ -110,7 +131,7 @@ def prepare_impact(body, y, rows, n, s):
         s.friction[i] = body.kinetic if slid else body.static
 
 
-@njit(cache=True)
+@kernel
 def apply_impulses(body, y, rows, n, s):
     """Change the velocities by the impulses found."""
     for i in range(n):
@@ -120,7 +141,7 @@ def apply_impulses(body, y, rows, n, s):
         )  # fmt: skip
 
 
-@njit(cache=True)
+@kernel
 def hold(body, y, rows, s):
     """Take away what velocity is left against the conditions of a mode, by the least kinetic energy."""
     n = s.count
@@ -132,9 +153,9 @@ def hold(body, y, rows, s):
         push_at(body, y, rows, s.closed[i], (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2]))
 
 
-@njit(cache=True)
+@kernel
 def impact(body, y, least, s):
-    """Solve an impact of all points that touch, and hold those that hardly leave; return the set that pushed."""
+    """Solve an impact of all points that touch, and hold those that hardly leave."""
     rows = rotation(y)
     n = touching(body, y, rows, s)
     prepare_impact(body, y, rows, n, s)
@@ -142,16 +163,16 @@ def impact(body, y, least, s):
     found, ways = solve_cones(s, n, least)
     s.counters[IMPACTS] += 1
     s.counters[AMBIGUOUS] += ways > 1
+    s.jammed = 0
     if found < 0:
         s.counters[UNSOLVED] += 1
         stop_all(body, y, rows, n, s)
-        return 0
+        return
     apply_impulses(body, y, rows, n, s)
     keep_slow_contacts(body, y, rows, n, found, s)
-    return found
 
 
-@njit(cache=True)
+@kernel
 def keep_slow_contacts(body, y, rows, n, found, s):
     """Close, together with those that pushed, the contacts that leave more slowly than CLOSE."""
     count = 0
@@ -169,7 +190,7 @@ def keep_slow_contacts(body, y, rows, n, found, s):
         hold(body, y, rows, s)
 
 
-@njit(cache=True)
+@kernel
 def stop_all(body, y, rows, n, s):
     """Last resort where no impact was found: no point that touches approaches or slips any more."""
     for i in range(n):
@@ -178,14 +199,14 @@ def stop_all(body, y, rows, n, s):
     hold(body, y, rows, s)
 
 
-@njit(cache=True)
+@kernel
 def still(body, y):
     """Whether nothing moves."""
     spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
     return math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
 
 
-@njit(cache=True)
+@kernel
 def rest_margin(body, y, rows, pull):
     """Least margin by which the ground carries the body at rest: over its base's edges, and of friction.
 
@@ -194,11 +215,7 @@ def rest_margin(body, y, rows, pull):
     level = math.hypot(pull[0], pull[1])
     margin = -body.static * pull[2] - level
     if body.rim > 0:
-        centre = to_world(rows, (body.centre[0], body.centre[1], 0.0))
-        q = math.hypot(
-            body.height * pull[0] + pull[2] * centre[0], body.height * pull[1] + pull[2] * centre[1]
-        )
-        return min(margin, (-body.rim * pull[2] - q) / body.height)
+        return min(margin, topple_margin(body, rows, pull))
     last = -1
     first = -1
     for i in range(body.count):
@@ -214,14 +231,53 @@ def rest_margin(body, y, rows, pull):
     return min(margin, edge_margin(body, y, rows, pull, last, first))
 
 
-@njit(cache=True)
+@kernel
+def topple_margin(body, rows, pull):
+    """Margin by which the ground carries a round body that is flat, whatever it slides."""
+    centre = to_world(rows, (body.centre[0], body.centre[1], 0.0))
+    x = body.height * pull[0] + pull[2] * centre[0]
+    y = body.height * pull[1] + pull[2] * centre[1]
+    return (-body.rim * pull[2] - math.hypot(x, y)) / body.height
+
+
+@kernel
+def carried_flat(body, y, rows, pull):
+    """Whether a round body that is flat, and slides or is about to, stays on its face."""
+    if body.rim == 0.0 or math.hypot(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
+        return False
+    if math.hypot(y[10], y[11]) > LEAVES / body.rim:
+        return False
+    off = math.hypot(body.centre[0], body.centre[1])
+    if body.kinetic * body.height + off < body.rim:
+        return True
+    return math.hypot(y[7], y[8]) < AT_REST and topple_margin(body, rows, pull) >= 0
+
+
+@kernel
+def slide_flat(body, y, rows, pull, s):
+    """Let a round body slide on four points of its face, those that do not slip yet the way it is pulled."""
+    level = max(math.hypot(pull[0], pull[1]), 1e-300)
+    n = touching(body, y, rows, s)
+    for i in range(n):
+        u = point_velocity(y, rows, arm(body, rows[2], s.which[i]))
+        speed = math.hypot(u[0], u[1])
+        s.closed[i], s.slides[i] = s.which[i], SLIDES
+        if speed > AT_REST:
+            s.direction[i, 0], s.direction[i, 1] = u[0] / speed, u[1] / speed
+        else:
+            s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
+    s.count, s.rests, s.jammed = n, 0, 0
+    s.counters[SLIDINGS] += 1
+
+
+@kernel
 def edge_margin(body, y, rows, pull, i, j):
     """Margin of rest against tipping over the edge from point i to the next point j that touches."""
     normal, reach = edge_normal(body, y, rows, i, j)
     return -(y[2] * (normal[0] * pull[0] + normal[1] * pull[1]) + reach * pull[2]) / y[2]
 
 
-@njit(cache=True)
+@kernel
 def edge_normal(body, y, rows, i, j):
     """Outward normal of an edge in the plan, and its distance from the centre of mass."""
     p = position_of_base(y, rows, arm(body, rows[2], i))
@@ -231,7 +287,7 @@ def edge_normal(body, y, rows, i, j):
     return normal, normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
 
 
-@njit(cache=True)
+@kernel
 def count_touching(body, y, rows):
     """Number of points of the base that touch, as if a round base had its four feet."""
     n = 0
@@ -240,7 +296,7 @@ def count_touching(body, y, rows):
     return n
 
 
-@njit(cache=True)
+@kernel
 def come_to_rest(body, y, s):
     """Make the body rest where it is."""
     s.count, s.rests = 0, 1
@@ -249,7 +305,7 @@ def come_to_rest(body, y, s):
     lay_flat(body, y)
 
 
-@njit(cache=True)
+@kernel
 def lay_flat(body, y):
     """Turn the base into the ground's plane by the least rotation, and set it down."""
     for _ in range(3):
@@ -258,7 +314,7 @@ def lay_flat(body, y):
     y[2] = body.height
 
 
-@njit(cache=True)
+@kernel
 def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
     rows = rotation(y)
@@ -271,24 +327,36 @@ def choose_mode(body, tau, y, s):
     if lies and rest_margin(body, y, rows, pull) >= 0:
         come_to_rest(body, y, s)
         return True
-    n = pick_closed(body, y, rows, s)
-    fill_delassus(body, rows, s.which, n, s.delassus)
-    fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
-    fill_edges(body, y, rows, s.which, n, s)
-    found, ways = solve_cones(s, n, 0)
+    if carried_flat(body, y, rows, pull):
+        slip = math.hypot(y[7], y[8]) + body.rim * abs(y[12])
+        if slip < 2 * AT_REST and rest_margin(body, y, rows, pull) >= 0:
+            come_to_rest(body, y, s)
+        else:
+            slide_flat(body, y, rows, pull, s)
+        return True
+    found, ways, n = -1, 0, 0
+    for slow in (AT_REST, SLOW_SLIP):
+        if found < 0:
+            n = pick_closed(body, y, rows, slow, s)
+            fill_delassus(body, rows, s.which, n, s.delassus)
+            fill_accelerations(body, y, rows, to_body(rows, pull), s.which, n, s.free)
+            fill_edges(body, y, rows, s.which, n, s)
+            found, ways = solve_cones(s, n, 0)
     s.counters[CHANGES] += 1
     s.counters[AMBIGUOUS] += ways > 1
     if found < 0:
         return False
+    s.jammed = 0
     was_flying = s.count == 0
     write_mode(body, y, rows, n, found, s)
+    hold(body, y, rows, s)
     if s.count == 0 and not was_flying:
         s.counters[FLIGHTS] += 1
     return True
 
 
-@njit(cache=True)
-def pick_closed(body, y, rows, s):
+@kernel
+def pick_closed(body, y, rows, slow, s):
     """Fill s.which with points that touch and do not leave, and how each slips; return how many there are."""
     n = touching(body, y, rows, s)
     kept = 0
@@ -298,7 +366,7 @@ def pick_closed(body, y, rows, s):
             continue
         s.which[kept] = s.which[i]
         speed = math.hypot(u[0], u[1])
-        s.given[kept] = speed > AT_REST
+        s.given[kept] = speed > slow
         if s.given[kept]:
             s.way[kept, 0], s.way[kept, 1] = u[0] / speed, u[1] / speed
         s.friction[kept] = body.kinetic if s.given[kept] else body.static
@@ -306,7 +374,7 @@ def pick_closed(body, y, rows, s):
     return kept
 
 
-@njit(cache=True)
+@kernel
 def write_mode(body, y, rows, n, found, s):
     """Read the mode off a solution: closed or open, sticks or slides and where to."""
     count = 0
@@ -334,7 +402,7 @@ def write_mode(body, y, rows, n, found, s):
     s.count = count
 
 
-@njit(cache=True)
+@kernel
 def insist(body, what, y, s):
     """Change one contact where the problem of contacts gives the same mode again and again at one instant.
 
@@ -359,7 +427,20 @@ def insist(body, what, y, s):
             s.direction[worst, k] = -s.lam[worst, k] / shear
 
 
-@njit(cache=True)
+@kernel
+def jam(body, y, s):
+    """Let all that is closed stick, without a look at the cones, until one opens or another one lands.
+
+    No finite forces obey Coulomb's law here (Painlevé's paradox); what sticks does no work.
+    """
+    for i in range(s.count):
+        s.slides[i] = STICKS
+    s.jammed = 1
+    anchor_all(body, y, s)
+    hold(body, y, rotation(y), s)
+
+
+@kernel
 def anchor_all(body, y, s):
     """Note where the closed points are in the plan."""
     rows = rotation(y)
@@ -368,7 +449,7 @@ def anchor_all(body, y, s):
         s.anchor[k, 0], s.anchor[k, 1] = p[0], p[1]
 
 
-@njit(cache=True)
+@kernel
 def settle(body, y, s):
     """Put a state back on the conditions of its mode, from which steps drift by their error."""
     rows = rotation(y)
@@ -392,12 +473,12 @@ def settle(body, y, s):
             p[0] * omega[1] - p[1] * omega[0],
         ))  # fmt: skip
         y[7], y[8], y[9] = pulled
-    elif kind == GENERAL:
+    elif kind in (GENERAL, SLIDER):
         close_gaps(body, y, rows, s)
         hold(body, y, rotation(y), s)
 
 
-@njit(cache=True)
+@kernel
 def close_gaps(body, y, rows, s):
     """Move the body by what its closed points are off the ground."""
     n = s.count
@@ -417,7 +498,7 @@ def close_gaps(body, y, rows, s):
     lift_at(body, y, rows, s.closed[1], -(a * second - b * first) / whole)
 
 
-@njit(cache=True)
+@kernel
 def lift_at(body, y, rows, i, size):
     """Displace the body as a small vertical impulse at point i would."""
     p = arm(body, rows[2], i)
@@ -432,7 +513,32 @@ def lift_at(body, y, rows, i, size):
 
 
 __all__ = [
-    "AMBIGUOUS", "AT_REST", "CHANGES", "CLOSE", "COUNTERS", "FLIGHTS", "IMPACTS", "JAMS", "PASSES", "SLIDINGS",
-    "SLIP_FLOOR", "TOUCH", "UNSOLVED", "anchor_all", "choose_mode", "come_to_rest", "count_touching",
-    "edge_margin", "edge_normal", "impact", "plus", "rest_margin", "settle", "still",
+    "AMBIGUOUS",
+    "AT_REST",
+    "CHANGES",
+    "CLOSE",
+    "COUNTERS",
+    "FLIGHTS",
+    "IMPACTS",
+    "JAMS",
+    "PASSES",
+    "SLIDINGS",
+    "SLIP_FLOOR",
+    "TOUCH",
+    "UNSOLVED",
+    "anchor_all",
+    "carried_flat",
+    "choose_mode",
+    "come_to_rest",
+    "count_touching",
+    "edge_margin",
+    "edge_normal",
+    "impact",
+    "jam",
+    "plus",
+    "rest_margin",
+    "settle",
+    "still",
+    "topple_margin",
+    "touching",
 ]  # fmt: skip

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import normalise, rotation
 from rockfrag.engines.spatial._body import (
     SIZE,
@@ -41,11 +41,17 @@ ERROR = np.array(
     [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40],
 )
 
+BACKWARD = 1e-8
+"""Slip against its own direction that is rounding [m/s]."""
+
+NEAR_FLAT = 1e-6
+"""Tilt below which a rim that rolls goes on to roll [rad]."""
+
 LEAST_FORCE = 1e-9
 """Force a contact may pull, or shear beyond its cone, before that is seen, over the weight [-]."""
 
 
-@njit(cache=True)
+@kernel
 def attempt(body, tau, h, y, s):
     """Take a step from y to s.new; s.slopes[0] holds the rates at its beginning.  Return the error's estimate.
 
@@ -62,22 +68,33 @@ def attempt(body, tau, h, y, s):
             normalise(new)
         rates(body, tau + NODES[stage] * h, new, slopes[stage], s)
     worst = 0.0
+    weight = attitude_weight(body, y)
     for i in range(13):
         total = 0.0
         for stage in range(STAGES):
             total += ERROR[stage] * slopes[stage, i]
-        worst = max(worst, abs(h * total) / (1.0 + abs(y[i])))
+        scale = weight if 3 <= i < 7 else 1.0 + abs(y[i])
+        worst = max(worst, abs(h * total) / scale)
     return worst
 
 
-@njit(cache=True)
+@kernel
+def attitude_weight(body, y):
+    """Return what errors of the attitude count over: they turn the contact of a rim by one over the tilt."""
+    if body.rim == 0.0:
+        return 1.0
+    up = rotation(y)[2]
+    return min(1.0, 1e3 * math.hypot(up[0], up[1]) + 1e-4)
+
+
+@kernel
 def slip_along(body, y, rows, i, s):
     """Slip velocity of closed point i along a direction of the plan."""
     u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
     return u[0] * s.slip[i, 0] + u[1] * s.slip[i, 1]
 
 
-@njit(cache=True)
+@kernel
 def is_closed(s, i):
     """Whether point i is closed in a mode."""
     found = False
@@ -86,7 +103,7 @@ def is_closed(s, i):
     return found
 
 
-@njit(cache=True)
+@kernel
 def begin_slips(body, y, s):
     """Note each sliding point's direction, and whether it is fast enough for its slip to end."""
     rows = rotation(y)
@@ -102,13 +119,43 @@ def begin_slips(body, y, s):
                 s.armed[i] = 1
 
 
-@njit(cache=True)
+@kernel
 def sinks(body, y, rows, i):
     """Whether an open point moves down, and not by rounding alone."""
     return point_velocity(y, rows, arm(body, rows[2], i))[2] < -1e-10
 
 
-@njit(cache=True)
+@kernel
+def pressure_centre(body, s):
+    """Where the normal forces of closed points act, from the centre of a round base, in the body."""
+    x, y, whole = 0.0, 0.0, 1e-300
+    for i in range(s.count):
+        x += s.lam[i, 2] * (body.points[s.closed[i], 0] - body.centre[0])
+        y += s.lam[i, 2] * (body.points[s.closed[i], 1] - body.centre[1])
+        whole += s.lam[i, 2]
+    return x / whole, y / whole
+
+
+@kernel
+def pressure_margin(body, s):
+    """Distance of the centre of pressure from the edge of a round face; a negative one means that it tips [m]."""
+    x, y = pressure_centre(body, s)
+    return body.rim - math.hypot(x, y) + 1e-12
+
+
+@kernel
+def face_slip(body, y, rows, s):
+    """By how much the fastest point of a face slips; one that has not begun to may not slip backwards [m/s]."""
+    fastest, forwards, armed = 0.0, -1.0, 0
+    for i in range(s.count):
+        u = point_velocity(y, rows, arm(body, rows[2], s.closed[i]))
+        fastest = max(fastest, math.hypot(u[0], u[1]))
+        forwards = max(forwards, slip_along(body, y, rows, i, s))
+        armed = max(armed, s.armed[i])
+    return fastest - AT_REST if armed else forwards + BACKWARD
+
+
+@kernel
 def margin(body, y, s):
     """Return the least of all that must not be negative, and what it belongs to."""
     rows = rotation(y)
@@ -121,22 +168,30 @@ def margin(body, y, s):
             if value < least:
                 least, what = value, LANDS
     small = LEAST_FORCE * s.field[6]
-    for i in range(s.count):
+    # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
+    passes = body.rim > 0 and math.hypot(rows[2][0], rows[2][1]) < NEAR_FLAT
+    on_face = body.rim > 0 and s.count >= 3
+    if on_face:
+        least, what = pressure_margin(body, s), OPENS
+        value = face_slip(body, y, rows, s)
+        if value < least:
+            least, what = value, SLIP_ENDS
+    for i in range(0 if on_face else s.count):
         value = s.lam[i, 2] + small
         if value < least:
             least, what = value, OPENS
         if s.slides[i] == SLIDES:
-            value = slip_along(body, y, rows, i, s) + (-AT_REST if s.armed[i] else AT_REST)
+            value = slip_along(body, y, rows, i, s) + (-AT_REST if s.armed[i] else BACKWARD)
             if value < least:
                 least, what = value, SLIP_ENDS
-        else:
+        elif not (s.jammed or passes):
             value = body.static * s.lam[i, 2] - math.hypot(s.lam[i, 0], s.lam[i, 1]) + small
             if value < least:
                 least, what = value, LEAVES_CONE
     return least, what
 
 
-@njit(cache=True)
+@kernel
 def dips(body, y, h, s):
     """Whether a point that is open at both ends of a step may have touched inside it."""
     new = s.new

@@ -16,6 +16,9 @@ Array = NDArray[np.float64]
 NEVER_SLIDES = 20.0
 """Coefficient of friction of a contact without any: a body in space that only sticks is no closed model [-]."""
 
+FEET = 32
+"""Points of a rim of which four carry a round body that slides flat."""
+
 
 def kernel_body(system: System, g: float = GRAVITY) -> np.void:
     """Return the one body of a system as the kernels know it.
@@ -110,14 +113,15 @@ def round_body(
     InputError
         If the centre of mass is not above the base.
     """
-    turns = math.pi / 4 + np.arange(4) * math.pi / 2
+    turns = np.arange(FEET) * 2 * math.pi / FEET
     feet = np.asarray(centre) + radius * np.column_stack([np.cos(turns), np.sin(turns)])
-    points = np.column_stack([feet, np.full(4, -height)])
+    points = np.column_stack([feet, np.full(FEET, -height)])
     off = float(np.hypot(*centre))
     body = _filled(points, inertia, height, friction, g, (radius - off, radius + off))
     across = (inertia[0, 0] + inertia[1, 1]) / 2
     body["rim"], body["centre"] = radius, centre
     body["pass_turn"] = math.pi * math.sqrt(1 + radius**2 / (across + height**2))
+    body["slide_turn"] = math.pi * math.sqrt(1 + radius**2 / across)
     return body
 
 

@@ -35,6 +35,16 @@ class SpatialResponse:
     outcome: SpatialOutcome
     history: pd.DataFrame
 
+    @property
+    def overturned(self) -> bool:
+        """Whether the body fell."""
+        return self.outcome.overturned
+
+    @property
+    def lost_contact(self) -> float:
+        """NaN: a body in space leaves the ground where it has to, so no contact is held shut."""
+        return math.nan
+
 
 class SpatialEngine:
     """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``).

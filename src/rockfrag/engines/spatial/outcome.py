@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._forces import CASE
@@ -19,7 +20,7 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-9
 """Largest error of a step, in position [m], attitude [-] and velocities [m/s, rad/s]."""
 
-CUT_OFF = 1e-7
+CUT_OFF = 1e-6
 """Energy over rest, as a part of what an overturning takes, below which a body comes to rest [-]."""
 
 AFTER = 30.0
@@ -63,6 +64,9 @@ class SpatialOutcome:
         Energy lost in impacts, and by friction [J/kg].
     residual
         What the balance of energy does not close by [J/kg].
+    gained
+        Energy that contact events added, which they must not: rounding, and the tilt with which a rim leaves rest
+        [J/kg].
     """
 
     overturned: bool
@@ -82,6 +86,7 @@ class SpatialOutcome:
     paradoxes: int
     dissipated: tuple[float, float]
     residual: float
+    gained: float
 
 
 def run_case(
@@ -127,15 +132,29 @@ def run_case(
     -------
     The outcome, and the history, shape (m, COLUMNS), m ≤ samples.
     """
+    acceleration = np.ascontiguousarray(acceleration)
     y = standing(body, turned) if start is None else start.copy()
     history = np.full((samples, kernel.COLUMNS), math.nan)
     out = np.zeros(kernel.OUTCOME)
     case: Any = np.zeros(1, CASE)[0]
     later = later_peaks(acceleration) if peaks is None else peaks
     extra = math.ceil(AFTER / dt)
-    kernel.integrate(
-        body, acceleration, later, scale, dt, g, extra, tolerance, cut_off, y, history, out, case
-    )
+    with compiling_alone(kernel.integrate):
+        kernel.integrate(
+            body,
+            acceleration,
+            later,
+            scale,
+            dt,
+            g,
+            extra,
+            tolerance,
+            cut_off,
+            y,
+            history,
+            out,
+            case,
+        )
     kept = ~np.isnan(history[:, 0])
     return _outcome(body, out, case["counters"], y), history[kept]
 
@@ -160,6 +179,7 @@ def _outcome(body: np.void, out: Array, counters: NDArray[np.int64], y: Array) -
         paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
         dissipated=(float(out[kernel.LOST]), float(y[14])),
         residual=float(out[kernel.ENERGY_BALANCE]),
+        gained=float(out[kernel.GAINED]),
     )
 
 

@@ -10,7 +10,7 @@ from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 from rockfrag_thesis.hypotheses_html import hypotheses_html, outcomes_by_kind
 
 _CONTRADICTIONS = (
-    Column("hypotheses", "Statements"),
+    Column("hypotheses", "Hypotheses"),
     Column("what", "What"),
     Column("why", "Why"),
     Column("in_these_tests", "In these tests"),
@@ -19,7 +19,7 @@ _CONTRADICTIONS = (
 
 _KINDS = (
     Column("kind", "Kind of hypothesis"),
-    Column("hypotheses", "Statements"),
+    Column("hypotheses", "Hypotheses"),
     Column("outcomes", "Found"),
 )
 

@@ -189,7 +189,7 @@ def integrate_blocks(ensemble, motions, worker, outcomes):
 
     Parameters
     ----------
-    ensemble : Ensemble, whose ``bodies`` are POLEs, right and left, and whose ``factors`` are over g
+    ensemble : Ensemble, whose ``bodies`` are PIVOTs, right and left, and whose ``factors`` are over g
     motions : Motions
     worker : Worker, one for each thread; what two threads wrote side by side would cost them time
     outcomes : (cases,) of OUTCOME
