@@ -172,10 +172,12 @@ def fit_stripes(
 
     Parameters
     ----------
-    table, im, overturned, motion, earthquake, level
+    table, im, overturned
         As of :func:`fit_cloud`.
     trials
         Column with the number of tests in a row; None where a row is one test.
+    motion, earthquake, level
+        As of :func:`fit_cloud`.
 
     Returns
     -------
