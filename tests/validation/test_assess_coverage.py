@@ -1,0 +1,183 @@
+"""How often the interval of ``assess`` holds the truth, in synthetic worlds of boxes and of scans.
+
+In each world earthquakes, the body's edges, contact, direction, restitution, the floor's period and the errors of
+the model are drawn from the distributions that :mod:`rockfrag.assess` states; it is told what a user would know.
+What is sought is the PGV at which half of all earthquakes topple the object, and the fraction at a PGV. Printed by
+``python -m tests.validation.test_assess_coverage 300``.
+"""
+
+import sys
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.hazard.measure import PGV
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.objects import ON_POINTS, Objects, higher, wider
+from rockfrag.assess.outcomes import make_intensity_levels, outcomes_of_all
+from rockfrag.assess.place import Place
+from rockfrag.assess.request import make_request
+from rockfrag.assess.risk import amplitude_target, fraction_target
+from rockfrag.assess.scan import make_scan
+from rockfrag.assess.sources import SPACE
+from rockfrag.campaign.standing import Unknown, unknowns_of, ways_to_stand
+from rockfrag.campaign.trials import block_of
+from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
+from rockfrag.motions import bandpass, scale_to_pga
+from rockfrag.records.motion import Motion
+from rockfrag.system.mesh import Shape
+
+EARTHQUAKES, OF_A_SET, COMPONENTS, COUNT = 240, 14, 2, 600
+QUICK = 60
+SETTINGS = {"width": "0.3 m", "height": "1.2 m", "cg_height": "0.6 m", "mass": "200 kg"}
+IN_A_BUILDING = {"floor": "2/3"}
+
+
+def _motions(random: np.random.Generator) -> list[Motion]:
+    """Synthetic earthquakes: noise in a band about a frequency of its own, two components each."""
+    found = []
+    for number in range(EARTHQUAKES):
+        middle = np.exp(random.normal(np.log(1.2), 0.5))
+        about = {"earthquake": f"synthetic {number}", "station": "s"}
+        for component in range(COMPONENTS):
+            raw = random.standard_normal(COUNT) * np.hanning(COUNT)
+            name = f"synthetic {number} {component}"
+            motion = Motion(raw, 0.01, name, metadata=about)
+            found.append(scale_to_pga(bandpass(motion, 0.4 * middle, 2 * middle), 0.35))
+    return found
+
+
+@cache
+def _pool(seed: int = 1) -> list[Motion]:
+    return _motions(np.random.default_rng(seed))
+
+
+def _set(numbers: np.ndarray) -> MotionSet:
+    chosen = tuple(_pool()[COMPONENTS * i + k] for i in numbers for k in range(COMPONENTS))
+    pairs = tuple((i, i + 1) for i in range(0, len(chosen), COMPONENTS))
+    return MotionSet(chosen, chosen, pairs, "synthetic motions")
+
+
+def _scanned(random: np.random.Generator) -> Shape:
+    """A synthetic scan of a column: a foot whose points lie at heights of their own, and a top."""
+    angle, radius = random.uniform(0, 2 * np.pi, 80), 0.18 * np.sqrt(random.uniform(0.2, 1, 80))
+    foot = np.column_stack(
+        [radius * np.cos(angle), radius * np.sin(angle), 0.003 * random.uniform(0, 1, 80) ** 2]
+    )
+    foot[:, 2] -= foot[:, 2].min()
+    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    top = np.column_stack([0.15 * np.cos(around), 0.15 * np.sin(around), np.full(12, 1.2)])
+    points = np.vstack([foot, top]) - [0, 0, 0.6]
+    return Shape(points, 200.0, np.diag([26.0, 26.0, 3.0]), 0.09, "synthetic scan")
+
+
+def _told_of(shape: Shape, objects: Objects) -> Objects:
+    """The object as assess takes it from a scan of which nothing else is known."""
+    scan, _ = make_scan(shape, {}, None)
+    tolerances = {**objects.tolerances, "restitution": ON_POINTS["restitution"]}
+    return replace(
+        objects,
+        statue=scan.block(),
+        scan=scan,
+        livelier=ON_POINTS["livelier"],
+        tolerances=tolerances,
+    )
+
+
+def _stretched(unknown: Unknown, factor: float) -> Unknown:
+    """The same unknown with quantiles that lie further from the middle, in logarithm."""
+    middle = unknown.quantile(0.5)
+    return replace(unknown, quantile=lambda u: middle * (unknown.quantile(u) / middle) ** factor)
+
+
+def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Objects:
+    unknowns = unknowns_of(SCAN)
+    name = "contact_tolerance_mm"
+    unknowns[name] = _stretched(unknowns[name], outside)
+    table = ways_to_stand(shape, unknowns, 64, seed).table
+    way = dict(table.iloc[0])
+    return replace(told, statue=block_of(shape, way), livelier=way["restitution_ratio"])
+
+
+def _true_place(place: Place, random: np.random.Generator) -> Place:
+    """The place with period and damping of its building drawn; stiffness goes with the square of frequency."""
+    if place.building is None:
+        return place
+    slower, damped = (
+        max(0.2, 1 + place.tolerances[name] * random.standard_normal())
+        for name in ("period", "damping")
+    )
+    building = replace(
+        place.building,
+        stiffnesses=tuple(k / slower**2 for k in place.building.stiffnesses),
+        damping=replace(place.building.damping, ratio=place.building.damping.ratio * damped),
+    )
+    return replace(place, building=building)
+
+
+def world(seed: int, kind: str, outside: float = 1.0) -> tuple[bool, ...]:
+    """Whether the intervals of the median and of the fraction at a level hold the truth in one world.
+
+    Parameters
+    ----------
+    seed
+        Of everything that is drawn.
+    kind
+        ``scan`` or ``cut block``.
+    outside
+        Factor by which one spread is larger in the world than is assumed: that of the contact tolerance of a scan,
+        of the model's error of a cut block.
+    """
+    random = np.random.default_rng([seed, kind == SCAN])
+    in_building = IN_A_BUILDING if seed % 2 else {}
+    level = {"pgv": f"{random.uniform(20, 60):.1f} cm/s"}
+    request = make_request({**SETTINGS, **in_building, **level}, "synthetic")
+    told = request.objects
+    if kind == SCAN:
+        shape = _scanned(random)
+        told = _told_of(shape, told)
+        truth = _true_scan(shape, told, seed, outside)
+    else:
+        truth = replace(
+            told, livelier=1 + told.tolerances["restitution"] * random.standard_normal()
+        )
+    z = random.standard_normal(2)
+    statue = wider(truth.statue, 1 + told.tolerances["width"] * z[0])
+    truth = replace(truth, statue=higher(statue, 1 + told.tolerances["cg_height"] * z[1]))
+    place = _true_place(request.place, random)
+    everything = _set(np.arange(EARTHQUAKES)).at(place)
+    (outcomes,) = outcomes_of_all([truth], everything, make_intensity_levels(everything, PGV))
+    spread = MODEL_ERRORS[kind].beyond * (outside if kind == CUT else 1.0)
+    error = random.normal(0, spread) + random.normal(0, SPACE)
+    seen = _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
+    found = assess_with(replace(request, objects=told), seen, brief=True)
+    truths = (
+        (found.amplitudes[0.5], amplitude_target(0.5).value(outcomes) * np.exp(error)),
+        (found.fraction, fraction_target(request.level.value / np.exp(error)).value(outcomes)),
+    )
+    return tuple(bool(one.lower <= truth <= one.upper) for one, truth in truths)
+
+
+def held(kind: str, worlds: int, outside: float = 1.0) -> np.ndarray:
+    """Fraction of worlds in which the intervals of median and fraction hold the truth."""
+    return np.mean([world(seed, kind, outside) for seed in range(worlds)], axis=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [CUT, SCAN])
+def test_the_intervals_hold_the_truth_about_as_often_as_they_say(kind):
+    """Of 60 worlds at 90 %: four standard errors are 15 points; what is above only says that it is careful."""
+    assert (held(kind, QUICK) > 0.75).all()
+
+
+if __name__ == "__main__":
+    for of_kind in (CUT, SCAN):
+        for by in (1.0, 1.5):
+            median, fraction = held(of_kind, int(sys.argv[1]), by)
+            print(
+                f"{of_kind}, one spread times {by:g}: median {median:.3f}, fraction {fraction:.3f}",
+                flush=True,
+            )
