@@ -43,14 +43,14 @@ rockfragKernel(new Uint8Array(fs.readFileSync(wasm))).then((kernel) => {
     const outcome = kernel.integrate({ body, samples, ...rest, ...more, history: false });
     for (const name of HISTORY) found.push(Float64Array.from(r[name]));
     for (const number of [(e) => e.time, (e) => e.energy_after, (e) => e.before.omega2]) {
-      found.push(Float64Array.from(r.events, number));
+      found.push(Float64Array.from(r.contact_events, number));
     }
     const numbers = ["done", "fallen", "fallTime", "impacts", "grazings", "unstable_distance", "peak1", "peak2"];
     return {
       ...Object.fromEntries(numbers.map((name) => [name, r[name]])),
       record: Buffer.from(body.record).toString("hex"),
       shaking: kernel.shakingOf(body, rest.dt),
-      kinds: r.events.map((e) => e.kind),
+      kinds: r.contact_events.map((e) => e.kind),
       alike: numbers.every((name) => Object.is(r[name], outcome[name])),
     };
   });

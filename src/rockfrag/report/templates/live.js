@@ -45,7 +45,7 @@ function update() {
     response = integrate(chosen.amplitude, true);
   } catch (error) {
     response = null;
-    find("verdicts").textContent = error.message;
+    find("outcomes").textContent = error.message;
     return;
   }
   peaks = response.contact_events.filter((one) => one.kind === "impact").map((one) => one.time);
@@ -109,9 +109,9 @@ function contacts(c1, c2) {
 }
 const shown = (value, digits) => value.toFixed(digits).replace("-", "−");
 
-function verdictOfTable() {
+function outcomeOfTable() {
   if (changed()) return null;
-  const row = data.verdicts[chosen.body][chosen.motion];
+  const row = data.outcomes[chosen.body][chosen.motion];
   const place = data.amplitudes.indexOf(chosen.amplitude);
   if (place >= 0) return row[place] === "1";
   return null;
@@ -120,7 +120,7 @@ const words = (fell) => `<strong class="${fell ? "falls" : "stands"}">${fell ? "
 
 function tell() {
   const fell = response.fallen > 0;
-  const table = verdictOfTable();
+  const table = outcomeOfTable();
   let text = `Live: ${words(fell)}`;
   if (fell) text += ` at ${shown(response.fallTime, 2)} s`;
   text += `, ${peaks.length} impacts. `;
@@ -128,7 +128,7 @@ function tell() {
     ? `The table of ${data.source}: ${words(table)}. Equal.`
     : `The table of ${data.source}: ${words(table)}. Not equal: within rounding of the edge between both.`;
   else text += `${changed() ? "Changed: not" : "This amplitude is not"} in the table of ${data.source}.`;
-  find("verdicts").innerHTML = text; // of numbers and fixed words alone
+  find("outcomes").innerHTML = text; // of numbers and fixed words alone
   find("peak").textContent = `${shown(chosen.amplitude, 3)} g` + (chosen.amplitude === motion().pga_g ? ", as recorded" : "");
 }
 
@@ -319,15 +319,15 @@ const logarithm = (g) => Math.log(g / data.amplitudes[0]) / Math.log(data.amplit
 function drawBar() {
   const [context, width, height] = sized(find("bar"));
   const x = (g) => 4 + logarithm(g) * (width - 8);
-  const row = data.verdicts[chosen.body][chosen.motion];
+  const row = data.outcomes[chosen.body][chosen.motion];
   const lines = [[data.amplitudes, row, changed() ? "table" : ""]];
-  if (changed() && bar) lines.push([bar.amplitudes, bar.verdicts, "changed"]);
+  if (changed() && bar) lines.push([bar.amplitudes, bar.outcomes, "changed"]);
   const each = (height - 16) / lines.length;
-  lines.forEach(([amplitudes, verdicts, title], number) => {
+  lines.forEach(([amplitudes, outcomes, title], number) => {
     const edge = (k) => (k > 0 && k < amplitudes.length ? Math.sqrt(amplitudes[k - 1] * amplitudes[k]) : amplitudes.at(k && -1));
-    for (let k = 0, from = 0; k < verdicts.length; k++) {
-      if (verdicts[k + 1] === verdicts[k]) continue;
-      context.fillStyle = verdicts[k] === "1" ? colours.red : colours.band;
+    for (let k = 0, from = 0; k < outcomes.length; k++) {
+      if (outcomes[k + 1] === outcomes[k]) continue;
+      context.fillStyle = outcomes[k] === "1" ? colours.red : colours.band;
       context.fillRect(x(edge(from)), number * each, Math.max(x(edge(k + 1)) - x(edge(from)), 1), each - 2);
       from = k + 1;
     }
@@ -349,22 +349,22 @@ function drawBar() {
     ? `${fell} of ${row.length} amplitudes of the table overturn, the least ${shown(data.amplitudes[row.indexOf("1")], 3)} g.`
     : `None of ${row.length} amplitudes of the table overturns.`);
 }
-// verdicts of changed dimensions over the amplitudes, a few in each idle moment
+// outcomes of changed dimensions over the amplitudes, a few in each idle moment
 let computing = 0;
 function computeBar() {
   const number = ++computing;
   bar = null;
   if (!changed() || !response) return;
   const low = data.amplitudes[0], ratio = data.amplitudes.at(-1) / low;
-  const next = { amplitudes: Array.from({ length: CHEAP }, (_, k) => low * ratio ** (k / (CHEAP - 1))), verdicts: "" };
+  const next = { amplitudes: Array.from({ length: CHEAP }, (_, k) => low * ratio ** (k / (CHEAP - 1))), outcomes: "" };
   const go = () => {
     if (number !== computing) return;
     const until = performance.now() + 8;
-    while (next.verdicts.length < CHEAP && performance.now() < until)
-      next.verdicts += integrate(next.amplitudes[next.verdicts.length], false).fallen > 0 ? "1" : "0";
+    while (next.outcomes.length < CHEAP && performance.now() < until)
+      next.outcomes += integrate(next.amplitudes[next.outcomes.length], false).fallen > 0 ? "1" : "0";
     bar = next;
     drawBar();
-    if (next.verdicts.length < CHEAP) setTimeout(go, 0);
+    if (next.outcomes.length < CHEAP) setTimeout(go, 0);
   };
   go();
 }
@@ -462,11 +462,11 @@ function move(to) {
   drawTime();
 }
 function nextEvent() {
-  const next = response?.events.find((one) => one.time > time + 1e-6);
+  const next = response?.contact_events.find((one) => one.time > time + 1e-6);
   if (next) move(next.time);
 }
 function edge(first) {
-  const row = data.verdicts[chosen.body][chosen.motion];
+  const row = data.outcomes[chosen.body][chosen.motion];
   const place = row.indexOf("1");
   const at = place < 0 ? row.length - 1 : first ? place : Math.max(0, place - 1);
   setPeak(data.amplitudes[at]);

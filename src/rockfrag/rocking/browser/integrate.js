@@ -178,7 +178,7 @@ async function rockfragKernel(bytes) {
       fallTime: summary.fall_time,
       ...summary,
       ...(history ? columns(historyAt, done) : {}),
-      events: history ? listed(eventsAt, summary.contact_events) : [],
+      contact_events: history ? listed(eventsAt, summary.contact_events) : [],
     };
   }
 
