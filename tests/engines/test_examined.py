@@ -6,7 +6,7 @@ import pytest
 from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.errors import InputError
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.rocking.inputs import UnitDoubt
+from rockfrag.rocking.inputs import UnitWarning
 
 T = np.arange(0, 4, 0.01)
 SHAKE = 4 * np.sin(2 * np.pi * 1.5 * T) * np.sin(np.pi * T / 4)
@@ -54,14 +54,14 @@ def ambiguous_stack():
 @pytest.mark.parametrize("friction", [2.0, 5.0, np.inf])
 def test_histories_and_outcomes_choose_alike_where_two_outcomes_satisfy_the_laws(friction):
     stack, a = ambiguous_stack()
-    one = simulate(stack, a, 0.01, friction=friction).overturned
-    assert one == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
+    item = simulate(stack, a, 0.01, friction=friction).overturned
+    assert item == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
 
 
 def test_a_motion_in_g_is_doubted():
-    with pytest.warns(UnitDoubt, match="multiply it by"):
+    with pytest.warns(UnitWarning, match="multiply it by"):
         assert not simulate(B, SHAKE / 9.81, 0.01).overturned
-    with pytest.warns(UnitDoubt, match="multiply it by"):
+    with pytest.warns(UnitWarning, match="multiply it by"):
         overturns(B, SHAKE / 9.81, 0.01)
 
 
@@ -85,9 +85,9 @@ def test_squat_bodies_that_lift_themselves_are_warned_of():
 def test_what_looks_like_components_or_other_units_is_not_taken_in_silence():
     with pytest.raises(InputError, match="looks like 2 components in columns"):
         overturns(B, np.zeros((400, 2)), 0.01)
-    with pytest.warns(UnitDoubt, match="of no planet"):
+    with pytest.warns(UnitWarning, match="of no planet"):
         simulate(B, SHAKE, 0.01, g=981.0)
-    with pytest.warns(UnitDoubt, match="too long for strong motion"):
+    with pytest.warns(UnitWarning, match="too long for strong motion"):
         simulate(B, SHAKE[:20], 5.0)
     # a number in an array without axes is a number
     assert not simulate(B, SHAKE, 0.01, friction=np.array(0.2)).overturned

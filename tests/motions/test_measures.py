@@ -13,7 +13,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.units import GRAVITY as G
 
 COLUMNS = [
-    *("name", "event", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),
+    *("name", "earthquake", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),
     *("cav_m_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
     *("sa_0_3s_g", "sv_0_3s_cm_s", "sd_0_3s_cm", "sa_1_0s_g", "sv_1_0s_cm_s", "sd_1_0s_cm"),
     *("avgsa_g", "housner_cm", "pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
@@ -22,10 +22,10 @@ COLUMNS = [
 
 @pytest.fixture
 def named(noise):
-    """Maker of motions with a name, an event and a floor."""
+    """Maker of motions with a name, an earthquake and a floor."""
 
     def make(name: str, seed: int) -> Motion:
-        about = {"event": "Nowhere", "floor": "roof"}
+        about = {"earthquake": "Nowhere", "floor": "roof"}
         return noise(seed, 600, tapered=True, name=name, metadata=about)
 
     return make
@@ -48,7 +48,9 @@ def test_units_are_those_of_the_names(named):
     assert row["pgd_cm"] / 100 == pytest.approx(m.pgd(motion))
     assert row["housner_cm"] / 100 == pytest.approx(m.housner_intensity(motion))
     assert row["sa_0_3s_g"] * G == pytest.approx(m.spectral_acceleration(motion, 0.3))
-    assert row["sd_0_3s_cm"] / 100 == pytest.approx(m.spectral_displacement(motion, 0.3))
+    assert row["sd_0_3s_cm"] / 100 == pytest.approx(
+        m.response_spectrum(motion, [0.3]).displacement[0]
+    )
     periods = [round(0.2 * k, 1) for k in range(1, 11)]
     logs = [math.log(m.spectral_acceleration(motion, period)) for period in periods]
     assert row["avgsa_g"] * G == pytest.approx(math.exp(sum(logs) / 10), rel=1e-6)
@@ -87,7 +89,7 @@ def test_motions_are_taken_one_at_a_time(named):
         for seed in range(5):
             motion = named(f"motion {seed}", seed)
             seen.append(weakref.ref(motion))
-            most = max(most, sum(one() is not None for one in seen))
+            most = max(most, sum(item() is not None for item in seen))
             yield motion
             del motion
 
@@ -107,9 +109,9 @@ def test_pair_has_the_measures_of_its_rotation(named):
     assert list(row) == [
         f"rotd{p}_{name}" for name in ("pga_g", "pgv_cm_s", "sa_0_5s_g") for p in (50, 100)
     ]
-    assert row["rotd50_pga_g"] * G == pytest.approx(m.rotd50(first, second, m.pga))
-    assert row["rotd100_pgv_cm_s"] / 100 == pytest.approx(m.rotd100(first, second, m.pgv))
-    sa = m.rotd100(first, second, lambda motion: m.spectral_acceleration(motion, 0.5))
+    assert row["rotd50_pga_g"] * G == pytest.approx(m.rotd(first, second, m.pga, 50))
+    assert row["rotd100_pgv_cm_s"] / 100 == pytest.approx(m.rotd(first, second, m.pgv, 100))
+    sa = m.rotd(first, second, lambda motion: m.spectral_acceleration(motion, 0.5), 100)
     assert row["rotd100_sa_0_5s_g"] * G == pytest.approx(sa)
 
 

@@ -17,8 +17,6 @@ from rockfrag.motions import (
     rotate,
     rotate_to_azimuth,
     rotd,
-    rotd50,
-    rotd100,
     spectral_acceleration,
     stronger_direction,
 )
@@ -34,8 +32,8 @@ def test_linear_motion_is_seen_by_its_projection():
     shape = np.sin(np.linspace(0, 20, 400))
     east, north = Motion(3 * shape, 0.01), Motion(4 * shape, 0.01)
     peak = 5 * np.abs(shape).max()
-    assert rotd100(east, north, pga) == pytest.approx(peak, rel=2e-4)
-    assert rotd50(east, north, pga) == pytest.approx(peak * math.cos(math.pi / 4), rel=0.01)
+    assert rotd(east, north, pga, 100) == pytest.approx(peak, rel=2e-4)
+    assert rotd(east, north, pga, 50) == pytest.approx(peak * math.cos(math.pi / 4), rel=0.01)
     assert rotd(east, north, pga, 0) == pytest.approx(0.0, abs=0.01 * peak)
 
 
@@ -56,11 +54,11 @@ def test_component_is_that_of_obspy(angle):
 
 def test_measures_do_not_depend_on_how_the_sensor_stood():
     first, second = pair(2)
-    one, other = rotate(first, second, 37.0), rotate(first, second, 127.0)
+    item, other = rotate(first, second, 37.0), rotate(first, second, 127.0)
     for measure in (pga, pgv, lambda motion: spectral_acceleration(motion, 0.2)):
         for percentile in (50, 100):
             expected = rotd(first, second, measure, percentile)
-            assert rotd(one, other, measure, percentile) == pytest.approx(expected, rel=1e-9)
+            assert rotd(item, other, measure, percentile) == pytest.approx(expected, rel=1e-9)
 
 
 def test_rotation_is_recorded():
@@ -73,7 +71,7 @@ def test_rotation_is_recorded():
 @pytest.mark.parametrize("other", [Motion(np.ones(299), 0.01), Motion(np.ones(300), 0.02)])
 def test_components_that_do_not_fit_are_refused(other):
     with pytest.raises(InputError, match="one sampling and length"):
-        rotd50(pair(4)[0], other, pga)
+        rotd(pair(4)[0], other, pga, 50)
 
 
 def test_percentile_beyond_the_hundredth_is_refused():
@@ -127,7 +125,7 @@ def test_the_stronger_direction_has_the_largest_peak_of_all():
     assert strongest.pga == pytest.approx(
         np.hypot(first.acceleration, second.acceleration).max(), rel=1e-12
     )
-    assert strongest.pga >= rotd100(first, second, pga)
+    assert strongest.pga >= rotd(first, second, pga, 100)
 
 
 def test_components_that_are_no_pair_are_refused():
@@ -135,9 +133,9 @@ def test_components_that_are_no_pair_are_refused():
     upright = Motion(second.acceleration, 0.01, "up", {"component": "UP"})
     unknown = Motion(second.acceleration, 0.01, "x")
     with pytest.raises(InputError, match="vertical"):
-        rotd100(first, upright, pga)
+        rotd(first, upright, pga, 100)
     with pytest.raises(InputError, match="one and the same"):
-        rotd100(first, first, pga)
+        rotd(first, first, pga, 100)
     with pytest.raises(InputError, match="not at a right angle"):
         rotate_to_azimuth(first, components((30, 60))[1], 0)
     with pytest.raises(InputError, match="azimuth is not known"):
@@ -151,19 +149,19 @@ class TestCommonTime:
         late = Motion(
             np.arange(80) * 0.01 + 1.3, 0.01, "b", {"start_time": "2014-08-24T10:00:01.3"}
         )
-        one, other = common_time([early, late])
-        np.testing.assert_allclose(one.acceleration, other.acceleration, atol=1e-12)
-        assert one.acceleration.size == 70
-        assert one.provenance[-1]["left_out_at_beginning_s"] == pytest.approx(0.3)
+        first, other = common_time([early, late])
+        np.testing.assert_allclose(first.acceleration, other.acceleration, atol=1e-12)
+        assert first.acceleration.size == 70
+        assert first.provenance[-1]["left_out_at_beginning_s"] == pytest.approx(0.3)
 
     def test_other_intervals_and_parts_of_samples_are_interpolated(self):
         early = Motion(np.arange(100) * 0.01 + 1, 0.01, "a", {"start_time": "2014-08-24T10:00:01"})
         late = Motion(
             np.arange(40) * 0.02 + 1.304, 0.02, "b", {"start_time": "2014-08-24T10:00:01.304"}
         )
-        one, other = common_time([early, late])
-        assert one.dt == other.dt == 0.01
-        np.testing.assert_allclose(one.acceleration, other.acceleration, atol=1e-12)
+        first, other = common_time([early, late])
+        assert first.dt == other.dt == 0.01
+        np.testing.assert_allclose(first.acceleration, other.acceleration, atol=1e-12)
 
     def test_components_without_times_begin_together_and_others_may_not_meet(self):
         first, second = components()
@@ -184,10 +182,10 @@ class TestCommonTime:
         )
         about = {"start_time": "2014-08-24T10:00:00.0015", "component": "UP"}
         vertical = Motion(random.standard_normal(900), 0.003, "v", about)
-        one, other, upright = common_time([first, second, vertical])
-        np.testing.assert_array_equal(one.acceleration, first.acceleration[1:])
+        item, other, upright = common_time([first, second, vertical])
+        np.testing.assert_array_equal(item.acceleration, first.acceleration[1:])
         np.testing.assert_array_equal(other.acceleration, second.acceleration[1:])
-        assert (one.dt, upright.dt, upright.acceleration.size) == (0.005, 0.005, 399)
+        assert (item.dt, upright.dt, upright.acceleration.size) == (0.005, 0.005, 399)
         named = [
             replace(m, metadata={"start_time": m.metadata["start_time"]}) for m in (first, vertical)
         ]

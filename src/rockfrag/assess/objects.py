@@ -9,6 +9,7 @@ from typing import Any
 
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
+from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
 from rockfrag.rocking.options import system_of
@@ -20,18 +21,12 @@ from rockfrag.system.system import System, uplift_ratios
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
 
-CONTACT_TOLERANCE = 0.002
-"""Height above its lowest point up to which a scanned statue carries, unless stated [m]."""
-
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
 
-CONTACT_SPREAD, KNOWN_CONTACT_SPREAD = 0.6, 0.2
-"""Relative standard deviation of the contact tolerance of a scan that was assumed, and of one that was given:
-of ours; for a granite rock on a shaking table 0.5 to 1.9 mm were plausible."""
-
-_RETREATS = (1.0, 0.75, 0.5, 0.25)
-"""Parts of a step towards a contact tolerance that are tried until the object stands."""
+ON_POINTS = {"livelier": 0.85, "restitution": 0.1}
+"""Middle and relative standard deviation of the restitution of a scanned body over that of momentum, which is
+uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
 ROLLING = 1.0
 """Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
@@ -58,7 +53,7 @@ class Objects:
         Whether the base of the object is round: it then rolls on its rim, loses nothing and falls in the worst
         direction.
     scan
-        The scan as it stands on points within some tolerance; None where dimensions were given.
+        The scan and the ways in which it may stand; None where dimensions were given.
     livelier
         Factor on every restitution, measured or not [-]; impacts never gain energy.
     tolerances
@@ -67,7 +62,7 @@ class Objects:
         In words, in which direction it rocks.
     assumed
         What was not given.
-    doubts
+    quality_flags
         Sentences, one for each thing that looks wrong.
     pad_friction
         Coefficient of friction of a pad that is tried under the object [-]; None to try none.
@@ -80,10 +75,10 @@ class Objects:
     tolerances: Mapping[str, float]
     plane: str
     round: bool = False
-    scan: "Scan | None" = None
+    scan: Scan | None = None
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
-    doubts: tuple[str, ...] = ()
+    quality_flags: tuple[str, ...] = ()
     pad_friction: float | None = None
 
     @property
@@ -137,13 +132,13 @@ class Objects:
         return system_of(system, restitution=each if below else each[0])
 
     def _ratios(self, shape: geometry.Shape, rolls: bool) -> tuple[float, float]:
-        right, left = (self._ratio(shape, pole, rolls) for pole in (1, -1))
+        right, left = (self._ratio(shape, pivot, rolls) for pivot in (1, -1))
         return right, left
 
-    def _ratio(self, shape: geometry.Shape, pole: int, rolls: bool) -> float:
+    def _ratio(self, shape: geometry.Shape, pivot: int, rolls: bool) -> float:
         measured = ROLLING if rolls else self.restitution
-        e = geometry.momentum_restitution(shape, pole) if measured is None else measured
-        return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pole))
+        e = geometry.momentum_restitution(shape, pivot) if measured is None else measured
+        return min(max(e, 0.0) * self.livelier, geometry.largest_restitution(shape, pivot))
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""
@@ -155,58 +150,17 @@ class Objects:
             moves["restitution"] = partial(_livelier, self)
         if self.pedestals:
             moves["mass"] = partial(_heavier, self)
+        found = moved_to_both_sides(moves, self.tolerances)
         if self.scan is not None:
-            moves["contact"] = partial(_carried_by, self, self.scan)
-        spreads = dict(self.tolerances)
-        if self.scan is not None:
-            spreads.setdefault("contact", self.scan.spread)
-        return moved_to_both_sides(moves, spreads)
+            found += [_standing(self, self.scan, name) for name in self.scan.parts]
+        return found
 
 
-@dataclass(frozen=True)
-class Scan:
-    """A scan that stands on all points within some height above the lowest one.
-
-    Attributes
-    ----------
-    shape
-        The scan.
-    tolerance
-        That height [m].
-    retreat
-        Distance by which edges carry further in [m].
-    spread
-        Relative standard deviation of the height [-].
-    """
-
-    shape: Shape
-    tolerance: float
-    retreat: float
-    spread: float
-
-    def block(self, factor: float = 1.0) -> tuple[Block, float, float]:
-        """Return the block where it balances at the least angle, its direction [degrees] and angle [rad].
-
-        Parameters
-        ----------
-        factor
-            On the height up to which points carry.
-        """
-        direction, angle = self.shape.worst_direction(self.tolerance * factor)
-        return self.shape.block(direction, self.tolerance * factor, self.retreat), direction, angle
-
-
-def _carried_by(objects: Objects, scan: Scan, factor: float) -> Objects:
-    """Let points carry up to another height; as near to it as the object still stands."""
-    for part in _RETREATS:
-        try:
-            statue, *_ = scan.block(1 + part * (factor - 1))
-            moved = replace(objects, statue=statue)
-            _ = moved.body
-        except InputError:
-            continue
-        return moved
-    return objects
+def _standing(objects: Objects, scan: Scan, name: str) -> Moved[Objects]:
+    """The object in the ways to stand that are one standard deviation of a source away."""
+    low, high, spread = scan.sides()[name]
+    lower, upper = (replace(objects, statue=scan.block(at)) for at in (low, high))
+    return Moved(name, spread, lower, upper)
 
 
 def _wider(objects: Objects, factor: float) -> Objects:
@@ -262,35 +216,37 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         If they could be of no solid, cannot stand, or a dimension is missing.
     """
     assumed: list[Assumption] = []
-    doubts: list[str] = []
+    quality_flags: list[str] = []
     is_round = bool(settings.get("round", False))
     scan = None
     if "mesh" in settings:
         scan, statue, plane = _from_mesh(settings, folder, assumed)
     else:
-        statue, plane = _from_dimensions(settings, assumed, doubts)
+        statue, plane = _from_dimensions(settings, assumed, quality_flags)
     pedestals = _pedestals(settings, assumed)
     try:
         stacked((*pedestals, statue))
     except InputError as error:
         raise InputError(f"key pedestal: {error}") from None
     for block in (statue, *pedestals):
-        if doubt := size_warning(block.width, block.height):
-            doubts.append(doubt + ".")
+        if quality_flag := size_warning(block.width, block.height):
+            quality_flags.append(quality_flag + ".")
     first = [_of_the_base(is_round, "mesh" in settings)]
     if not is_round and "restitution" not in settings:
-        first.append(_RESTITUTION)
+        first.append(_ON_POINTS if scan else _RESTITUTION)
+    on_points = scan is not None and not is_round and "restitution" not in settings
     objects = Objects(
         statue=statue,
         pedestals=pedestals,
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),
-        tolerances=_tolerances(settings),
+        tolerances=_tolerances(settings, on_points),
+        livelier=ON_POINTS["livelier"] if on_points else 1.0,
         plane=plane,
         round=is_round,
         scan=scan,
         assumed=(*first, *assumed),
-        doubts=tuple(doubts),
+        quality_flags=tuple(quality_flags),
         pad_friction=settings.get("pad_friction"),
     )
     if objects.round and objects.pad_friction is not None:
@@ -303,6 +259,14 @@ _RESTITUTION = Assumption(
     "impacts lose what conservation of momentum takes",
     "Each impact takes as much energy as conservation of momentum does (Housner 1963); the restitution was not "
     "measured.",
+    ("restitution",),
+)
+
+
+_ON_POINTS = Assumption(
+    "impacts on few points take more than conservation of momentum does",
+    "Each impact leaves 0.7 to 1 times the velocity that conservation of momentum does, 0.85 in the middle; the "
+    "restitution was not measured.",
     ("restitution",),
 )
 
@@ -320,7 +284,8 @@ def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
     if is_mesh:
         return Assumption(
             "it rocks in one plane",
-            "It rocks in the plane in which it balances at the least angle.",
+            "It rocks in one plane; the planes of all directions and what carries in them are a source of the "
+            "interval.",
         )
     return Assumption(
         "the base is rectangular",
@@ -328,7 +293,7 @@ def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
     )
 
 
-def _tolerances(settings: Mapping[str, Any]) -> Mapping[str, float]:
+def _tolerances(settings: Mapping[str, Any], on_points: bool) -> Mapping[str, float]:
     given = settings.get("tolerances", {})
     if "mass" in given and "pedestal" not in settings:
         raise InputError(
@@ -338,9 +303,8 @@ def _tolerances(settings: Mapping[str, Any]) -> Mapping[str, float]:
         raise InputError("key tolerances.restitution: a round base loses nothing; leave it out.")
     if "contact" in given and "mesh" not in settings:
         raise InputError("key tolerances.contact: is that of a scan; leave it out.")
-    return TOLERANCES | {
-        key: float(given[key]) for key in given if key in TOLERANCES or key == "contact"
-    }
+    usual = TOLERANCES | ({"restitution": ON_POINTS["restitution"]} if on_points else {})
+    return usual | {key: float(given[key]) for key in given if key in TOLERANCES}
 
 
 def _check_restitution(objects: Objects) -> None:
@@ -353,7 +317,7 @@ def _check_restitution(objects: Objects) -> None:
             "key restitution: a round base rolls on its rim and is taken to lose nothing; leave it out."
         )
     shapes = objects.body.system().carried
-    most = min(geometry.largest_restitution(shape, pole) for shape in shapes for pole in (1, -1))
+    most = min(geometry.largest_restitution(shape, pivot) for shape in shapes for pivot in (1, -1))
     if e > most:
         raise InputError(
             f"key restitution: with {e:g} an impact of this object would gain energy, as its centre of gravity "
@@ -362,7 +326,7 @@ def _check_restitution(objects: Objects) -> None:
 
 
 def _from_dimensions(
-    settings: Mapping[str, Any], assumed: list[Assumption], doubts: list[str]
+    settings: Mapping[str, Any], assumed: list[Assumption], quality_flags: list[str]
 ) -> tuple[Block, str]:
     missing = [name for name in ("width", "height") if f"{name}_m" not in settings]
     if missing:
@@ -401,7 +365,7 @@ def _from_dimensions(
         )
     check_density(width, height, float(mass))
     if "depth_m" in settings:
-        doubts += _density_doubts(float(mass), width * depth * height)
+        quality_flags += _density_flags(float(mass), width * depth * height)
     if "cg_height_m" not in settings:
         assumed.append(
             Assumption(
@@ -426,7 +390,7 @@ def _from_dimensions(
     return block, plane
 
 
-def _density_doubts(mass: float, volume: float) -> list[str]:
+def _density_flags(mass: float, volume: float) -> list[str]:
     """Say that the density of the box around the object is unusual; refuse one that no solid has."""
     density = mass / volume
     words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
@@ -463,27 +427,19 @@ def _from_mesh(
                 ("cg_height",),
             )
         )
-    tolerance = mesh.get("contact_tolerance_m")
-    if tolerance is None:
-        tolerance = CONTACT_TOLERANCE
-        assumed.append(
-            Assumption(
-                f"points within {1000 * tolerance:g} mm of the lowest one carry",
-                f"Points of the scan within {1000 * tolerance:g} mm of the lowest one carry; the answer depends "
-                "much "
-                "on that where the foot is uneven.",
-                ("contact",),
-            )
-        )
-    spread = KNOWN_CONTACT_SPREAD if "contact_tolerance_m" in mesh else CONTACT_SPREAD
     try:
-        shape = _shape(mesh, folder, mass)
-        scan = Scan(shape, tolerance, float(mesh.get("edge_retreat_m", 0.0)), spread)
-        block, direction, angle = scan.block()
+        scan, of_scan = make_scan(
+            _shape(mesh, folder, mass), mesh, settings.get("tolerances", {}).get("contact")
+        )
     except InputError as error:
         raise InputError(_in_keys(str(error))) from None
-    plane = f"towards {direction:.0f}° of the mesh, where it balances at {math.degrees(angle):.1f}°"
-    return scan, block, plane
+    assumed += of_scan
+    way = scan.row_at(0.5)
+    plane = (
+        f"towards {way['direction_deg']:.0f}° of the mesh, where it balances at {way['alpha_deg']:.1f}°, as the "
+        f"middle one of {len(scan.ways)} ways to stand does"
+    )
+    return scan, scan.block(), plane
 
 
 def _shape(mesh: Mapping[str, Any], folder: Path, mass: float | None) -> Shape:
@@ -513,8 +469,8 @@ def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[
     """What the object stands on, from below."""
     given = settings.get("pedestal", [])
     found = [
-        _pedestal(one, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
-        for i, one in enumerate(given, start=1)
+        _pedestal(item, settings, assumed, f"pedestal {i}" if len(given) > 1 else "the pedestal")
+        for i, item in enumerate(given, start=1)
     ]
     return tuple(reversed(found))
 

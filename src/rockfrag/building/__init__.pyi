@@ -1,10 +1,9 @@
 from .drift import (
-    DriftVerdict as DriftVerdict,
+    DriftOutcome as DriftOutcome,
     judge_drift as judge_drift,
 )
 from .floors import (
     floor_motions as floor_motions,
-    floor_spectra as floor_spectra,
     respond as respond,
 )
 from .hysteresis import (
@@ -25,7 +24,7 @@ from .modes import (
 )
 from .response import (
     BuildingResponse as BuildingResponse,
-    EnergyLedger as EnergyLedger,
+    EnergyBalance as EnergyBalance,
     respond_elastically as respond_elastically,
 )
 from .settings import (

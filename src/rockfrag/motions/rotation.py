@@ -77,54 +77,6 @@ def rotd(
     return float(np.percentile(values, percentile))
 
 
-def rotd50(first: Motion, second: Motion, measure: Callable[[Motion], float]) -> float:
-    """Median over all directions of a measure; see :func:`rotd`.
-
-    Parameters
-    ----------
-    first
-        First of two perpendicular components, sampled at the same times.
-    second
-        Second component.
-    measure
-        Any measure of one component.
-
-    Returns
-    -------
-    The median value over all directions, in the unit of the measure.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together.
-    """
-    return rotd(first, second, measure, 50.0)
-
-
-def rotd100(first: Motion, second: Motion, measure: Callable[[Motion], float]) -> float:
-    """Largest value over all directions of a measure; see :func:`rotd`.
-
-    Parameters
-    ----------
-    first
-        First of two perpendicular components, sampled at the same times.
-    second
-        Second component.
-    measure
-        Any measure of one component.
-
-    Returns
-    -------
-    The largest value over all directions, in the unit of the measure.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together.
-    """
-    return rotd(first, second, measure, 100.0)
-
-
 def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Motion:
     """Component of a horizontal motion in the direction of an azimuth.
 
@@ -153,11 +105,11 @@ def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Moti
             f"components {first.name!r} and {second.name!r} have the azimuths "
             f"{azimuth(first):g} and {azimuth(second):g}°, which are not at a right angle."
         )
-    one, other = common_time([first, second])
+    item, other = common_time([first, second])
     # the motion x has x·e₁ = a₁ and x·e₂ = a₂; its part in the direction wanted follows of both
     parts = math.sin(angles[1] - wanted) / sine, math.sin(wanted - angles[0]) / sine
-    turned = parts[0] * one.acceleration + parts[1] * other.acceleration
-    moved = one.after(
+    turned = parts[0] * item.acceleration + parts[1] * other.acceleration
+    moved = item.after(
         "rotate to azimuth", turned, second=second.name, azimuth_deg=float(azimuth_deg) % 360
     )
     facts = {**moved.metadata, "component": f"{float(azimuth_deg) % 360:g}"}
@@ -226,11 +178,11 @@ def stronger_direction(first: Motion, second: Motion) -> Motion:
     InputError
         If the components do not fit together.
     """
-    one, other = common_time([first, second])
-    _check_pair(one, other)
-    at = int(np.argmax(np.hypot(one.acceleration, other.acceleration)))
-    angle = math.degrees(math.atan2(other.acceleration[at], one.acceleration[at]))
-    return rotate(one, other, angle)
+    item, other = common_time([first, second])
+    _check_pair(item, other)
+    at = int(np.argmax(np.hypot(item.acceleration, other.acceleration)))
+    angle = math.degrees(math.atan2(other.acceleration[at], item.acceleration[at]))
+    return rotate(item, other, angle)
 
 
 def azimuth(motion: Motion) -> float:
