@@ -111,7 +111,10 @@ def made_motions(noise) -> Callable[[int], tuple[Motion, ...]]:
     def make(count: int) -> tuple[Motion, ...]:
         found = []
         for i in range(count):
-            about = {"event": f"earthquake {i % MADE_EARTHQUAKES}", "station": f"station {i // 2}"}
+            about = {
+                "earthquake": f"earthquake {i % MADE_EARTHQUAKES}",
+                "station": f"station {i // 2}",
+            }
             raw = noise(i, 1500, tapered=True, name=f"motion {i}", metadata=about)
             filtered = bandpass(raw, 0.2, 1.0 + 0.5 * (i % MADE_EARTHQUAKES))
             found.append(scale_to_pga(filtered, 0.2 + 0.01 * i))
@@ -124,7 +127,7 @@ def made_motions(noise) -> Callable[[int], tuple[Motion, ...]]:
 def own_records(made_motions, tmp_path_factory) -> Path:
     """A folder of records that are texts of seconds and g, with a catalogue."""
     folder = tmp_path_factory.mktemp("records")
-    rows = ["name,event,station,file,unit"]
+    rows = ["name,earthquake,station,file,unit"]
     for motion in made_motions(12):
         file = f"{motion.name.replace(' ', '')}.txt"
         lines = [
@@ -132,7 +135,7 @@ def own_records(made_motions, tmp_path_factory) -> Path:
         ]
         (folder / file).write_text("\n".join(lines) + "\n")
         rows.append(
-            f"{motion.name},{motion.metadata['event']},{motion.metadata['station']},{file},g"
+            f"{motion.name},{motion.metadata['earthquake']},{motion.metadata['station']},{file},g"
         )
     (folder / "catalogue.csv").write_text("\n".join(rows) + "\n")
     return folder

@@ -82,7 +82,10 @@ def test_lines_say_how_the_mean_hazard_moved_and_which_object_decides(site, caps
         (lambda t: t.replace("[2000, 6000]", "[6000, 2000]"), "ends before it begins"),
         (lambda t: t.replace("median: 0.4 g", "median: 0.4"), "unit"),
         (lambda t: t.replace("median: 0.4 g, beta: 0.3", "coefficients: [1, -2]"), "above 0"),
-        (lambda t: t.replace("median: 0.4 g, ", ""), "give statue, median and beta, or coefficients"),
+        (
+            lambda t: t.replace("median: 0.4 g, ", ""),
+            "give statue, median and beta, or coefficients",
+        ),
         (lambda t: t.replace("rock B", "rock A"), "given twice"),
         (lambda t: t.replace("shared_error: 0.5", "shared_error: 1.5"), "0 to 1"),
         (lambda t: t.replace("branches.csv", "absent.csv"), "absent.csv"),

@@ -120,7 +120,7 @@ def fit_user_table(
         both = vector_tables(
             {"measured": tests},
             ((columns[0], columns[1]),),
-            earthquake=event_column,
+            earthquake=earthquake_column,
             motion="motion" if motion is not None else None,
             level=level,
             seed=seed,

@@ -260,13 +260,13 @@ def _fragility(
 def _two_measures(study: CampaignStudy, campaign: Campaign, validated: Validated) -> VectorTables:
     """Fragility in the first two measures, of the outcomes measured and simulated."""
     tests = campaign.tests.assign(**{MEASURED: campaign.tests[MEASURED].astype(float)})
-    simulated = tests.assign(**{MEASURED: validated.verdict.astype(float)})
+    simulated = tests.assign(**{MEASURED: validated.outcome.astype(float)})
     pair = campaign.measures[:2]
     return vector_tables(
         {"measured": tests, OURS: simulated},
         ((pair[0], pair[1]),) if len(pair) == len(set(pair)) == 2 else (),
         earthquake="group",
-        # no sweep: each test has a capacity of its own
+        # no IDA curve: each test has a capacity of its own
         motion=None,
         level=study.confidence,
         seed=study.seed,
