@@ -167,7 +167,7 @@ _ENTRY: dict[str, tuple[Any, str]] = {
     "stack": (scheduler, "integrate_stacks"),
 }
 
-# the kernels of the lanes, and what a lane steps on with for ever: no contact contact event, no division by zero
+# the kernels of the lanes, and what a lane steps on with for ever: no contact event, no division by zero
 _SMOOTH: dict[str, list[tuple[Any, int, Any, dict[str, float]]]] = {
     "lone": [
         (

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rockfrag.rocking import Block, Body, Response
     from rockfrag.rocking.options import FrictionInput
 
-MOST_CONTACT_CONTACT_EVENTS = 30
+MOST_CONTACT_EVENTS = 30
 """Lines of the pattern history that are printed unless all are asked for."""
 
 
@@ -78,7 +78,7 @@ def make_parser() -> argparse.ArgumentParser:
     )
     command.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
     command.add_argument(
-        "--all-contact-events", action="store_true", help="print the whole pattern history"
+        "--all-contact-events", action="store_true", help="print the whole history of rocking modes"
     )
     command.set_defaults(run=_simulate)
 
@@ -154,7 +154,7 @@ def _simulate(options: argparse.Namespace) -> int:
     print(f"impacts: {response.impacts}")
     for line in _contacts(response, options.friction is not None):
         print(line)
-    print(_history(response.contact_events, options.all_contact_contact_events))
+    print(_history(response.contact_events, options.all_contact_events))
     if options.plot:
         from rockfrag.figure_style import save_figure
 
@@ -270,7 +270,7 @@ def _acceleration_flag(peak: float, body: "Body") -> str:
 def _history(contact_events, everything: bool) -> str:  # type: ignore[no-untyped-def]
     if contact_events.empty:
         return "it never rocked"
-    shown = contact_events if everything else contact_events.head(MOST_CONTACT_CONTACT_EVENTS)
+    shown = contact_events if everything else contact_events.head(MOST_CONTACT_EVENTS)
     lines = [
         f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}"
         for row in shown.to_dict("records")

@@ -7,7 +7,7 @@ import numpy as np
 from rockfrag.engines.planar.integrate import (
     Book,
     Shaking,
-    contact_contact_event_columns,
+    contact_event_columns,
     history_columns,
     integrate,
 )
@@ -94,7 +94,7 @@ def run(
     start = posed(p, theta or [0.0] * n, [0.0] * n)
     up = np.zeros(0) if vertical is None else vertical
     history = np.zeros((motion.size + free, history_columns(n)))
-    contact_events = np.zeros((100_000, contact_contact_event_columns(n)))
+    contact_events = np.zeros((100_000, contact_event_columns(n)))
     done, count, when = integrate(
         p,
         Shaking(motion, up, dt, 1.0, substeps, free),

@@ -1,4 +1,4 @@
-"""The fast kernel beside a plain contact contact event-driven integrator and beside time stepping with complementarity."""
+"""The fast kernel beside a plain contact event-driven integrator and beside time stepping with complementarity."""
 
 import math
 from typing import NamedTuple
@@ -23,10 +23,10 @@ LENGTH = 3.2
 
 
 def compare_with_reference(cases: int, stacks: bool, seed: int) -> tuple[int, int]:
-    """Check histories up to the eighth contact contact event; number of outcomes that differ, and of eventful cases.
+    """Check histories up to the eighth contact event; number of outcomes that differ, and of eventful cases.
 
-    The reference, which takes a second for a hundred contact contact events, stops soon after the last contact
-    contact event up to which histories are compared; outcomes are those up to then.
+    The reference, which takes a second for a hundred contact events, stops soon after the last contact event up
+    to which histories are compared; outcomes are those up to then.
     """
     rng = np.random.default_rng(seed)
     differing = eventful = 0
@@ -60,7 +60,7 @@ class Comparison(NamedTuple):
     slips
         Differences of the residual slip of those that stand [m].
     turns
-        Largest differences of rotation up to the fourth contact contact event of each case [rad].
+        Largest differences of rotation up to the fourth contact event of each case [rad].
     """
 
     differing: int
@@ -122,7 +122,7 @@ def test_two_hundred_cases_are_those_of_time_stepping(stacks: bool) -> None:
     assert found.differing <= 6
     assert 20 <= found.fallen <= 180
     assert np.median(np.abs(found.slips)) < 1e-5
-    # some graze: there the time of a contact contact event hangs on a root, and the stepping's error is as large
+    # some graze: there the time of a contact event hangs on a root, and the stepping's error is as large
     turns = np.array(found.turns)
     assert np.median(turns) < 1e-5
     assert (turns > 1e-3).sum() <= 4
@@ -130,9 +130,7 @@ def test_two_hundred_cases_are_those_of_time_stepping(stacks: bool) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
-def test_histories_of_time_stepping_converge_to_those_of_contact_contact_events(
-    stacks: bool,
-) -> None:
+def test_histories_of_time_stepping_converge_to_those_of_contact_events(stacks: bool) -> None:
     coarse, fine = (compare_with_stepping(15, stacks, 29, step).turns for step in (8e-5, 1e-5))
     moving = np.array(coarse) > 1e-6
     assert moving.sum() > 5

@@ -17,7 +17,7 @@ from .columns import Found, random_column, run, with_contacts
 
 
 def early(found: Found, contact_events: int = 6) -> int:
-    """Number of samples before a contact contact event."""
+    """Number of samples before a contact event."""
     times = found.contact_events[:, 0]
     return (
         int(np.searchsorted(found.time, times[contact_events]))

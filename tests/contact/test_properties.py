@@ -38,8 +38,8 @@ def energies(body: Block | Stack) -> float:
     return 9.81 * sum(block.mass * block.h for block in blocks)
 
 
-def until_the_eighth_contact_contact_event(response: Response) -> int:
-    """Number of samples before the eighth contact contact event; all if there are fewer."""
+def until_the_eighth_contact_event(response: Response) -> int:
+    """Number of samples before the eighth contact event; all if there are fewer."""
     times = response.contact_events["time"].tolist()
     return int(np.searchsorted(response.time, times[7] if len(times) > 7 else math.inf))
 
@@ -84,7 +84,7 @@ def test_the_mirror_image_moves_as_the_mirror_image(seed: int) -> None:
     motion, up, mu = random_motion(rng), 0.5 * random_motion(rng), rng.uniform(0.2, 0.8)
     first = simulate_with_friction(block, motion, DT, friction=mu, vertical=up)
     other = simulate_with_friction(mirrored, -motion, DT, friction=mu, vertical=up)
-    n = until_the_eighth_contact_contact_event(first)
+    n = until_the_eighth_contact_event(first)
     np.testing.assert_allclose(first.theta[:n], -other.theta[:n], atol=1e-9)
     np.testing.assert_allclose(first.slip[:n], -other.slip[:n], atol=1e-9)
 
@@ -107,7 +107,7 @@ def test_a_larger_model_moves_alike_in_longer_time(seed: int, ratio: float) -> N
     other = simulate_with_friction(
         scaled(ratio), motion, DT * math.sqrt(ratio), friction=mus, vertical=up
     )
-    n = min(until_the_eighth_contact_contact_event(first), len(other.time))
+    n = min(until_the_eighth_contact_event(first), len(other.time))
     np.testing.assert_allclose(first.theta[:n], other.theta[:n], atol=1e-7)
     np.testing.assert_allclose(first.slip[:n], other.slip[:n] / ratio, atol=1e-7)
 
@@ -121,7 +121,7 @@ def test_a_later_motion_is_followed_later(seed: int) -> None:
     other = simulate_with_friction(
         body, np.append(wait, motion), DT, friction=friction, vertical=np.append(wait, up)
     )
-    n = until_the_eighth_contact_contact_event(first)
+    n = until_the_eighth_contact_event(first)
     np.testing.assert_allclose(first.theta[:n], other.theta[37 : n + 37], atol=1e-9)
 
 

@@ -21,10 +21,10 @@ takes several times as long and changes no outcome."""
 
 
 def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
-    """Housner's block by ``solve_ivp``, DOP853, rtol 1e-10, impacts and falls as contact contact events.
+    """Housner's block by ``solve_ivp``, DOP853, rtol 1e-10, impacts and falls as contact events.
 
-    Each call ends at a contact contact event; with ``by_sample`` at the next sample too, where the ground's
-    acceleration has a kink: steps across kinks fail, and no user who does not know it would look there.
+    Each call ends at a contact event; with ``by_sample`` at the next sample too, where the ground's acceleration
+    has a kink: steps across kinks fail, and no user who does not know it would look there.
     """
     assert isinstance(body, Block)
     alpha, p2, e = body.alpha, body.frequency() ** 2, body.momentum_restitution()

@@ -1,8 +1,8 @@
 """The reference integrator with friction and flight: slow, tight and plain, to judge the fast one by.
 
-Dormand and Prince's 8(5,3) pair from sample to sample, every contact contact event located on its dense output,
-and at every contact contact event an enumeration of all modes that the closed contacts allow.  The mechanics is
-that of :mod:`contact_model`; nothing but the bodies is shared with the fast kernels.
+Dormand and Prince's 8(5,3) pair from sample to sample, every contact event located on its dense output, and at
+every contact event an enumeration of all modes that the closed contacts allow.  The mechanics is that of
+:mod:`contact_model`; nothing but the bodies is shared with the fast kernels.
 """
 
 import math
@@ -36,8 +36,8 @@ Key = tuple[str, int, int]
 
 RTOL, ATOL = 1e-10, 1e-13
 
-# slack before a contact contact event is seen, so that what has just begun is not taken for its end: forces over
-# the weight, speeds over √(g b), lengths over b [-]
+# slack before a contact event is seen, so that what has just begun is not taken for its end: forces over the
+# weight, speeds over √(g b), lengths over b [-]
 SLACK = 1e-12
 TOUCH = 1e-13
 
@@ -48,7 +48,7 @@ CONSISTENT = 2e-13
 CLOSING = 1e-6
 
 LONGEST_TAIL = 60.0  # free motion after the last sample, over 1/p
-MOST_CONTACT_CONTACT_EVENTS = 20_000
+MOST_CONTACT_EVENTS = 20_000
 
 _NODES = np.linspace(0.0, 1.0, 7)[1:]
 _FRESH = np.concatenate([np.logspace(-9, -1, 17), np.linspace(0.2, 1.0, 9)])
@@ -231,7 +231,7 @@ class _Run:
         a = self.now + self.slope * t
         return float(a[0]), float(a[1])
 
-    # ------------------------------------------------------- between contact contact events
+    # ------------------------------------------------------- between contact events
 
     def _interval(self) -> None:
         t, stalled = 0.0, 0
@@ -239,9 +239,9 @@ class _Run:
             before = t
             t = self._stand(t) if self._resting() else self._move(t)
             stalled = stalled + 1 if t == before else 0
-            if stalled > 50 or len(self.contact_events) > MOST_CONTACT_CONTACT_EVENTS:
+            if stalled > 50 or len(self.contact_events) > MOST_CONTACT_EVENTS:
                 raise ArithmeticError(
-                    f"contact contact events without end at {self.start + t} s: {self.mode}"
+                    f"contact events without end at {self.start + t} s: {self.mode}"
                 )
 
     def _stand(self, t: float) -> float:
@@ -288,7 +288,7 @@ class _Run:
             solver.step()
             if solver.status == "failed":
                 raise ArithmeticError(f"the integration failed at {self.start + solver.t} s")
-            found = self._first_contact_contact_event(t0, y0, solver, fresh)
+            found = self._first_contact_event(t0, y0, solver, fresh)
             fresh = False
             if found is not None:
                 time, keys, y = found
@@ -336,7 +336,7 @@ class _Run:
         return end[1] in self.mode[end[0]].closed
 
     def _margins(self, t: float, q: Array, v: Array) -> dict[Key, float]:
-        """Everything that must stay positive until the next contact contact event."""
+        """Everything that must stay positive until the next contact event."""
         model = self.model
         contacts = self._contacts(q)
         found = model.solve(q, v, self.mode, contacts, self._load(t))
@@ -369,7 +369,7 @@ class _Run:
         c = self.model.contact(q, *end, self.kind.get(end))
         return float(self.model.row(q, end[0], c, c.normal) @ v)
 
-    def _first_contact_contact_event(
+    def _first_contact_event(
         self, t0: float, y0: Array, solver: DOP853, fresh: bool
     ) -> tuple[float, set[Key], Array] | None:
         n = 3 * self.model.count
@@ -419,10 +419,10 @@ class _Run:
 
         return float(brentq(rate, t0, t1, xtol=1e-15))
 
-    # --------------------------------------------------------------- contact contact events
+    # --------------------------------------------------------------- contact events
 
     def _handle(self, t: float, keys: set[Key]) -> None:
-        """Find the mode after a contact contact event (or at the start, where there are no keys)."""
+        """Find the mode after a contact event (or at the start, where there are no keys)."""
         model, old = self.model, self.mode
         for name, k, _ in keys:
             if name in ("upright", "over"):

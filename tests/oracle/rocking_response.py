@@ -36,7 +36,7 @@ class ReferenceResponse:
     state
         Contact states, shape (n, 1) or (n, 2): ground, interface.
     contact_events
-        Every contact contact event in order.
+        Every contact event in order.
     overturned
         Whether a block passed π/2.
     overturned_body

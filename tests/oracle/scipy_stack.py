@@ -78,7 +78,7 @@ def rest_interval(model: Model) -> tuple[float, float]:
 
 
 def watches(model: Model, state: State, start: float, ground: Ground) -> list[Watch]:
-    """Contact contact events of a contact state that starts at ``start``: at ground and interface, and a fall."""
+    """Contact events of a contact state that starts at ``start``: at ground and interface, and a fall."""
 
     def gap(t: float, y: Array, i: int) -> float:
         theta = y.tolist()
@@ -123,7 +123,7 @@ def landed(
 
 
 def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
-    """Statue on pedestal by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as contact contact events.
+    """Statue on pedestal by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as contact events.
 
     ``by_sample`` as in ``scipy_lone``.
     """
@@ -155,7 +155,7 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
             pull = ground(t), G
             return w1, w2, *model.accelerations(state, (th1, th2), (w1, w2), pull)
 
-        # from a contact contact event just before a sample on to the one after
+        # from a contact event just before a sample on to the one after
         stop = (int(t / dt + 1e-7) + 1) * dt if by_sample else end
         run = solve_ivp(
             rates, (t, stop), np.array([*theta, *omega]), method="DOP853", rtol=1e-10, atol=1e-13,

@@ -1,9 +1,9 @@
 """A plain oracle for bodies in space: time stepping with complementarity (Moreau 1988, Jean 1999).
 
-It knows no modes and no contact contact events: in each step of constant length the vertices that have reached
-the ground get impulses that keep them from sinking and obey Coulomb's law, found by Gauss-Seidel iteration.  The
-attitude is a matrix, angular velocities are in world coordinates, and the tensor of inertia is turned in each
-step: nothing is shared with the engine.  Of first order in the step.
+It knows no modes and no contact events: in each step of constant length the vertices that have reached the ground
+get impulses that keep them from sinking and obey Coulomb's law, found by Gauss-Seidel iteration.  The attitude is
+a matrix, angular velocities are in world coordinates, and the tensor of inertia is turned in each step: nothing is
+shared with the engine.  Of first order in the step.
 """
 
 import math

@@ -129,7 +129,7 @@ def energies(model: Model, response: ReferenceResponse) -> np.ndarray:
     )
 
 
-def test_energy_is_conserved_between_contact_contact_events_and_never_gained_at_one() -> None:
+def test_energy_is_conserved_between_contact_events_and_never_gained_at_one() -> None:
     rng = np.random.default_rng(31)
     for _ in range(4):
         stack = random_stack(rng)

@@ -62,8 +62,7 @@ def test_energy_is_never_gained_at_an_impact_and_not_changed_by_an_opening(
 def test_velocity_is_continuous_where_there_is_no_impact(response: Response) -> None:
     for _, contact_event in response.contact_events.query("kind == 'opening'").iterrows():
         assert contact_event["omega_before"] == contact_event["omega_after"]
-    # between contact contact events the samples follow their accelerations; compare where no contact contact
-    # event falls inside
+    # between contact events the samples follow their accelerations; compare where no contact event falls inside
     edges = np.searchsorted(response.time, response.contact_events["time"])
     quiet = np.setdiff1d(np.arange(1, len(response.time)), edges)
     standing = np.abs(response.theta[:, -1]) < 1.0

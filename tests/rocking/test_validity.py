@@ -78,7 +78,7 @@ def test_friction_of_the_interface_is_along_the_face_that_carries():
     assert at_rest.friction_demand[0] == pytest.approx(0, abs=1e-12)
 
 
-def test_losing_contact_is_an_contact_contact_event():
+def test_losing_contact_is_an_contact_event():
     # the ground falls away faster than the block
     up = np.interp(np.arange(100) * 0.01, [0.0, 0.2, 0.4, 0.6], [0.0, -2 * G, 0.0, 0.0])
     with pytest.warns(LightBodies, match="at 0.100 s the body would have left"):

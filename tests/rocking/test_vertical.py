@@ -111,7 +111,7 @@ def test_histories_follow_the_plain_integrator_with_every_law_and_vertical_motio
 
 
 def follow_the_plain_one(seed, law):
-    """Up to the sixth contact contact event, before a contact grazes."""
+    """Up to the sixth contact event, before a contact grazes."""
     body, motion, up = list(cases(seed + 1))[-1]
     rng = np.random.default_rng(seed)
     restitution = None

@@ -125,8 +125,8 @@ class Response:
     impacts, grazings
         Numbers of impacts, and of contacts that met with less than 1e-3 rad/s.
     paradoxes, forced
-        With friction, times that no mode of contact was consistent, and that accumulating contact contact events
-        were ended more coarsely than usual (``docs/contact.md``).
+        With friction, times that no mode of contact was consistent, and that accumulating contact events were
+        ended more coarsely than usual (``docs/contact.md``).
     given_way
         Number of impacts in which the law of a measured restitution had to give way, lest energy grow.
     unstable_distance

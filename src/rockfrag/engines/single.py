@@ -38,7 +38,7 @@ class Single:
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases, whose histories are not kept."""
         from rockfrag.engines.kernels.lanes.case import OUTCOME
-        from rockfrag.engines.kernels.record import CONTACT_CONTACT_EVENT, SAMPLE, SUMMARY
+        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE, SUMMARY
         from rockfrag.engines.lanes import write_rocking
         from rockfrag.engines.records import body_record
 
@@ -47,7 +47,7 @@ class Single:
         starts = [initial_state(system) for system in cases.systems]
         found = np.zeros(cases.shape, OUTCOME)
         summaries = np.zeros(cases.shape, SUMMARY)
-        nothing = np.empty(0, SAMPLE), np.empty(0, CONTACT_CONTACT_EVENT)
+        nothing = np.empty(0, SAMPLE), np.empty(0, CONTACT_EVENT)
 
         def work(place: tuple[int, int, int]) -> None:
             i, j, k = place
@@ -79,7 +79,7 @@ class Single:
         InputError
             If its samples are more than are admitted.
         """
-        from rockfrag.engines.kernels.record import CONTACT_CONTACT_EVENT, SAMPLE
+        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
         from rockfrag.engines.records import body_record
         from rockfrag.engines.steps import MOST_SAMPLES
 
@@ -94,7 +94,7 @@ class Single:
         history = np.zeros(most, SAMPLE)
         capacity = 4096
         while True:
-            contact_events = np.zeros(capacity, CONTACT_CONTACT_EVENT)
+            contact_events = np.zeros(capacity, CONTACT_EVENT)
             done, summary = run_integration(record, shaking, initial, history, contact_events)
             if summary["contact_events"] <= capacity:
                 break
@@ -116,14 +116,14 @@ def samples_of(case: Case) -> tuple[Array, Array, Array, NDArray[Any]]:
     -------
     Times of shape (n,), and the others as in :class:`Response`, shape (n, bodies).
     """
-    from rockfrag.engines.kernels.record import CONTACT_CONTACT_EVENT, SAMPLE
+    from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
     from rockfrag.engines.records import body_record
 
     record = body_record(case.system, case.request.linear, case.request.g)
     shaking = shaking_of(case)
     rows = np.empty(case.motion.x.acceleration.size + shaking.free_samples, SAMPLE)
     done, _ = run_integration(
-        record, shaking, initial_state(case.system), rows, np.empty(0, CONTACT_CONTACT_EVENT)
+        record, shaking, initial_state(case.system), rows, np.empty(0, CONTACT_EVENT)
     )
     blocks = BLOCKS[-case.system.count :]
     theta, omega, state = (
@@ -236,7 +236,7 @@ def _response(
         state=state,
         slides=np.zeros_like(state),
         slip=np.zeros_like(theta),
-        contact_events=_contact_contact_event_table(contact_events, blocks),
+        contact_events=_contact_event_table(contact_events, blocks),
         overturned=fallen > 0,
         overturned_body=("", *system.names)[which],
         overturning_time=float(summary["fall_time"]),
@@ -255,10 +255,8 @@ def _response(
     )
 
 
-def _contact_contact_event_table(
-    contact_events: NDArray[np.void], blocks: list[str]
-) -> pd.DataFrame:
-    """Make the table of contact contact events of a response."""
+def _contact_event_table(contact_events: NDArray[np.void], blocks: list[str]) -> pd.DataFrame:
+    """Make the table of contact events of a response."""
     from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
 
     kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}

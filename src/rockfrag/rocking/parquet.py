@@ -286,7 +286,7 @@ def _history_table(place: Place, case: Case) -> pa.Table:
     """Make the rows of one history."""
     engine = engine_for(case.system, case.motion, case.request)
     if engine is SINGLE:
-        # without its tables of contact contact events and energy, which take most of its time
+        # without its tables of contact events and energy, which take most of its time
         time, theta, omega, state = samples_of(case)
     else:
         response = engine.history(case)

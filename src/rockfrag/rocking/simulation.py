@@ -72,7 +72,7 @@ def simulate(
     Returns
     -------
     Response
-        Histories, contact contact events, energies and forces.
+        Histories, contact events, energies and forces.
 
     Raises
     ------

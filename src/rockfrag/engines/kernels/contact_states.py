@@ -142,8 +142,7 @@ def settle(body, state):
 def release(body, state, fails, stuck):
     """Contact state after a closed contact, GROUND or INTERFACE, can no longer hold.
 
-    ``stuck``: no time has passed since the last contact contact event, so a state that stays as it is would never
-    end.
+    ``stuck``: no time has passed since the last contact event, so a state that stays as it is would never end.
     """
     c1, c2 = settle(body, state)
     if stuck and c1 == state.c1 and c2 == state.c2:

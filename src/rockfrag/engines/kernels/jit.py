@@ -67,8 +67,8 @@ def kernel(function: Callable[..., Any]) -> Any:
 def inlined_kernel(function: Callable[..., Any]) -> Any:
     """Mark ``function``, which only kernels call, as one that is always inlined.
 
-    For what is called at every contact contact event, since an array is handed on as seven numbers, and for
-    straight-line arithmetic that the compiler is to do for several cases at once.
+    For what is called at every contact event, since an array is handed on as seven numbers, and for straight-line
+    arithmetic that the compiler is to do for several cases at once.
     """
     return _part(function, forceinline=True)
 

@@ -1,4 +1,4 @@
-"""What is kept of one history: its summary, its samples and its contact contact events."""
+"""What is kept of one history: its summary, its samples and its contact events."""
 
 import math
 
@@ -53,7 +53,7 @@ SAMPLE = np.dtype(
 )  # fmt: skip
 """State at a sample."""
 
-CONTACT_CONTACT_EVENT = np.dtype(
+CONTACT_EVENT = np.dtype(
     [
         ("time", np.float64), ("kind", np.int64),
         ("before", STATE), ("after", STATE),
@@ -64,7 +64,7 @@ CONTACT_CONTACT_EVENT = np.dtype(
 """A change of the contact state."""
 
 OPENING, CLOSING, CHATTER, LIFTING = 0, 1, 2, 3
-"""Kinds of contact contact events; a contact that lifts would have to pull as a whole, and the integration goes on as if it did."""
+"""Kinds of contact events; a contact that lifts would have to pull as a whole; integration goes on as if so."""
 
 BALANCE = np.dtype([("critical", np.float64), ("frequency2", np.float64)])
 """A way to balance: critical angle [rad] and squared frequency parameter [1/s²]."""
@@ -252,8 +252,8 @@ def keep_sample(body, state, sample, work):
 
 
 @kernel
-def keep_contact_contact_event(body, time, kind, before, after, contact_events, summary):
-    """Write a contact contact event, if there is room, and count it."""
+def keep_contact_event(body, time, kind, before, after, contact_events, summary):
+    """Write a contact event, if there is room, and count it."""
     if summary.contact_events < len(contact_events):
         contact_event = contact_events[summary.contact_events]
         contact_event.time, contact_event.kind = time, kind

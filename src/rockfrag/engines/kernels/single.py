@@ -1,7 +1,7 @@
-"""One history: integrate one body through an acceleration, contact contact event by contact contact event.
+"""One history: integrate one body through an acceleration, contact event by contact event.
 
-Between contact contact events the rotations follow their series; a contact contact event is located on the series
-and handled before the integrate goes on.  Every step size, root and decision depends on this one case alone.
+Between contact events the rotations follow their series; a contact event is located on the series and handled
+before the integrate goes on.  Every step size, root and decision depends on this one case alone.
 
 Nothing here needs what a web page does not have: no thread, no file, no Python object, and no mathematics but
 that of ``elementary``.
@@ -41,7 +41,7 @@ from rockfrag.engines.kernels.record import (
     begin,
     copy_state,
     fill_balances,
-    keep_contact_contact_event,
+    keep_contact_event,
     keep_sample,
     note_demand,
     track,
@@ -60,8 +60,8 @@ from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series
 
 GRAZING_SPEED = 1e-3
 """Relative speed [rad/s] below which a contact grazes."""
-MAX_CONTACT_CONTACT_EVENTS_PER_STEP = 400
-"""Contact contact events of a sample after which its contacts are made to stay closed."""
+MAX_CONTACT_EVENTS_PER_STEP = 400
+"""Contact events of a sample after which its contacts are made to stay closed."""
 
 
 class Shaking(NamedTuple):
@@ -118,7 +118,7 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
     shaking : Shaking
     initial : STATE, of which the angles and their rates count
     history : SAMPLEs, filled until the integration ends; as many as fit are kept
-    contact contact events : EVENTs, as many as fit are kept
+    contact events : EVENTs, as many as fit are kept
     summary : SUMMARY
     work : Scratch
 
@@ -172,7 +172,7 @@ def _gravity(body, shaking, k):
 
 @kernel
 def _through_sample(body, shaking, k, contact_events, summary, work):
-    """Take a body from sample k to the next, through all contact contact events in between."""
+    """Take a body from sample k to the next, through all contact events in between."""
     samples, scale, substeps = shaking.samples, shaking.scale, shaking.substeps
     n = samples.size
     left = samples[k] * scale if k < n else 0.0
@@ -187,13 +187,13 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
         g0 = heavy + (heavier - heavy) * (sub / substeps)
         rise = (right - left) / substeps
         tau = 0.0
-        while tau < 1.0 and count <= MAX_CONTACT_CONTACT_EVENTS_PER_STEP + 20:
+        while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
             remaining = 1.0 - tau
             step = Step(
                 h * remaining, a0 + rise * tau, rise * remaining, g0 + lift * tau, lift * remaining
             )
             fill_series(body, state, step, series)
-            when, fails, closes1, closes2 = _next_contact_contact_event(
+            when, fails, closes1, closes2 = _next_contact_event(
                 body, state, step, series, work.trial
             )
             at = min(1.0, when)
@@ -202,7 +202,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
             lifts = note_demand(body, step, series, at, work, summary)
             if lifts != NEVER and math.isnan(summary.lost_contact):
                 summary.lost_contact = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
-                keep_contact_contact_event(
+                keep_contact_event(
                     body, summary.lost_contact, LIFTING, state, state, contact_events, summary
                 )
             if moves:
@@ -226,7 +226,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 _count_impact(state, closes1, summary)
                 part = (sub + tau) / substeps
                 ahead = Ahead(samples, shaking.vertical, scale, n - 1, k, part, shaking.dt)
-                forced = count > MAX_CONTACT_CONTACT_EVENTS_PER_STEP
+                forced = count > MAX_CONTACT_EVENTS_PER_STEP
                 closes = closes1, closes2
                 kind, gave_way = resolve_impact(
                     body, state, closes, work.restoring, ahead, HISTORY, forced
@@ -237,7 +237,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 after = state if kind == CLOSING else _struck(body, before, closes, work.trial)
                 ask_impulses(body, before, after, demand)
             clock = (k + (sub + tau) / substeps) * shaking.dt
-            keep_contact_contact_event(body, clock, kind, before, state, contact_events, summary)
+            keep_contact_event(body, clock, kind, before, state, contact_events, summary)
 
 
 @kernel
@@ -270,7 +270,7 @@ def _count_impact(state, closes1, summary):
 
 @kernel
 def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, forced):
-    """Take a state through an impact to what follows from it; the kind of contact contact event, and 1 if a law had to give way.
+    """Take a state through an impact; return the kind of contact event, and 1 if a law had to give way.
 
     A contact that comes off slower than the closing speed stays closed, one that has met too often within a sample
     (``forced``) too, and impacts that are sure to end at rest are not followed.
@@ -304,8 +304,7 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
     return kind, gave_way
 
 
-# --------------------------------------------------------------------------- finding the next contact contact
-# event
+# --------------------------------------------------------------------------- finding the next contact event
 
 
 @kernel
@@ -390,8 +389,8 @@ def first_closing(c1, c2, series):
 
 
 @kernel
-def _next_contact_contact_event(body, state, step, series, trial):
-    """Find the earliest contact contact event within a step.
+def _next_contact_event(body, state, step, series, trial):
+    """Find the earliest contact event within a step.
 
     Returns
     -------

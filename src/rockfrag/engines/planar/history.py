@@ -17,7 +17,7 @@ from rockfrag.engines.planar.integrate import (
     PASSING,
     Book,
     Shaking,
-    contact_contact_event_columns,
+    contact_event_columns,
     history_columns,
     integrate,
 )
@@ -77,7 +77,7 @@ def contact_history(
     work = working_memory()
     capacity = 4096
     while True:
-        contact_events = np.zeros((capacity, contact_contact_event_columns(blocks)))
+        contact_events = np.zeros((capacity, contact_event_columns(blocks)))
         done, count, fall = integrate(
             p, shaking, start, closing, Book(history, contact_events), work
         )
@@ -92,7 +92,7 @@ def contact_history(
     )
     modes = [_modes(number, blocks) for number in history[:, -1]]
     fallen = int(work["fallen"])
-    table = _contact_contact_event_table(contact_events, blocks)
+    table = _contact_event_table(contact_events, blocks)
     ground = np.zeros(done)
     ground[: min(done, values.size)] = values[:done]
     loose = work["slid"].max() > 0 or np.any(work["flights"]) or work["paradoxes"] > 0
@@ -133,7 +133,7 @@ def _modes(number: float, blocks: int) -> Modes:
     return tuple((_STATES[digit & 3], (digit >> 2) - 1) for digit in digits)
 
 
-def _contact_contact_event_table(contact_events: Array, blocks: int) -> pd.DataFrame:
+def _contact_event_table(contact_events: Array, blocks: int) -> pd.DataFrame:
     rows: list[dict[str, Any]] = []
     for contact_event in contact_events:
         before, after = _modes(contact_event[2], blocks), _modes(contact_event[3], blocks)
@@ -161,7 +161,7 @@ def _contact_contact_event_table(contact_events: Array, blocks: int) -> pd.DataF
 
 
 def _kind_of_change(before: Modes, after: Modes) -> str:
-    """Name of a contact contact event without an impact: what opens first, then what slides."""
+    """Name of a contact event without an impact: what opens first, then what slides."""
     pairs = list(zip(before, after, strict=True))
     assert CHANGE not in _KINDS
     if any(new[0] == FLIGHT and old[0] != FLIGHT for old, new in pairs):

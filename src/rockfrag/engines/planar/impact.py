@@ -19,7 +19,7 @@ NO_GAIN = 1e-12
 HALVINGS = 40
 """Halvings of the interval in which a law that gives way keeps the energy."""
 CROWD = 100
-"""Contact contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
+"""Contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
 UNREACHED = 1e-7
 """Violation above which an impact has no outcome under a law."""
 
@@ -139,8 +139,8 @@ def _outcome(p, w, ah, av, force, motion, part, before):
 def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part so slowly after an impact that they would only chatter; whether there are any.
 
-    Where contact contact events accumulate all that part slowly are closed, and all that slide slowly stick: what
-    pulls depends on the sign of a slip that is as good as none.
+    Where contact events accumulate all that part slowly are closed, and all that slide slowly stick: what pulls
+    depends on the sign of a slip that is as good as none.
     """
     crowd = w.met > CROWD
     weak = False

@@ -1,4 +1,4 @@
-"""Integrating one column through one motion, contact contact event by contact contact event, with friction and flight."""
+"""Integrating one column through one motion, contact event by contact event, with friction and flight."""
 
 import math
 from typing import Any, NamedTuple
@@ -27,11 +27,11 @@ from rockfrag.engines.planar.step import (
     take_step,
 )
 
-MOST_CONTACT_CONTACT_EVENTS = 300
-"""Contact contact events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
+MOST_CONTACT_EVENTS = 300
+"""Contact events within a sample after which accumulating ones are ended ten times as coarsely, and again."""
 
 MOST_IDLE = 30
-"""Contact contact events on the spot after which a step is taken without looking for more."""
+"""Contact events on the spot after which a step is taken without looking for more."""
 
 
 def history_columns(count: int) -> int:
@@ -41,15 +41,15 @@ def history_columns(count: int) -> int:
     return 10 * count + 4
 
 
-def contact_contact_event_columns(count: int) -> int:
-    """Columns of the contact contact events: time, kind, mode before and after, kinetic energy before and after [J], and of each
-    body or interface the slip [m], the rotation, the angular velocity before and after.
+def contact_event_columns(count: int) -> int:
+    """Columns of contact events: time, kind, mode before and after, kinetic energy before and after [J], and of
+    each body or interface the slip [m], the rotation, the angular velocity before and after.
     """  # noqa: D205
     return 6 + 4 * count
 
 
 CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
-"""Kinds of contact contact events: the last is a corner that passes an edge while nothing else changes."""
+"""Kinds of contact events: the last is a corner that passes an edge while nothing else changes."""
 
 
 Array = NDArray[np.float64]
@@ -81,7 +81,7 @@ class Book(NamedTuple):
     Attributes
     ----------
     history : (samples, history_columns), or of no rows
-    contact contact events : (capacity, contact_contact_event_columns), or of no rows
+    contact events : (capacity, contact_event_columns), or of no rows
     """
 
     history: Array
@@ -184,7 +184,7 @@ def integrate(p, shaking, start, closing, book, w):
 
     Returns
     -------
-    Samples done, contact contact events met, and the time of the fall [s] (NaN if none; ``w.fallen`` says which).
+    Samples done, contact events met, and the time of the fall [s] (NaN if none; ``w.fallen`` says which).
     """
     _begin(p, w, start)
     dt, substeps = shaking.dt, shaking.substeps
@@ -244,9 +244,9 @@ def integrate(p, shaking, start, closing, book, w):
             at_end = least_margin(p, w, w.q1, w.v1)
             when = 2.0
             if idle <= MOST_IDLE:
-                when = _contact_contact_event_in_step(p, w, at_end, stretch)
+                when = _contact_event_in_step(p, w, at_end, stretch)
             else:
-                # contact contact events that do not let time go on: leave them behind
+                # contact events that do not let time go on: leave them behind
                 idle = 0
                 w.forced += 1
             if when > 1.0:
@@ -276,8 +276,8 @@ def integrate(p, shaking, start, closing, book, w):
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
                 w.met += 1
-                coarser = closing * 10.0 ** (w.met // MOST_CONTACT_CONTACT_EVENTS)
-                if w.met >= MOST_CONTACT_CONTACT_EVENTS:
+                coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
+                if w.met >= MOST_CONTACT_EVENTS:
                     w.forced += 1
                 ah, av = ground_at(sample, tau)
                 count = _handle(
@@ -291,7 +291,7 @@ def integrate(p, shaking, start, closing, book, w):
                     count,
                 )
                 fresh = True
-                if w.met > 10 * MOST_CONTACT_CONTACT_EVENTS:
+                if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
             w.work += work
             w.rubbed += rubbed
@@ -355,7 +355,7 @@ def _track(p, w):
 
 
 @kernel
-def _contact_contact_event_in_step(p, w, at_end, stretch):
+def _contact_event_in_step(p, w, at_end, stretch):
     """Fraction of the step at which something fails first; 2.0 if nothing does."""
     high = 2.0
     at_high = at_end
@@ -382,14 +382,14 @@ def _contact_contact_event_in_step(p, w, at_end, stretch):
 
 @kernel
 def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
-    """Change the mode at a contact contact event, whose failing channels are in ``w.fails``.
+    """Change the mode at a contact event, whose failing channels are in ``w.fails``.
 
     ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
     mode is known to fail.
 
     Returns
     -------
-    Number of contact contact events so far.
+    Number of contact events so far.
     """
     for d in range(3 * p.count):
         w.old_v[d] = w.v[d]
@@ -532,7 +532,7 @@ def _rest_ends(p, w, tau, early, late):
 
 @kernel
 def _note(p, w, time, kind, contact_events, count):
-    """Write a contact contact event, if there is room; return the number of contact contact events so far."""
+    """Write a contact event, if there is room; return the number of contact events so far."""
     before = mode_number(p, w.old_closed, w.old_slides)
     after = mode_number(p, w.closed, w.slides)
     if kind == CHANGE and before == after:

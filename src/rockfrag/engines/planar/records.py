@@ -134,7 +134,7 @@ WORK = np.dtype(
         ("slid", INT, (MOST,)),  # whether an interface has ever reached its limit, in impacts too
         ("paradoxes", INT),
         ("forced", INT),
-        ("met", INT),  # contact contact events within the sample
+        ("met", INT),  # contact events within the sample
         ("several", INT),  # times that more than one mode was found consistent
         ("searches", INT),
         ("given_way", INT),  # impacts in which a law would have gained energy

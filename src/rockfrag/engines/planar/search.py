@@ -1,4 +1,4 @@
-"""Finding the mode in which touching contacts go on, after a contact contact event and in an impact (``docs/contact.md``).
+"""Finding the mode in which touching contacts go on, after a contact event and in an impact (``docs/contact.md``).
 
 A search starts from a mode, mends what it violates most, and goes on so until nothing is violated.  It is begun
 from the mode that has just failed and from the one in which all is open; of two that are consistent the one with
@@ -12,7 +12,7 @@ from rockfrag.engines.planar.solve import bias, eliminate, end_of, fill_row
 
 CONSISTENT = 2e-13
 """Violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
-slack of contact contact events, so that a mode that has just failed is not."""
+slack of contact events, so that a mode that has just failed is not."""
 UNSOLVED = 1e-6
 """Relative motion of a closed end beyond which the equations of a mode were singular but for rounding."""
 ROUNDING = 1e-10

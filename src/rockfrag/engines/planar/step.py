@@ -1,4 +1,4 @@
-"""One step between contact contact events, and the first contact contact event in it."""
+"""One step between contact events, and the first contact event in it."""
 
 import math
 from typing import NamedTuple
@@ -7,11 +7,11 @@ from rockfrag.engines.planar.compile import kernel
 from rockfrag.engines.planar.solve import AT_EDGE, end_of, look_at, rate, solve
 
 SLACK, TOUCH = 1e-12, 1e-13
-"""Slack before a contact contact event is seen, so that what has just begun is not taken for its end: forces over the weight;
+"""Slack before a contact event is seen, so that what has just begun is not taken for its end: forces over weight;
 speeds over √(g b) and lengths over b [-]."""
 
 WIDTH = 1e-12
-"""Fraction of a step to which the time of a contact contact event is found."""
+"""Fraction of a step to which the time of a contact event is found."""
 
 GAP, EDGE = 0, 2
 """Channels of an interface: its two ends (gap, or pressure of a closed end), their edges, ..."""
@@ -168,7 +168,7 @@ def _powers(p, w, q, v, ah, av):
 
 @kernel
 def least_margin(p, w, q, v):
-    """Least of all that must stay positive until the next contact contact event; ``w.fails`` says what is negative.
+    """Least of all that must stay positive until the next contact event; ``w.fails`` says what is negative.
 
     Contact forces are those in ``w``; ``look_at`` must have been called with ``q``.
     """

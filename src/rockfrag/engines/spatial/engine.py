@@ -37,7 +37,7 @@ class SpatialResponse:
 
 
 class SpatialEngine:
-    """One rigid body on a polygon or a circle, contact contact event by contact contact event (``docs/space.md``).
+    """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``).
 
     Attributes
     ----------

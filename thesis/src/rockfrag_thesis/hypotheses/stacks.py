@@ -243,7 +243,7 @@ def _random_stack(rng: np.random.Generator) -> Stack:
 
 
 def free_fall(stack: Stack) -> pd.DataFrame:
-    """Contact contact events after the statue is tilted a little on a still pedestal and released."""
+    """Contact events after the statue is tilted a little on a still pedestal and released."""
     dt = 0.2 / stack.upper.frequency()
     response = simulate(stack, np.zeros(10), dt, theta0=(0.0, 0.05 * stack.upper.critical_angle(1)))
     return response.contact_events
@@ -344,7 +344,7 @@ def c12(setting: Setting) -> Result:
     error_rate=NO_ERROR,
 )
 def c13(setting: Setting) -> Result:
-    """Energy and velocities across contact contact events, and the balance between them."""
+    """Energy and velocities across contact events, and the balance between them."""
     gain, kink, residual, loss = -math.inf, 0.0, 0.0, []
     for response in setting.histories:
         contact_events = response.contact_events

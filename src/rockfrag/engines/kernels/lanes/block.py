@@ -32,7 +32,7 @@ from rockfrag.engines.kernels.lanes.case import (
     weights_ahead,
 )
 from rockfrag.engines.kernels.roots import NEVER, crossing, graze, hops
-from rockfrag.engines.kernels.single import MAX_CONTACT_CONTACT_EVENTS_PER_STEP
+from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP
 from rockfrag.engines.kernels.taylor import (
     ORDER,
     keep_rates,
@@ -73,7 +73,7 @@ LANE = np.dtype(
         ("ground", _F, LANES), ("ground_end", _F, LANES),  # A now and at the end of the sample
         ("weight", _F, LANES), ("weight_end", _F, LANES),  # W now and at the end of the sample
         ("part_left", _F, LANES),  # part of the sample that is left
-        ("tau", _F, LANES),  # time since sample k, between contact contact events
+        ("tau", _F, LANES),  # time since sample k, between contact events
         # extremes of the case so far: ψ/θc, ψ', distance from balance squared
         ("low", _F, LANES), ("fast", _F, LANES), ("near", _F, LANES),
         # these where the step began
@@ -115,7 +115,7 @@ def worker() -> Worker:
 
 @kernel
 def advance(lane, upward):
-    """Advance every lane to the end of its sample, and flag those with a contact contact event in between.
+    """Advance every lane to the end of its sample, and flag those with a contact event in between.
 
     ``upward``: whether the ground moves vertically; where it does not, the weight is one and costs nothing.
     """
@@ -221,7 +221,7 @@ def integrate_blocks(ensemble, motions, worker, outcomes):
             if lane.flag[i] == FALLS:
                 _fall(lane, i, tallies[i])
             elif lane.flag[i] != QUIET:
-                _take_contact_contact_event(lane, i, tallies[i], ensemble, motions)
+                _take_contact_event(lane, i, tallies[i], ensemble, motions)
             else:
                 lane.tau[i] = 0.0
             if lane.fell[i] != 0 or lane.side[i] == 0 or lane.k[i] >= lane.last[i]:
@@ -232,7 +232,7 @@ def integrate_blocks(ensemble, motions, worker, outcomes):
     return (passes * LANES,)
 
 
-# --------------------------------------------------------------------------- contact contact events
+# --------------------------------------------------------------------------- contact events
 
 
 @inlined_kernel
@@ -258,16 +258,16 @@ def _fall(lane, i, tally):
 
 @inlined_kernel
 def _restore_extremes(lane, i):
-    """Forget what the step of a lane would have reached without its contact contact event."""
+    """Forget what the step of a lane would have reached without its contact event."""
     lane.low[i], lane.fast[i], lane.near[i] = lane.was_low[i], lane.was_fast[i], lane.was_near[i]
 
 
 @inlined_kernel
-def _take_contact_contact_event(lane, i, tally, ensemble, motions):
+def _take_contact_event(lane, i, tally, ensemble, motions):
     """Take a lane through the impact in its step, or to the step's end if there is none."""
     k, side = lane.k[i], lane.side[i]
     _restore_extremes(lane, i)
-    t, psi, w, stays = _contact_contact_event(lane, i, tally)
+    t, psi, w, stays = _contact_event(lane, i, tally)
     tau = 1.0
     if stays:
         side = 0
@@ -288,7 +288,7 @@ def _take_contact_contact_event(lane, i, tally, ensemble, motions):
         psi = here.alpha
         factor = lane.factor[i]
         ahead = Ahead(motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0)
-        still = w > -1e-12 or lane.crowd[i] > MAX_CONTACT_CONTACT_EVENTS_PER_STEP
+        still = w > -1e-12 or lane.crowd[i] > MAX_CONTACT_EVENTS_PER_STEP
         if still or block_dies_out(-w, side, here, there, ahead):
             side = 0
     if tau >= 1.0 - 1e-13:
@@ -320,7 +320,7 @@ def _find_impacts(lane, stops):
 
 
 @inlined_kernel
-def _contact_contact_event(lane, i, tally):
+def _contact_event(lane, i, tally):
     """Time of the next impact in the lane's step, or NEVER; ψ and ψ' then or at the end; whether it never left.
 
     What the response reaches on the way goes into the tally.

@@ -13,7 +13,7 @@ LANES = 16
 
 WITHIN, QUIET, CLOSES, NEARS, RELEASE = -1.0, 0.0, 1.0, 2.0, 3.0
 """Flags of a lane after a pass: it has not yet reached the end of its sample, or has; positive ones are
-contact contact events: a contact closes, may have closed, or lets go."""
+contact events: a contact closes, may have closed, or lets go."""
 
 BLOCK = 16
 """Samples under one entry of the tables of extremes that rest is skipped with."""
@@ -174,7 +174,7 @@ def _first_outside(motions, k, last, low, high):
 def next_samples(lane, factor, lanes, motions):
     """Give the lanes that have reached the end of their sample the next one; the bits of those that must stop.
 
-    A lane stops for a contact contact event, and at the end of its motion and after it.
+    A lane stops for a contact event, and at the end of its motion and after it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The life of a stack's case: taken, at rest, in a lane, through its contact contact events, and put down.
+"""The life of a stack's case: taken, at rest, in a lane, through its contact events, and put down.
 
 A case in flight is a CASE record; its slot holds the constants of its body.  Lanes of one rotation
 (``stack_one``) and of two (``stack_two``) hold copies of what they integrate; ``place_one``, ``store_one`` and
@@ -58,7 +58,7 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
     number_of,
 )
 from rockfrag.engines.kernels.roots import slope, value
-from rockfrag.engines.kernels.single import MAX_CONTACT_CONTACT_EVENTS_PER_STEP, resolve_impact
+from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP, resolve_impact
 from rockfrag.engines.kernels.taylor import SERIES, quick_sine_cosine
 
 SLOTS = 2 * LANES
@@ -81,8 +81,8 @@ CASE = np.dtype(
         ("theta1", np.float64), ("omega1", np.float64), ("theta2", np.float64), ("omega2", np.float64),
         # gravity of a ground that does not move vertically
         ("gravity", np.float64),
-        # of its last contact contact event the ground acceleration, gravity over the above, the sample, and how
-        # many that has had
+        # of its last contact event the ground acceleration, gravity over the above, the sample, and how many that
+        # has had
         ("ground", np.float64), ("weight", np.float64), ("crowded", np.int64), ("crowd", np.int64),
         # extremes so far, as in the lanes; impacts; what fell, 1 the pedestal, 2 the statue
         ("peak1", np.float64), ("peak2", np.float64), ("fast", np.float64), ("near", np.float64),
@@ -105,7 +105,7 @@ class Worker(NamedTuple):
     waits, busy : (2,) how many wait, and how many lanes are taken
     ones, twos, impacts : (SLOTS, 9) constants of the slots' bodies in every contact state
     restoring : (SLOTS,)
-    series : (LANES,) of the steps that contact contact events are looked for in
+    series : (LANES,) of the steps that contact events are looked for in
     state : of a case, with rates per second, for what the constants do not cover
     """
 
@@ -277,12 +277,12 @@ def _ahead(case, motions):
     return Ahead(motions.samples, motions.vertical, factor, case.last, case.k, case.tau, interval)
 
 
-# --------------------------------------------------------------------------- contact contact events
+# --------------------------------------------------------------------------- contact events
 
 
 @kernel
-def contact_contact_event_of_one(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of one rotation to its contact contact event or to the step's end, and through the contact contact event.
+def contact_event_of_one(i, case, worker, ensemble, motions, g):
+    """Take a case in lane i of those of one rotation through its contact event, or to the step's end.
 
     Returns
     -------
@@ -297,7 +297,7 @@ def contact_contact_event_of_one(i, case, worker, ensemble, motions, g):
     c1, c2 = case.c1, case.c2
     left = lane.was_left[i]
     constants = worker.ones[case.slot, number_of(c1, c2)]
-    when, fails = stack_one.next_contact_contact_event(constants, lane, i, series, g)
+    when, fails = stack_one.next_contact_event(constants, lane, i, series, g)
     at = min(1.0, when)
     theta, omega = value(series.one.angle, at), slope(series.one.angle, at) / left
     peak, case.fast, case.near = stack_one.nearest(lane, i, theta, omega)
@@ -314,7 +314,7 @@ def contact_contact_event_of_one(i, case, worker, ensemble, motions, g):
     case.tau -= left * (1.0 - at)
     case.ground, case.weight = stack_one.pull_at(lane, i, at)
     body = ensemble.bodies[case.body]
-    _count_contact_contact_event(case)
+    _count_contact_event(case)
     if fails:
         to_state(case, worker.state)
         contact = GROUND if c1 == 0 else INTERFACE
@@ -328,11 +328,11 @@ def contact_contact_event_of_one(i, case, worker, ensemble, motions, g):
 
 
 @kernel
-def find_contact_contact_events_of_two(stops, worker):
-    """Find the contact contact events of lanes of two rotations, before any case goes through one.
+def find_contact_events_of_two(stops, worker):
+    """Find the contact events of lanes of two rotations, before any case goes through one.
 
     Each takes a long chain of arithmetic, and a processor works on several at once if nothing comes between them.
-    Lanes of one rotation have too few contact contact events in a pass to gain by it.
+    Lanes of one rotation have too few contact events in a pass to gain by it.
     """
     lane = worker.two
     while stops != 0:
@@ -341,14 +341,14 @@ def find_contact_contact_events_of_two(stops, worker):
         if lane.slot[i] >= 0 and lane.flag[i] > QUIET:
             case, series = worker.cases[lane.slot[i]], worker.series[i]
             stack_two.take_series(lane, i, series)
-            lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_contact_contact_event(
+            lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_contact_event(
                 case.c1, case.c2, lane.flag[i], series
             )
 
 
 @kernel
-def contact_contact_event_of_two(i, case, worker, ensemble, motions, g):
-    """Take a case in lane i of those of two rotations through the contact contact event that was found, or to the step's end.
+def contact_event_of_two(i, case, worker, ensemble, motions, g):
+    """Take a case in lane i of those of two rotations through the contact event found, or to the step's end.
 
     Returns
     -------
@@ -370,7 +370,7 @@ def contact_contact_event_of_two(i, case, worker, ensemble, motions, g):
     lift = lane.weight_end[i] - lane.was_weight[i]
     case.ground = lane.was_ground[i] + rise * (at * span / left)
     case.weight = lane.was_weight[i] + lift * (at * span / left)
-    _count_contact_contact_event(case)
+    _count_contact_event(case)
     if closes1:
         case.theta1 = 0.0
     if closes2:
@@ -478,8 +478,8 @@ def close_one(case, worker, ground, g, motions):
 
 
 @inlined_kernel
-def _count_contact_contact_event(case):
-    """Count a contact contact event of a case within its sample."""
+def _count_contact_event(case):
+    """Count a contact event of a case within its sample."""
     if case.crowded != case.k:
         case.crowded = case.k
         case.crowd = 0
@@ -488,14 +488,14 @@ def _count_contact_contact_event(case):
 
 @inlined_kernel
 def _forced(case):
-    """Whether its sample has had so many contact contact events that contacts must stay closed."""
-    return case.crowd > MAX_CONTACT_CONTACT_EVENTS_PER_STEP
+    """Whether its sample has had so many contact events that contacts must stay closed."""
+    return case.crowd > MAX_CONTACT_EVENTS_PER_STEP
 
 
 @inlined_kernel
-def after_contact_contact_event(case):
-    """Take a case that has been through its contact contact event, or to the end of its step, to the sample that it is in."""
-    crowded = case.crowded == case.k and case.crowd > MAX_CONTACT_CONTACT_EVENTS_PER_STEP + 20
+def after_contact_event(case):
+    """Take a case past its contact event, or past the end of its step, to the sample that it is in."""
+    crowded = case.crowded == case.k and case.crowd > MAX_CONTACT_EVENTS_PER_STEP + 20
     if case.tau >= 1.0 - 1e-13 or crowded:
         case.tau = 0.0
         case.k += 1

@@ -93,7 +93,7 @@ def _rates(g_over_inertia, turn, w, left, ground, weight):
 
 @kernel
 def advance(lane, g, upward):
-    """Advance every lane to the end of its sample, and flag those with a contact contact event in between.
+    """Advance every lane to the end of its sample, and flag those with a contact event in between.
 
     ``upward``: whether the ground moves vertically; where it does not, all weights are one and cost nothing.
     """
@@ -200,8 +200,8 @@ def go_back(lane, i, g, upward):
 
 
 @inlined_kernel
-def next_contact_contact_event(lanes_of_one, lane, i, series, g):
-    """Time in the lane's step of its next contact contact event, NEVER if there is none; whether the closed contact lets go."""
+def next_contact_event(lanes_of_one, lane, i, series, g):
+    """Time in the lane's step of its next contact event, or NEVER; whether the closed contact opens."""
     if lane.flag[i] == CLOSES:
         when = crossing_time(series.gap)
         omega = slope(series.one.angle, when) / lane.was_left[i]
@@ -267,7 +267,7 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
 
 @inlined_kernel
 def nearest(lane, i, theta, omega):
-    """Largest θ/θcritical, |θ'| and least distance from balance squared, up to a contact contact event at θ, θ'."""
+    """Largest θ/θcritical, |θ'| and least distance from balance squared, up to a contact event at θ, θ'."""
     ratio = lane.per_angle[i] * theta
     near = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * omega * omega
     return (
