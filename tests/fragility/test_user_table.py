@@ -98,7 +98,7 @@ def test_the_granite_rock_follows_its_velocity(shared):
     result = fit_user_table(path, measures, motion="record", replicates=50)
     assert result.fits["pga_g"].fit.aic == pytest.approx(656.0, abs=0.1)
     assert result.fits["pgv_cm_s"].fit.aic == pytest.approx(309.0, abs=0.1)
-    assert result.surface is not None
-    assert result.surface.aic == pytest.approx(309.4, abs=0.1)
+    assert result.two_measures is not None
+    assert result.two_measures.fits["aic"].iloc[0] == pytest.approx(309.4, abs=0.1)
     assert result.choice.name == "PGV"
     assert (result.outcomes["pga_g"].n, result.outcomes["pga_g"].n_overturned) == (582, 243)

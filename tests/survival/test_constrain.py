@@ -11,7 +11,9 @@ import pytest
 
 from rockfrag.cli import main
 from rockfrag.errors import InputError
+from rockfrag.survival.answer import constrain
 from rockfrag.survival.branches import read_branches
+from rockfrag.survival.site import read_site
 
 SITE = """
 name: Hill
@@ -80,7 +82,10 @@ def test_lines_say_how_the_mean_hazard_moved_and_which_object_decides(site, caps
         (lambda t: t.replace("[2000, 6000]", "[6000, 2000]"), "ends before it begins"),
         (lambda t: t.replace("median: 0.4 g", "median: 0.4"), "unit"),
         (lambda t: t.replace("median: 0.4 g, beta: 0.3", "coefficients: [1, -2]"), "above 0"),
-        (lambda t: t.replace("median: 0.4 g, ", ""), "either median and beta, or coefficients"),
+        (
+            lambda t: t.replace("median: 0.4 g, ", ""),
+            "give statue, median and beta, or coefficients",
+        ),
         (lambda t: t.replace("rock B", "rock A"), "given twice"),
         (lambda t: t.replace("shared_error: 0.5", "shared_error: 1.5"), "0 to 1"),
         (lambda t: t.replace("branches.csv", "absent.csv"), "absent.csv"),
@@ -155,3 +160,38 @@ def test_the_example_of_the_documentation_runs_as_it_stands_there(tmp_path, monk
     exec(second, {})
     table = capsys.readouterr().out
     assert "weight_after" in table and "level_ratio" in table
+
+
+def simulated_site(folder, catalogue, more="", velocity=""):
+    write_branches(folder / "branches.csv")
+    path = folder / "site.yaml"
+    path.write_text(
+        f"hazard: {{curves: [branches.csv]{velocity}}}\n"
+        "objects:\n"
+        f"  - {{name: stele, age_years: 800, statue: {{width: 30 cm, height: 1.5 m, "
+        f"records: {{paths: ['{catalogue}']}}{more}}}}}\n"
+    )
+    return path
+
+
+@pytest.mark.parametrize("velocity", ["", ", velocity: {median_s: 0.1, sd_ln: 0.3}"])
+def test_an_object_may_be_simulated(own_records, tmp_path, velocity):
+    catalogue = own_records / "catalogue.csv"
+    site = read_site(simulated_site(tmp_path, catalogue, velocity=velocity))
+    (stele,) = site.objects
+    assert len(stele.coefficients) == (3 if velocity else 2)
+    assert stele.coefficients[1] > 0
+    # what is not known of a body that nobody measured is a fifth of its median at least
+    assert 0.2 < stele.sd_ln < 2
+    assert constrain(site).result.weights.sum() == pytest.approx(1)
+    wider = simulated_site(tmp_path, catalogue, ", depth: 60 cm", velocity)
+    assert read_site(wider).objects[0].coefficients == stele.coefficients
+
+
+def test_a_simulated_object_says_what_has_no_effect(own_records, tmp_path, capsys):
+    site = simulated_site(tmp_path, own_records / "catalogue.csv", ", pga: 0.3 g")
+    status, said = run(site, capsys)
+    assert status == 2 and "key pga has no effect" in said.err and said.err.count("\n") == 1
+    site = simulated_site(tmp_path, own_records / "catalogue.csv", ", width: 0 cm")
+    status, said = run(site, capsys)
+    assert status == 2 and said.err.count("\n") == 1

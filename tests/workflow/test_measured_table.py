@@ -43,7 +43,7 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     assert "PGV predicts overturning best" in page
     assert 'class="simulated"' not in page
     assert 'src="http' not in page
-    assert (results / "figures" / "surface.png").stat().st_size > 1000
+    assert (results / "figures" / "two_measures_measured_pga_g_pgv_cm_s.png").stat().st_size > 1000
 
 
 @pytest.mark.slow

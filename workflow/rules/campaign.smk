@@ -2,6 +2,7 @@
 TABLES = (
     *("tests", "trials", "agreement", "rocking", "fragility"),
     *("regions", "conditioning", "contact", "footprint"),
+    *("two_measures", "contours", "cells"),
 )
 
 

@@ -13,8 +13,8 @@ from rockfrag.fragility.goodness import GoodnessOfFit
 from rockfrag.fragility.ida_curves import fragility_row, table_hash
 from rockfrag.fragility.measure_selection import MeasureSelection, recommend_measure
 from rockfrag.fragility.observations import Outcomes, outcomes_from_table
-from rockfrag.fragility.surface import FragilitySurface, fit_surface
 from rockfrag.fragility.tests_file import Measures, read_tests
+from rockfrag.fragility.vector_tables import VectorTables, vector_tables
 from rockfrag.short_repr import short_repr
 
 
@@ -30,8 +30,8 @@ class UserFragility:
         By measure, in the order given; ``goodness`` only where there is a curve.
     choice
         Recommendation of a measure.
-    surface
-        Probit surface in the first two measures; None with one measure or where all tests agree.
+    two_measures
+        Fragility in the first two measures with contours and cells; None with one measure.
     table
         Tidy table of curves, see :func:`rockfrag.fragility.ida_curves.fragility_table`.
     bins
@@ -43,7 +43,7 @@ class UserFragility:
     fits: Mapping[str, Fragility]
     goodness: Mapping[str, GoodnessOfFit]
     choice: MeasureSelection
-    surface: FragilitySurface | None
+    two_measures: VectorTables | None
     table: pd.DataFrame
     bins: pd.DataFrame
 
@@ -115,17 +115,23 @@ def fit_user_table(
         seed=seed,
         source=source,
     )
-    outcome = tests["overturned"]
-    surface = None
-    if len(columns) > 1 and outcome.nunique() == 2:
-        surface = fit_surface(tests, columns[:2], source=source)
+    both = None
+    if len(columns) > 1:
+        both = vector_tables(
+            {"measured": tests},
+            ((columns[0], columns[1]),),
+            earthquake=earthquake_column,
+            motion="motion" if motion is not None else None,
+            level=level,
+            seed=seed,
+        )
     return UserFragility(
         tests,
         outcomes,
         fits,
         goodness,
         choice,
-        surface,
+        both,
         pd.DataFrame(rows),
         pd.concat(bins, ignore_index=True),
     )

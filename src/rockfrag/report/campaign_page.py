@@ -13,6 +13,7 @@ from rockfrag.campaign.trials import preferred_edges
 from rockfrag.campaign.validation import FEWEST_VOTERS
 from rockfrag.files import write_text
 from rockfrag.fragility.observations import name_and_unit
+from rockfrag.fragility.vector_tables import VectorTables
 from rockfrag.report.figures.campaign import (
     agreement_figure,
     beside_figure,
@@ -21,6 +22,7 @@ from rockfrag.report.figures.campaign import (
 )
 from rockfrag.report.page import Column, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, opened
+from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import FIGURES, draw, write_captions
 from rockfrag.report.wording import (
     agree,
@@ -51,6 +53,7 @@ def write_campaign_report(study: CampaignStudy, folder: Path) -> None:
     sections = [
         _agreement(study, tables),
         _fragility(study, tables),
+        *_two_measures(study, tables),
         _tests(study, tables),
         _object(study, tables),
         _conditioning(study, tables),
@@ -191,6 +194,12 @@ LEVEL = 0.05
 def _p(value: float) -> str:
     text = probability(value)
     return text if text.startswith("<") else f"= {text}"
+
+
+def _two_measures(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> list[Section]:
+    found = VectorTables(tables["two_measures"], tables["contours"], tables["cells"])
+    section = two_measures_section(found, study.confidence)
+    return [section] if section else []
 
 
 def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:

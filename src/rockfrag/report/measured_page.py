@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 from rockfrag.figure_style import note_figure
 from rockfrag.files import write_text
 from rockfrag.fragility.user_table import UserFragility
-from rockfrag.report.figures.fragility import calibration_figure, measures_figure, surface_figure
+from rockfrag.report.figures.fragility import calibration_figure, measures_figure
 from rockfrag.report.page import Column, render, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.sections.two_measures import two_measures_section
 from rockfrag.report.study_report import FIGURES, draw, write_captions
 from rockfrag.report.wording import counted, estimates, listed, probability
 from rockfrag.stages.digest import package_digest
@@ -23,7 +24,6 @@ from rockfrag.study.measured_table import MeasuredTable
 _CAPTIONS = {
     "measures": "Probability of overturning over each measure: tests in bins with binomial limits, a local "
     "average (dashed), and the lognormal curve with its band.",
-    "surface": "Tests in the first two measures, with lines of equal fitted probability.",
     "calibration": "Observed against fitted fractions of overturned tests; the diagonal is a perfect fit.",
 }
 
@@ -54,18 +54,14 @@ def figure_specs(study: MeasuredTable, found: UserFragility) -> dict[str, Figure
     """Figures by name; one that its data cannot carry says so in words."""
     curves = {name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)}
     outcomes = {name: found.outcomes[name] for name in curves}
-    surface = found.surface
     drawings: dict[str, Callable[[], Figure]] = {}
     if curves:
         drawings["measures"] = lambda: measures_figure(curves, outcomes)
-    if surface is not None:
-        drawings["surface"] = lambda: surface_figure(surface, found.tests)
     if found.goodness:
         drawings["calibration"] = lambda: calibration_figure(found.goodness)
     nothing = partial(
         note_figure, "No curve: overturning does not become more frequent with a measure."
     )
-    wanted = [name for name in _CAPTIONS if name != "surface" or len(study.measures) > 1]
     return {
         name: FigureSpec(
             name,
@@ -73,7 +69,7 @@ def figure_specs(study: MeasuredTable, found: UserFragility) -> dict[str, Figure
             _CAPTIONS[name],
             drawings.get(name, nothing),
         )
-        for name in wanted
+        for name in _CAPTIONS
     }
 
 
@@ -91,16 +87,18 @@ def write_measured_report(study: MeasuredTable, found: UserFragility, folder: Pa
     """
     tables = result_tables(found)
     specs = figure_specs(study, found)
-    pictures = {name: draw(spec, folder / FIGURES) for name, spec in specs.items()}
     tests = found.tests
     motions, fell = tests["motion"].nunique(), int(tests["overturned"].sum())
     answer = _answer(study, found, specs)
     sections = [
-        _choice(
-            tables["recommendation"], specs, f"{answer.sentences[0].headline}.", found.choice.words
-        ),
+        _choice(tables["recommendation"], f"{answer.sentences[0].headline}.", found.choice.words),
         _curves(study, tables, specs),
     ]
+    both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
+    if both:
+        sections.append(both)
+        specs |= {part.name: part for part in both.parts if isinstance(part, FigureSpec)}
+    pictures = {name: draw(spec, folder / FIGURES) for name, spec in specs.items()}
     write_captions(answer, sections, folder / FIGURES)
     page = render(
         title=study.title,
@@ -167,9 +165,7 @@ def _answer(study: MeasuredTable, found: UserFragility, specs: Mapping[str, Figu
     )
 
 
-def _choice(
-    choice: pd.DataFrame, figures: Mapping[str, FigureSpec], best: str, message: str
-) -> Section:
+def _choice(choice: pd.DataFrame, best: str, message: str) -> Section:
     columns = [
         Column("im", "Measure"),
         Column("unit", "Unit"),
@@ -191,10 +187,7 @@ def _choice(
             "β is the efficiency, AUC the probability that an overturned test had the larger measure. A small "
             "p says that the residuals depend on that column.",
         ],
-        [
-            table_html(choice, columns, "Measures compared on the same tests, best first."),
-            *[figures[name] for name in ("surface",) if name in figures],
-        ],
+        [table_html(choice, columns, "Measures compared on the same tests, best first.")],
     )
 
 

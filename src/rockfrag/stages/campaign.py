@@ -22,6 +22,7 @@ from rockfrag.campaign.thresholds import cross_validated_threshold
 from rockfrag.campaign.trials import Trials, sample_trials
 from rockfrag.campaign.validation import Validated, cross_validate, plausible_trials
 from rockfrag.errors import InputError
+from rockfrag.fragility.vector_tables import VectorTables, vector_tables
 from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.motions.scaling import scale_to_pga
@@ -39,6 +40,7 @@ OURS, VOTES = "rockfrag", "rockfrag by votes"
 TABLES = (
     *("tests", "trials", "agreement", "rocking", "fragility"),
     *("regions", "conditioning", "contact", "footprint"),
+    *("two_measures", "contours", "cells"),
 )
 
 VARIED_FRACTION = 4
@@ -67,6 +69,10 @@ def run(job: Job[CampaignStudy]) -> Results:
     yield "agreement", _agreement(study, campaign, validated, groups)
     yield "rocking", _rocking(study, campaign, outcomes, rocked, groups)
     yield "fragility", _fragility(study, campaign, validated, groups)
+    both = _two_measures(study, campaign, validated)
+    yield "two_measures", both.fits
+    yield "contours", both.contours
+    yield "cells", both.cells
     first, second = (*campaign.measures, campaign.measures[0])[:2]
     yield "regions", by_region(tests, first, second, validated.outcome, measured)
     yield "conditioning", _conditioning(job, campaign, thing, validated, groups)
@@ -249,6 +255,22 @@ def _fragility(
         for name in campaign.measures
     ]
     return pd.concat(parts, ignore_index=True)
+
+
+def _two_measures(study: CampaignStudy, campaign: Campaign, validated: Validated) -> VectorTables:
+    """Fragility in the first two measures, of the outcomes measured and simulated."""
+    tests = campaign.tests.assign(**{MEASURED: campaign.tests[MEASURED].astype(float)})
+    simulated = tests.assign(**{MEASURED: validated.outcome.astype(float)})
+    pair = campaign.measures[:2]
+    return vector_tables(
+        {"measured": tests, OURS: simulated},
+        ((pair[0], pair[1]),) if len(pair) == len(set(pair)) == 2 else (),
+        earthquake="group",
+        # no IDA curve: each test has a capacity of its own
+        motion=None,
+        level=study.confidence,
+        seed=study.seed,
+    )
 
 
 def _conditioning(

@@ -20,6 +20,12 @@ def add_survival_commands(commands: Any) -> None:
         default="constrained",
         help="where page, JSON and tables are written",
     )
+    parser.add_argument(
+        "--records",
+        metavar="FOLDER",
+        default="resources/records",
+        help="folder of fetched records, for objects that are simulated",
+    )
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
     parser.set_defaults(run=_constrain)
 
@@ -30,7 +36,7 @@ def _constrain(options: argparse.Namespace) -> int:
     from rockfrag.survival.page import json_of, lines_of, write_constrained
     from rockfrag.survival.site import read_site
 
-    found = constrain(read_site(options.file))
+    found = constrain(read_site(options.file, options.records))
     place = write_constrained(found, options.output)
     if options.json:
         print(json_of(found), end="")

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,9 @@ from rockfrag.survival.evidence import Age, StandingObject, lognormal_coefficien
 from rockfrag.survival.rates import VelocityRelation
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.yaml_file import read_yaml
+
+RECORDS = "resources/records"
+"""Folder of fetched records."""
 
 
 @dataclass(frozen=True)
@@ -51,13 +54,15 @@ class Site:
         return PGA if PGA in measures else measures[0]
 
 
-def read_site(path: str | os.PathLike[str]) -> Site:
+def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Site:
     """Read a site from a YAML file such as ``site.yaml``.
 
     Parameters
     ----------
     path
         The file; paths in it are relative to it.
+    records
+        Folder of fetched records, for objects that are simulated.
 
     Returns
     -------
@@ -71,7 +76,7 @@ def read_site(path: str | os.PathLike[str]) -> Site:
     """
     known = checked(read_yaml(path), "site", str(path))
     try:
-        return _site(known, Path(path).parent)
+        return _site(known, Path(path).parent, Path(records))
     except InputError as error:
         text = str(error)
         raise InputError(
@@ -79,11 +84,11 @@ def read_site(path: str | os.PathLike[str]) -> Site:
         ) from None
 
 
-def _site(known: Mapping[str, Any], folder: Path) -> Site:
+def _site(known: Mapping[str, Any], folder: Path, records: Path) -> Site:
     hazard = known["hazard"]
     realizations = hazard.get("realizations")
     velocity = hazard.get("velocity")
-    return Site(
+    site = Site(
         name=known.get("name", "the site"),
         branches=tuple(
             read_branches(
@@ -91,33 +96,61 @@ def _site(known: Mapping[str, Any], folder: Path) -> Site:
                 folder / realizations if realizations else None,
             )
         ),
-        objects=tuple(_objects(known["objects"])),
+        objects=(),
         shared_error=float(known.get("shared_error", 0.0)),
         same_earthquakes=bool(known.get("same_earthquakes", True)),
         velocity=None
         if velocity is None
         else VelocityRelation(velocity["median_s"], velocity["sd_ln"]),
     )
+    return replace(site, objects=tuple(_objects(known["objects"], site, folder, records)))
 
 
-def _objects(given: Sequence[Mapping[str, Any]]) -> list[StandingObject]:
+def _objects(
+    given: Sequence[Mapping[str, Any]], site: Site, folder: Path, records: Path
+) -> list[StandingObject]:
     found: list[StandingObject] = []
     for at, settings in enumerate(given, start=1):
         name = settings.get("name", f"object {at}")
         if any(body.name == name for body in found):
             raise InputError(f"objects: {name} is given twice; give each its own name.")
         try:
-            found.append(_object(name, settings))
+            if "statue" in settings:
+                found.append(_simulated(name, settings, site, folder, records))
+            else:
+                found.append(_object(name, settings))
         except InputError as error:
             raise InputError(f"objects, {name}: {error}") from None
     return found
+
+
+def _simulated(
+    name: str, settings: Mapping[str, Any], site: Site, folder: Path, records: Path
+) -> StandingObject:
+    given = [key for key in ("median", "beta", "coefficients") if key in settings]
+    if given:
+        raise InputError(
+            f"{given[0]} follows from the simulation of statue; leave one of them out."
+        )
+    measure = site.measure
+    if "measure" in settings:
+        measure = read_measure(settings["measure"], "measure")
+    with_velocity = measure == PGA and site.velocity is not None
+    # imported when an object is simulated: others should not wait for numba
+    from rockfrag.survival.simulated import simulate_object
+
+    found = simulate_object(
+        settings["statue"], folder, measure, records, with_velocity=with_velocity
+    )
+    spread = float(settings.get("median_sd_ln", found.sd_ln))
+    return StandingObject(name, measure, found.coefficients, spread, _age(settings))
 
 
 def _object(name: str, settings: Mapping[str, Any]) -> StandingObject:
     measure = read_measure(settings.get("measure", "PGA"), "measure")
     coefficients = settings.get("coefficients")
     if (coefficients is None) == ("median" not in settings):
-        raise InputError("give either median and beta, or coefficients, of its fragility.")
+        raise InputError("give statue, median and beta, or coefficients, of its fragility.")
     if coefficients is None:
         if "beta" not in settings:
             raise InputError(

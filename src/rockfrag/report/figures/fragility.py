@@ -17,8 +17,6 @@ from rockfrag.figure_style import (
     COLUMN_WIDTH,
     CONFIGURATION_COLOURS,
     OKABE_ITO,
-    RED,
-    SKY,
     WIDEST,
     figure_style,
     letter_panels,
@@ -27,13 +25,12 @@ from rockfrag.figure_style import (
 )
 from rockfrag.fragility.compared import compared_curves
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
-from rockfrag.fragility.observations import Floats, Outcomes, name_and_unit
+from rockfrag.fragility.observations import Floats, Outcomes
 from rockfrag.report.wording import shortened
 
 if TYPE_CHECKING:
     from rockfrag.fragility.estimators import Fragility
     from rockfrag.fragility.goodness import GoodnessOfFit
-    from rockfrag.fragility.surface import FragilitySurface
 
 GREY = "#777777"
 
@@ -157,40 +154,6 @@ def measures_figure(
         for axes in grid_of_axes[:, 0]:
             axes.set_ylabel("Probability of overturning")
         letter_panels(grid_of_axes.flat[: len(labels)])
-        return figure
-
-
-def surface_figure(
-    surface: "FragilitySurface", tests: pd.DataFrame, *, overturned: str = "overturned"
-) -> Figure:
-    """Draw the tests in two measures with lines of equal fitted probability of overturning."""
-    x_column, y_column = surface.measures
-    fell = tests[overturned].to_numpy(dtype=np.float64) > 0
-    x, y = (tests[column].to_numpy(dtype=np.float64) for column in surface.measures)
-    x_grid, y_grid = (np.geomspace(0.85 * v.min(), 1.18 * v.max(), 200) for v in (x, y))
-    with figure_style():
-        figure = new_figure(COLUMN_WIDTH, 3.1)
-        axes = figure.subplots()
-        axes.plot(x[~fell], y[~fell], "o", mfc="none", mec=SKY, mew=0.7, ms=3, label="survived")
-        axes.plot(x[fell], y[fell], "^", color=RED, mew=0, ms=3.2, alpha=0.75, label="overturned")
-        chance = surface.probability(x_grid[None, :], y_grid[:, None])
-        lines = axes.contour(
-            x_grid,
-            y_grid,
-            chance,
-            levels=[0.05, 0.5, 0.95],
-            colors=BLACK,
-            linewidths=(0.8, 1.3, 0.8),
-            linestyles=("dotted", "solid", "dashed"),
-        )
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.clabel(lines, fmt=lambda value: f"{value:.0%}", fontsize=7)
-        plain_log(axes, "x")
-        plain_log(axes, "y")
-        axes.set_xlabel(_axis_label(*name_and_unit(x_column)))
-        axes.set_ylabel(_axis_label(*name_and_unit(y_column)))
-        figure.legend(loc="outside upper center", ncols=2, handletextpad=0.2)
         return figure
 
 

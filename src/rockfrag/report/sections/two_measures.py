@@ -7,7 +7,7 @@ import pandas as pd
 from rockfrag.files import file_name
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.vector import INTERACTION_LEVEL
-from rockfrag.fragility.vector_tables import describe_pair
+from rockfrag.fragility.vector_tables import VectorTables, describe_pair
 from rockfrag.report.figures.two_measures import two_measures_figure
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Part, Results, Section
@@ -31,12 +31,28 @@ def _asked(study: Study) -> bool:
 
 
 def _section(results: Results) -> Section | None:
-    fits = results.table("fragility_two_measures")
+    tables = VectorTables(
+        *(results.table(f"fragility_{name}") for name in ("two_measures", "contours", "cells"))
+    )
+    return two_measures_section(tables, results.study.fragility.confidence)
+
+
+def two_measures_section(tables: VectorTables, confidence: float) -> Section | None:
+    """Return the section of fits in two measures; None where no tests allowed one.
+
+    Parameters
+    ----------
+    tables
+        The fits, with the column ``configuration``.
+    confidence
+        Level of their limits [-].
+    """
+    fits = tables.fits
     found = fits[fits["method"] != "none"]
     if found.empty:
         return None
     rejected = found[found["p_fit"] < REJECTED]
-    level = f"{100 * results.study.fragility.confidence:g} %"
+    level = f"{100 * confidence:g} %"
     return Section(
         "two-measures",
         "Fragility in two measures",
@@ -52,7 +68,7 @@ def _section(results: Results) -> Section | None:
             *dict.fromkeys(note for note in fits["warnings"] if note),
         ],
         [
-            *_figures(results, found),
+            *_figures(tables, found),
             table_html(
                 found.assign(pair=_pairs(found)),
                 _COLUMNS,
@@ -78,8 +94,8 @@ def _message(found: pd.DataFrame, rejected: pd.DataFrame) -> str:
     )
 
 
-def _figures(results: Results, found: pd.DataFrame) -> list[FigureSpec]:
-    contours, cells = (results.table(name) for name in ("fragility_contours", "fragility_cells"))
+def _figures(tables: VectorTables, found: pd.DataFrame) -> list[FigureSpec]:
+    contours, cells = tables.contours, tables.cells
     keys = ["configuration", "first", "second"]
     specs = []
     for row in found[keys].to_dict("records"):
