@@ -24,7 +24,7 @@ def test_objects_are_ranked_by_risk(own_records, tmp_path, capsys):
     ]
     assert main(arguments) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 5
+    assert len(lines) == 7
     assert "slender" in lines[1]
     assert "stout" in lines[4]
     table = pd.read_csv(tmp_path / "out" / "inventory.csv")

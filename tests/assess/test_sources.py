@@ -102,22 +102,34 @@ def on_feet(tmp_path_factory):
     return path
 
 
-def test_which_points_carry_is_a_source_of_a_scan(on_feet, motions):
+def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, motions):
     def of(**mesh):
         return asked(mesh={"file": str(on_feet), **mesh}, mass="200 kg", pga="0.6 g")
 
     request = of()
-    (contact,) = [one for one in request.objects.variants() if one.name == "contact"]
-    # 2 mm reach the block, 0.8 mm only the plate
-    assert request.objects.statue.width == pytest.approx(0.3, rel=1e-3)
-    assert contact.lower.statue.width == pytest.approx(0.2, rel=1e-3)
-    assert contact.upper.statue.width == pytest.approx(0.3, rel=1e-3)
-    measured = of(contact_tolerance="2 mm")
-    (known,) = [one for one in measured.objects.variants() if one.name == "contact"]
-    assert known.lower.statue.width == pytest.approx(0.3, rel=1e-3)
-    blind, narrowed = (
-        assess_with(one, motions, brief=True).amplitudes[0.5].sources["contact"]
-        for one in (request, measured)
-    )
-    # half of ln(0.3/0.2): the level grows at least as the width does
-    assert blind > 0.2 > 0.02 > narrowed
+    scan = request.objects.scan
+    # 1 mm reach the block, less only the plate: half of the ways stand on each
+    assert sum(scan.parts.values()) == pytest.approx(1)
+    assert max(scan.parts, key=scan.parts.get) == "contact"
+    low, high = (scan.block(at).width for at in (0.05, 0.95))
+    assert 0.18 < low < 0.29 < high < 0.43
+    measured = of(contact_tolerance="2 mm", edge_retreat="0 mm", direction_deg=0)
+    assert measured.objects.statue.width == pytest.approx(0.3, rel=1e-3)
+
+    def sources(one):
+        return assess_with(one, motions, brief=True).amplitudes[0.5].sources
+
+    blind, known, faced = (sources(one) for one in (request, measured, of(direction_deg=0)))
+    assert blind["contact"] > 0.1 and "facing" not in faced
+    ways = ("contact", "retreat", "facing")
+    assert math.hypot(*(known.get(name, 0.0) for name in ways)) < 0.02
+    assert math.hypot(*(blind.get(name, 0.0) for name in ways)) > 0.15
+    # a scan whose ways to stand are sources of its own has no second one for them in the model's
+    assert blind["model"] < sources(asked(width="0.3 m", height="1 m", pga="0.6 g"))["model"]
+
+
+def test_a_scan_on_few_points_loses_more_in_impacts_than_a_cut_block(on_feet):
+    scan = asked(mesh={"file": str(on_feet)}, mass="200 kg", pga="0.6 g").objects
+    assert scan.livelier == pytest.approx((0.7 + 1) / 2)
+    assert scan.tolerances["restitution"] == pytest.approx(0.3 / math.sqrt(12) / 0.85, rel=0.03)
+    assert asked(width="0.3 m", height="1 m", pga="0.6 g").objects.livelier == 1

@@ -107,7 +107,8 @@ def test_what_is_known_of_velocity_is_no_longer_a_source(found):
     assert found["nothing"].share.sources["conversion"] > 0
     for name in ("slow", "fast"):
         sources = found[name].probability.sources
-        assert sources["conversion"] < found["nothing"].probability.sources["conversion"]
+        # what is left of it is the error of the weight of velocity
+        assert found[name].conversion.spread == 0 < found["nothing"].conversion.spread
         assert "together" in sources
         assert "two measures" in found[name].conversion.words
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from rockfrag.building.floors import floor_motions, floor_spectra
+from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, RayleighDamping, ShearBuilding
 from rockfrag.building.model import stiffnesses_for_period as for_period
 from rockfrag.building.modes import damping_matrix, find_modes
@@ -121,15 +121,6 @@ def test_a_rigid_building_passes_the_ground_motion_unchanged():
     motion = Motion(3 * np.sin(2 * np.pi * t) * np.sin(np.pi * t / 5) ** 2, 0.01)
     for floor in floor_motions(reference(period=1e-4), motion):
         assert np.abs(floor.acceleration - motion.acceleration).max() < 1e-3 * motion.pga
-
-
-def test_floor_spectra_peak_at_the_period_of_the_building(noise):
-    periods = np.arange(0.2, 0.6, 0.01)
-    spectra = floor_spectra(reference(0.35), noise(3, 2000), periods)
-    amplified = spectra["F5"].acceleration / spectra["GF"].acceleration
-    assert set(spectra) == {"GF", "F3", "F5"}
-    assert periods[np.argmax(amplified)] == pytest.approx(0.35, abs=0.02)
-    assert amplified.max() > 5
 
 
 def test_floor_motions_say_where_they_come_from(noise):

@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.fragility import fragility_tables
+from rockfrag.fragility.sweep_data import TableSweep
+from rockfrag.fragility.sweeps import FragilityTables, tables_of_sweeps
 
 
 def sweep_of(thresholds: list[float]) -> pd.DataFrame:
@@ -25,8 +26,13 @@ def sweep_of(thresholds: list[float]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
+def tables_of(sweep: pd.DataFrame) -> FragilityTables:
+    """Curve of one body and its points."""
+    return tables_of_sweeps([({"configuration": "vase"}, TableSweep(sweep))], ["amplitude_g"])
+
+
 def test_the_points_pass_through_the_median_between_the_limits_of_the_band():
-    found = fragility_tables(sweep_of([0.3, 0.4, 0.5, 0.7, 0.9]))
+    found = tables_of(sweep_of([0.3, 0.4, 0.5, 0.7, 0.9]))
     theta = found.curves.set_index("estimator").loc["mean_probability", "theta"]
     points = found.bands
     assert np.interp(theta, points["x"], points["probability"]) == pytest.approx(0.5, abs=0.01)
@@ -36,13 +42,13 @@ def test_the_points_pass_through_the_median_between_the_limits_of_the_band():
 
 
 def test_where_nothing_overturned_there_is_no_curve_but_there_are_verdicts():
-    found = fragility_tables(sweep_of([9.0, 9.0]))
+    found = tables_of(sweep_of([9.0, 9.0]))
     assert found.bands["probability"].isna().all()
     assert (found.bands["local"].dropna() == 0).all()
     assert (found.bins["share"] == 0).all()
 
 
 def test_one_motion_has_a_curve_without_a_band():
-    found = fragility_tables(sweep_of([0.5]))
+    found = tables_of(sweep_of([0.5]))
     assert found.bands["lower"].isna().all()
     assert np.isfinite(found.bands["local"]).any()

@@ -7,7 +7,6 @@ from scipy import stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.empirical import (
-    isotonic_share,
     local_share,
     share_in_bins,
     survival_windows,
@@ -56,18 +55,6 @@ def test_the_order_of_rows_does_not_matter_and_open_ends_stay_open():
 def test_a_repeated_amplitude_of_a_sweep_is_refused():
     with pytest.raises(InputError, match=r"row 2.*already has the amplitude 0.1"):
         survival_windows(sweep([0, 1], [0.1, 0.1]))
-
-
-def test_isotonic_share_never_falls_and_keeps_the_mean():
-    rng = np.random.default_rng(1)
-    im = np.exp(rng.normal(size=200))
-    table = pd.DataFrame({"pga_g": im, "overturned": rng.random(200) < 0.3 + 0.1 * im / im.max()})
-    shares = isotonic_share(outcomes_from_table(table, "pga_g", motion=None))
-    assert (np.diff(shares.isotonic) >= -1e-12).all()
-    assert np.average(shares.isotonic, weights=shares.tests) == pytest.approx(
-        table.overturned.mean()
-    )
-    assert (np.diff(shares.share) < 0).any()
 
 
 def test_the_local_share_shows_a_fall_that_no_fitted_curve_can():

@@ -36,7 +36,7 @@ def test_published_stripes_give_their_maximum_likelihood_estimate():
     assert fit.theta == pytest.approx(1.076116, abs=1e-5)
     assert fit.beta == pytest.approx(0.429237, abs=1e-5)
     assert fit.log_likelihood == pytest.approx(-10.797705, abs=1e-5)
-    assert fit.se == pytest.approx((0.07097, 0.08210), abs=1e-5)
+    assert (fit.se_log_theta, fit.se_beta) == pytest.approx((0.07097, 0.08210), abs=1e-5)
     assert (fit.n, fit.n_overturned, fit.im, fit.unit) == (320, 51, "PGA", "g")
     assert fit.probability(fit.theta) == pytest.approx(0.5)
     assert fit.probability(0.0) == 0.0

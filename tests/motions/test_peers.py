@@ -98,7 +98,7 @@ def test_peaks_of_the_samples_fall_short_by_what_sampling_hides(motion):
     assert np.abs(velocity).max() <= m.pgv(motion)
     period = 0.06
     sampled = np.abs(m.oscillator_response(motion, period)[0]).max()
-    peak = m.spectral_displacement(motion, period)
+    peak = m.response_spectrum(motion, [period]).displacement[0]
     assert sampled <= peak
     # at six samples a period up to 1 - cos(π/6) of the peak hides between them
     assert sampled >= peak * math.cos(math.pi * motion.dt / period) * 0.98

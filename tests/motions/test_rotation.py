@@ -17,8 +17,6 @@ from rockfrag.motions import (
     rotate,
     rotate_to_azimuth,
     rotd,
-    rotd50,
-    rotd100,
     spectral_acceleration,
     stronger_direction,
 )
@@ -34,8 +32,8 @@ def test_linear_motion_is_seen_by_its_projection():
     shape = np.sin(np.linspace(0, 20, 400))
     east, north = Motion(3 * shape, 0.01), Motion(4 * shape, 0.01)
     peak = 5 * np.abs(shape).max()
-    assert rotd100(east, north, pga) == pytest.approx(peak, rel=2e-4)
-    assert rotd50(east, north, pga) == pytest.approx(peak * math.cos(math.pi / 4), rel=0.01)
+    assert rotd(east, north, pga, 100) == pytest.approx(peak, rel=2e-4)
+    assert rotd(east, north, pga, 50) == pytest.approx(peak * math.cos(math.pi / 4), rel=0.01)
     assert rotd(east, north, pga, 0) == pytest.approx(0.0, abs=0.01 * peak)
 
 
@@ -73,7 +71,7 @@ def test_rotation_is_recorded():
 @pytest.mark.parametrize("other", [Motion(np.ones(299), 0.01), Motion(np.ones(300), 0.02)])
 def test_components_that_do_not_fit_are_refused(other):
     with pytest.raises(InputError, match="one sampling and length"):
-        rotd50(pair(4)[0], other, pga)
+        rotd(pair(4)[0], other, pga, 50)
 
 
 def test_percentile_beyond_the_hundredth_is_refused():
@@ -127,7 +125,7 @@ def test_the_stronger_direction_has_the_largest_peak_of_all():
     assert strongest.pga == pytest.approx(
         np.hypot(first.acceleration, second.acceleration).max(), rel=1e-12
     )
-    assert strongest.pga >= rotd100(first, second, pga)
+    assert strongest.pga >= rotd(first, second, pga, 100)
 
 
 def test_components_that_are_no_pair_are_refused():
@@ -135,9 +133,9 @@ def test_components_that_are_no_pair_are_refused():
     upright = Motion(second.acceleration, 0.01, "up", {"component": "UP"})
     unknown = Motion(second.acceleration, 0.01, "x")
     with pytest.raises(InputError, match="vertical"):
-        rotd100(first, upright, pga)
+        rotd(first, upright, pga, 100)
     with pytest.raises(InputError, match="one and the same"):
-        rotd100(first, first, pga)
+        rotd(first, first, pga, 100)
     with pytest.raises(InputError, match="not at a right angle"):
         rotate_to_azimuth(first, components((30, 60))[1], 0)
     with pytest.raises(InputError, match="azimuth is not known"):

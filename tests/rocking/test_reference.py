@@ -8,8 +8,8 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.rocking import Block, Stack, simulate
-from rockfrag.rocking.closed_forms import next_amplitude, quarter_period
 
+from ..oracle.closed_forms import next_amplitude, quarter_period
 from ..oracle.rocking_integrator import simulate_reference
 from ..oracle.rocking_model import Model, largest_restitution
 from ..oracle.rocking_response import ReferenceResponse

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.assess.conversion import Conversion, find_conversion
@@ -29,13 +30,16 @@ from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.sources import SPACE
 from rockfrag.assess.verdicts import (
     FEW_LEVELS,
+    FEWEST_LEVELS,
     LEVELS,
     Ladder,
     Verdicts,
     make_ladder,
+    on_pad,
     share_with_sliding,
     verdicts_of,
     verdicts_of_all,
+    verdicts_of_each,
 )
 from rockfrag.errors import InputError
 from rockfrag.fragility.estimators import Fragility, fragility_of
@@ -136,6 +140,60 @@ class Assessment:
         return self.probability or self.share or self.amplitudes[0.5]
 
 
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Under which levels of which motions objects are compared; the same for all in one place.
+
+    Attributes
+    ----------
+    motions
+        The motions.
+    fewer
+        Those under which changes are compared.
+    curves
+        The hazard that counts, and that of PGV beside it if there is one.
+    level
+        Level of shaking at the site.
+    ladder, fewer_ladder
+        Levels of both sets.
+    brief
+        Whether directions are left out, and changes compared with few motions and levels.
+    """
+
+    motions: MotionSet
+    fewer: MotionSet
+    curves: tuple[HazardCurve, ...]
+    level: Level | None
+    ladder: Ladder
+    fewer_ladder: Ladder
+    brief: bool
+
+    @property
+    def asked(self) -> list[float]:
+        """Levels that are wanted exactly."""
+        return [self.level.value] if self.level else []
+
+
+@dataclass(frozen=True, eq=False)
+class Shaken:
+    """What motions as recorded do to an object.
+
+    Attributes
+    ----------
+    arrangements
+        Outcomes of each way in which it can stand, as it stands first.
+    moved
+        Outcomes with each property moved to both sides.
+    before, changed
+        Outcomes as it stands, and with each mitigation, under the same motions.
+    """
+
+    arrangements: Mapping[str, Verdicts]
+    moved: Sequence[Moved[Verdicts]]
+    before: Verdicts
+    changed: Mapping[str, Verdicts]
+
+
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
     """Assess one object at one place.
 
@@ -172,7 +230,23 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     motions
         The motions at the place.
     brief
-        Leave out directions and remedies.
+        Leave out directions, and compare changes with few motions and levels.
+    """
+    plan = plan_for(request, motions, brief=brief)
+    return assessed(request, plan, shake_all([request], plan)[0])
+
+
+def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
+    """Return under which levels of which motions an object is shaken.
+
+    Parameters
+    ----------
+    request
+        What is asked.
+    motions
+        The motions at the place.
+    brief
+        Compare changes with few motions and levels.
     """
     if request.objects.round:
         motions = motions.in_worst_direction()
@@ -181,33 +255,101 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
-    objects = request.objects
-    few = brief or objects.many
-    ladder = make_ladder(motions, measure, asked, FEW_LEVELS if few else LEVELS)
-    bodies = objects.arrangements
-    if brief:
-        bodies = dict(list(bodies.items())[:1])
-    arrangements = verdicts_of(objects, bodies, motions, ladder)
-    counted = next(iter(arrangements.values()))
+    few = brief or request.objects.many
+    fewer = motions.thinned() if few else motions
+    fewer = fewer.thinned() if brief else fewer
+    return Plan(
+        motions,
+        fewer,
+        curves,
+        level,
+        make_ladder(motions, measure, asked, FEW_LEVELS if few else LEVELS),
+        make_ladder(fewer, measure, asked, FEWEST_LEVELS if brief else FEW_LEVELS),
+        brief,
+    )
+
+
+def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
+    """Shake objects in one place at once; of each the same results as alone, to the bit.
+
+    Parameters
+    ----------
+    requests
+        Objects in places that shake alike.
+    plan
+        Motions and levels.
+    """
+    objects = [one.objects for one in requests]
+    ways = [dict(one.arrangements) for one in objects]
+    if plan.brief:
+        ways = [dict(list(bodies.items())[:1]) for bodies in ways]
+    arrangements = verdicts_of_each(objects, ways, plan.motions, plan.ladder)
+    # of few motions the object as it stands comes first, then with each mitigation
+    changes = [{"": one.body, **remedies_of(one)} for one in objects]
+    under = (plan.fewer, plan.fewer_ladder) if plan.brief else (plan.motions, plan.ladder)
+    compared = verdicts_of_each(objects, changes, *under)
+    moved = _moved(requests, plan)
+    found = []
+    for one, way, change, sides in zip(objects, arrangements, compared, moved, strict=True):
+        before = change.pop("")
+        if one.pad_friction is not None:
+            outcomes, slip = on_pad(one, one.pad_friction, *under)
+            change[_pad_words(one.pad_friction, slip, plan, under[1])] = outcomes
+        found.append(Shaken(way, sides, before, change))
+    return found
+
+
+def _pad_words(friction: float, slip: NDArray[np.float64], plan: Plan, ladder: Ladder) -> str:
+    """The pad, and how far the object slides on it at the site's level."""
+    words = f"a pad of friction {friction:g}"
+    if plan.level is None:
+        return words
+    at = min(int(ladder.levels.searchsorted(plan.level.value)), ladder.levels.size - 1)
+    here = slip[ladder.allowed[:, at], at]
+    if not here.size:
+        return words
+    return f"{words}, on which it slides up to {100 * here.max():.3g} cm at {plan.level.words},"
+
+
+def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
+    """Say what follows from an object's outcomes.
+
+    Parameters
+    ----------
+    request
+        What is asked.
+    plan
+        Motions and levels.
+    shaken
+        What the motions do to it.
+    """
+    objects, motions, level = request.objects, plan.motions, plan.level
+    hazard = plan.curves[0] if plan.curves else None
+    measure = plan.ladder.measure
+    counted = next(iter(shaken.arrangements.values()))
     target = _target(level, hazard, request.years)
     exact = _starts_by_statics(request, measure)
     conversion = None
     if level:
         conversion = find_conversion(
-            counted, motions, request.records, level=level, curves=curves, by_statics=exact
+            counted,
+            motions,
+            request.records,
+            level=level,
+            curves=plan.curves,
+            by_statics=exact,
+            brief=plan.brief,
         )
-    fewer = motions.thinned() if few else motions
-    moved = _moved(request, fewer, measure, asked)
-    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].blind}
-    if not request.objects.round:
+    shaken = _at_site(shaken, plan, conversion)
+    arrangements, moved = shaken.arrangements, shaken.moved
+    both_sides = {one.name: one.sides for one in moved}
+    shifts = {"model": MODEL_ERRORS[SCAN if objects.scan else CUT].beyond}
+    if not objects.round:
         shifts["space"] = SPACE
     if conversion:
         shifts["conversion"] = conversion.shift
-        arrangements = {k: conversion.at_site(one) for k, one in arrangements.items()}
-        moved = [one.turned(conversion.of(fewer).at_site) for one in moved]
-    both_sides = {one.name: one.sides for one in moved}
-    if conversion and (together := conversion.sides(counted)):
-        both_sides["together"] = together
+        if together := conversion.sides(counted):
+            both_sides["together"] = together
     now = next(iter(arrangements.values()))
 
     def estimated(one: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
@@ -224,6 +366,7 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         share = _no_more_than(estimated(share_target(level.value)), rocking)
         rocking = _no_less_than(rocking, share)
     at = level.value if level else None
+    brief = plan.brief
     return Assessment(
         request=request,
         motions=motions,
@@ -243,14 +386,28 @@ def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) ->
         directions=None
         if brief or objects.round or objects.many
         else find_directions(
-            objects, motions, make_ladder(motions, measure, asked, FEW_LEVELS), at
+            objects, motions, make_ladder(motions, measure, plan.asked, FEW_LEVELS), at
         ),
-        remedies=() if brief else _remedies(request, motions, ladder, target, now, conversion),
+        remedies=_remedies(request, target, shaken),
         effects=tuple(one.turned(target.value) for one in moved),
         rules=() if brief or objects.round else tuple(check_rules(objects, motions, counted)),
         sliding_share=math.nan
         if brief or at is None or objects.friction is None
         else share_with_sliding(objects, motions, measure, at),
+    )
+
+
+def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shaken:
+    """Outcomes under motions with the velocity of the site."""
+    if conversion is None or conversion.known is None:
+        return shaken
+    few = conversion.of(plan.fewer)
+    compared = few if plan.brief else conversion
+    return Shaken(
+        {name: conversion.at_site(one) for name, one in shaken.arrangements.items()},
+        [one.turned(few.at_site) for one in shaken.moved],
+        compared.at_site(shaken.before),
+        {name: compared.at_site(one) for name, one in shaken.changed.items()},
     )
 
 
@@ -338,24 +495,20 @@ def _counts(now: Verdicts, level: Level | None) -> tuple[int, int, int] | None:
     return int(allowed.sum()), rocked, fell
 
 
-def _moved(
-    request: Request, motions: MotionSet, measure: Measure, asked: Sequence[float]
-) -> list[Moved[Verdicts]]:
-    """Verdicts with every property of body and floor moved by its standard deviation."""
-    ladder = make_ladder(motions, measure, asked, FEW_LEVELS)
-    objects = request.objects
-    variants = objects.variants()
-    # all objects under the same motions are simulated at once
-    shaken = verdicts_of_all([side for one in variants for side in one.sides], motions, ladder)
-    of_object = [
-        Moved(one.name, one.spread, lower, upper)
-        for one, lower, upper in zip(variants, shaken[::2], shaken[1::2], strict=True)
-    ]
-    of_place = [
-        one.turned(lambda place: verdicts_of_all([objects], motions.at(place), ladder)[0])
-        for one in request.place.variants()
-    ]
-    return of_object + of_place
+def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[Verdicts]]]:
+    """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
+    variants = [one.objects.variants() for one in requests]
+    sides = [side for each in variants for one in each for side in one.sides]
+    shaken = iter(verdicts_of_all(sides, plan.fewer, plan.fewer_ladder))
+    found = [[one.turned(lambda _: next(shaken)) for one in each] for each in variants]
+    objects = [one.objects for one in requests]
+    for moved in requests[0].place.variants():
+        floors = moved.turned(
+            lambda place: verdicts_of_all(objects, plan.fewer.at(place), plan.fewer_ladder)
+        )
+        for each, lower, upper in zip(found, *floors.sides, strict=True):
+            each.append(Moved(moved.name, moved.spread, lower, upper))
+    return found
 
 
 def _of_quantiles(now: Verdicts, hazard: HazardCurve) -> dict[str, float]:
@@ -369,19 +522,8 @@ def _of_quantiles(now: Verdicts, hazard: HazardCurve) -> dict[str, float]:
     return {"hazard": abs(finite[high] - finite[low]) / width}
 
 
-def _remedies(
-    request: Request,
-    motions: MotionSet,
-    ladder: Ladder,
-    target: Target,
-    now: Verdicts,
-    conversion: Conversion | None,
-) -> tuple[Remedy, ...]:
-    bodies = remedies_of(request.objects)
-    changed = verdicts_of(request.objects, bodies, motions, ladder)
-    if conversion:
-        changed = {name: conversion.at_site(one) for name, one in changed.items()}
-    found = compare(target, now, changed)
+def _remedies(request: Request, target: Target, shaken: Shaken) -> tuple[Remedy, ...]:
+    found = compare(target, shaken.before, shaken.changed)
     # an amplitude helps by growing, a probability by shrinking
     grows = request.level is None and not request.hazard
     return tuple(reversed(found) if grows else found)

@@ -119,6 +119,12 @@ def _add_object(about: Any) -> None:
         "--friction", action=_Once, type=float, help="coefficient: it may slide at that level"
     )
     about.add_argument(
+        "--pad-friction",
+        action=_Once,
+        type=float,
+        help="coefficient of a pad under the object, tried as a mitigation",
+    )
+    about.add_argument(
         "--pedestal",
         action="append",
         nargs="+",
@@ -301,6 +307,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
         "round": options.round or None,
         "restitution": options.restitution,
         "friction": options.friction,
+        "pad_friction": options.pad_friction,
         "mesh": _mesh(options),
         "pedestal": _pedestals(options.pedestal),
         "floor": options.floor,
@@ -368,7 +375,12 @@ def _pedestals(given: Sequence[Sequence[str]] | None) -> Any:
 
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
-    from rockfrag.assess.inventory import assess_inventory, inventory_lines, write_inventory
+    from rockfrag.assess.inventory import (
+        assess_inventory,
+        inventory_lines,
+        joint_lines,
+        write_inventory,
+    )
 
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:
@@ -376,7 +388,7 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     found = assess_inventory(options.file, shared, options.records, keep_going=options.keep_going)
     for fault in found.faults:
         print(f"warning: left out: {fault}", file=sys.stderr)
-    print("\n".join(inventory_lines(found)))
+    print("\n".join([*inventory_lines(found), *joint_lines(found)]))
     place = write_inventory(found, options.output, pages=options.pages)
     print(f"{place}", file=sys.stderr)
     return 0

@@ -52,7 +52,7 @@ ours."""
 NODES = 11
 """Values of equal probability that stand for the spread of ln PGV/IM."""
 
-MOST_LEVELS = 14
+MOST_LEVELS = 8
 """Levels of a motion that are fitted; tests under one motion depend on each other."""
 
 
@@ -190,6 +190,7 @@ def find_conversion(
     level: Level | None = None,
     curves: Sequence[HazardCurve] = (),
     by_statics: bool = False,
+    brief: bool = False,
 ) -> Conversion | None:
     """Fit the fragility in two measures, and gather what is known of the velocity at the site.
 
@@ -207,6 +208,8 @@ def find_conversion(
         Hazard in the measure and, if known, in PGV; empty if there is none.
     by_statics
         Whether the level alone decides what rocks.
+    brief
+        Fit without an interaction, as for one of many objects.
 
     Returns
     -------
@@ -216,7 +219,7 @@ def find_conversion(
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
-    fit = _fitted(verdicts, logs)
+    fit = _fitted(verdicts, logs, brief)
     if fit is None:
         return None
     weight, error = _weight(fit, float(np.median(logs)))
@@ -240,7 +243,7 @@ def find_conversion(
     )
 
 
-def _fitted(verdicts: Verdicts, logs: Floats) -> VectorFragility | None:
+def _fitted(verdicts: Verdicts, logs: Floats, brief: bool) -> VectorFragility | None:
     ladder = verdicts.ladder
     step = -(-ladder.levels.size // MOST_LEVELS)
     motion, level = np.nonzero(ladder.allowed[:, ::step])
@@ -254,7 +257,7 @@ def _fitted(verdicts: Verdicts, logs: Floats) -> VectorFragility | None:
         }
     )
     try:
-        return fit_vector(table, ("im", "ratio_s"))
+        return fit_vector(table, ("im", "ratio_s"), try_interaction=not brief)
     except InputError:
         return None
 

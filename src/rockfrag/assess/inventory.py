@@ -10,12 +10,27 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.assess.answer import RECORDS, Assessment, assess_with
+from rockfrag.assess.answer import (
+    RECORDS,
+    Assessment,
+    assess_with,
+    assessed,
+    plan_for,
+    shake_all,
+)
+from rockfrag.assess.joint import JointRisk, joint_risk
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.page import write_answer
+from rockfrag.assess.remedies import Remedy
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.scale import SCALE_WORDS, step_of
-from rockfrag.assess.words import does_not_move, estimate_words
+from rockfrag.assess.words import (
+    does_not_move,
+    estimate_words,
+    range_words,
+    remedy_words,
+    share_words,
+)
 from rockfrag.errors import InputError
 from rockfrag.files import check_name, file_name, write_table
 from rockfrag.report.wording import counted
@@ -23,7 +38,7 @@ from rockfrag.tabular import Row, read_rows
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
 PEDESTAL = ("pedestal_width_m", "pedestal_height_m", "pedestal_depth_m", "pedestal_mass_kg")
-OTHERS = ("floor", "restitution", "round")
+OTHERS = ("floor", "restitution", "round", "value")
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 """What a cell may say to whether a base is round."""
 
@@ -41,12 +56,15 @@ class Inventory:
         Assessments, the one most at risk first.
     motions
         The motions on the ground that they share.
+    joint
+        What topples together; None without a hazard.
     faults
         What is wrong with the rows that were left out, a sentence each.
     """
 
     found: Sequence[Assessment]
     motions: MotionSet
+    joint: JointRisk | None = None
     faults: Sequence[str] = ()
 
 
@@ -79,8 +97,8 @@ def assess_inventory(
     path
         CSV with ``name``, ``width``, ``height`` and, where known, ``depth``, ``mass``, ``cg_height``,
         ``pedestal_width``, ``pedestal_height``, ``pedestal_depth``, ``pedestal_mass``, ``floor``,
-        ``restitution`` and ``round``; units stand in the titles or in the cells. Several pedestals stand in a
-        cell from above, ``60|80``.
+        ``restitution``, ``round`` and ``value`` (of all or of none); units stand in the titles or in the cells.
+        Several pedestals stand in a cell from above, ``60|80``.
     shared
         What holds for all, with the keys of ``statue.yaml``, such as the hazard.
     records
@@ -98,15 +116,32 @@ def assess_inventory(
     requests, faults = read_inventory(path, shared or {})
     if faults and not (keep_going and requests):
         raise FaultyRows(faults)
-    motions: MotionSet | None = None
-    found = []
-    for request in requests:
-        if motions is None:
-            motions = motion_set(request.records, request.place, Path(records))
-        found.append(assess_with(request, motions.at(request.place), brief=True))
-    assert motions is not None  # a table has a row
-    found.sort(key=_risk, reverse=True)
-    return Inventory(found, motions, faults)
+    motions = motion_set(requests[0].records, requests[0].place, Path(records))
+    found = _all_assessed(requests, motions)
+    values = {one.name: one.value if math.isfinite(one.value) else 1.0 for one in requests}
+    joint = joint_risk(found, values)
+    order = {}
+    if joint is not None:
+        order = dict(zip(joint.objects["name"], joint.objects["annual_loss"], strict=True))
+    found.sort(key=lambda one: (order.get(one.request.name, 0.0), *_risk(one)), reverse=True)
+    return Inventory(found, motions, joint, faults)
+
+
+def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
+    """Assess objects, those in places that shake alike at once."""
+    groups: dict[object, list[int]] = {}
+    for i, one in enumerate(requests):
+        kind = one.place.key, one.objects.round, one.objects.many
+        # of several curves the one that counts may differ from object to object
+        alone = i if len(one.hazard) > 2 else -1
+        groups.setdefault((*kind, alone), []).append(i)
+    found: dict[int, Assessment] = {}
+    for members in groups.values():
+        same = [requests[i] for i in members]
+        plan = plan_for(same[0], motions.at(same[0].place), brief=True)
+        for i, shaken in zip(members, shake_all(same, plan), strict=True):
+            found[i] = assessed(requests[i], plan, shaken)
+    return [found[i] for i in range(len(requests))]
 
 
 def read_inventory(
@@ -127,9 +162,7 @@ def read_inventory(
         If the table cannot be used.
     """
     if "friction" in shared:
-        raise InputError(
-            "key friction: sliding takes some hundred times as long; assess the object alone."
-        )
+        raise InputError("key friction: sliding takes long; assess the object alone.")
     needed = ["name", *SIZES[:2]]
     faults: list[str] = []
     rows = read_rows(
@@ -149,6 +182,9 @@ def read_inventory(
             requests.append(_request(row, name, shared))
         except InputError as error:
             faults.append(str(error))
+    without = [one.name for one in requests if math.isnan(one.value)]
+    if without and len(without) < len(requests):
+        raise InputError(f"{path}: {without[0]} has no value; give that of all objects or of none.")
     return requests, faults
 
 
@@ -182,9 +218,10 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
         own["restitution"] = row.positive("restitution")
     if row.has("round"):
         own["round"] = _yes(row, "round")
+    worth = row.positive("value") if row.has("value") else math.nan
     where = f"{row.path}, line {row.line}"
     try:
-        return make_request({**shared, **own}, where)
+        return replace(make_request({**shared, **own}, where), value=worth)
     except InputError as error:
         raise InputError(_in_columns(str(error), own)) from None
 
@@ -239,8 +276,47 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
         }
         if found.rocking is not None:
             row["share_rocking"] = found.rocking.value
+        best = best_change(found)
+        if best is not None:
+            row |= {"best_change": best.name, "factor": best.factor}
+            row |= {"factor_lower": best.lower, "factor_upper": best.upper}
         rows.append(row)
-    return pd.DataFrame(rows)
+    table = pd.DataFrame(rows)
+    return table if inventory.joint is None else table.merge(inventory.joint.objects, on="name")
+
+
+def best_change(found: Assessment) -> Remedy | None:
+    """The change that helps an object most; None where none does or none is needed."""
+    first = found.remedies[0] if found.remedies else None
+    return first if first is not None and first.helps and found.main.value > 0 else None
+
+
+def joint_lines(inventory: Inventory) -> list[str]:
+    """What topples together, what is lost, and what helps the object that adds most, a sentence each."""
+    joint, first = inventory.joint, inventory.found[0]
+    if joint is None:
+        return []
+    columns = ["at_least", "probability", "probability_lower", "probability_upper"]
+    at_least = ", ".join(
+        f"{least:g}: {share_words(value)} ({range_words(lower, upper)})"
+        for least, value, lower, upper in joint.numbers[columns].to_numpy(dtype=float).tolist()
+    )
+    years = f"{first.request.years:g} years"
+    lines = [
+        f"At least so many topple in one earthquake, probability in {years}: {at_least}; of the bodies' own "
+        "uncertainties none is counted here."
+    ]
+    top = joint.objects.iloc[0]
+    if math.isfinite(first.request.value):
+        total = joint.objects["annual_loss"].sum()
+        lines.append(
+            f"The mean loss a year is {total:.3g} in the unit of the values, {top['contribution']:.0%} of it of "
+            f"{top['name']}."
+        )
+    best = best_change(first)
+    if best is not None:
+        lines.append(f"For {first.request.name}: {remedy_words(first, best)}.")
+    return lines
 
 
 def inventory_lines(inventory: Inventory) -> list[str]:
@@ -298,6 +374,10 @@ def write_inventory(
     """
     place = Path(folder) / "inventory.csv"
     write_table(inventory_table(inventory), place)
+    if inventory.joint is not None:
+        write_table(inventory.joint.numbers, place.with_name("together.csv"))
+        write_table(inventory.joint.losses, place.with_name("losses.csv"))
+        write_table(inventory.joint.correlation.reset_index(), place.with_name("correlation.csv"))
     if pages:
         for found in inventory.found:
             motions = inventory.motions.at(found.request.place)

@@ -110,6 +110,10 @@ class MotionSet:
             self._values[measure] = values
         return self._values[measure]
 
+    def median(self, measure: Measure) -> float:
+        """Median of the components in a measure, the same for records in their worst direction."""
+        return float(np.median(replace(self, worst=False).values(measure)))
+
     def in_worst_direction(self) -> "MotionSet":
         """The same records, each from its worst direction; one without a second component as it is."""
         words = self.words

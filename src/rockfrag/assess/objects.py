@@ -9,6 +9,7 @@ from typing import Any
 
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.moved import Moved, moved_to_both_sides
+from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError
 from rockfrag.plausibility import DENSITIES, STONE, check_density, size_warning
 from rockfrag.rocking.options import system_of
@@ -20,18 +21,12 @@ from rockfrag.system.system import System, uplift_ratios
 COMMON = (150.0, 9000.0)
 """Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
 
-CONTACT_TOLERANCE = 0.002
-"""Height above its lowest point up to which a scanned statue carries, unless stated [m]."""
-
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
 
-CONTACT_SPREAD, KNOWN_CONTACT_SPREAD = 0.6, 0.2
-"""Relative standard deviation of the contact tolerance of a scan that was assumed, and of one that was given:
-of ours; for a granite rock on a shaking table 0.5 to 1.9 mm were plausible."""
-
-_RETREATS = (1.0, 0.75, 0.5, 0.25)
-"""Parts of a step towards a contact tolerance that are tried until the object stands."""
+ON_POINTS = {"livelier": 0.85, "restitution": 0.1}
+"""Middle and relative standard deviation of the restitution of a scanned body over that of momentum, which is
+uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
 ROLLING = 1.0
 """Restitution of a round base: its rim rolls from edge to edge and loses nothing."""
@@ -58,7 +53,7 @@ class Objects:
         Whether the base of the object is round: it then rolls on its rim, loses nothing and falls in the worst
         direction.
     scan
-        The scan as it stands on points within some tolerance; None where dimensions were given.
+        The scan and the ways in which it may stand; None where dimensions were given.
     livelier
         Factor on every restitution, measured or not [-]; impacts never gain energy.
     tolerances
@@ -69,6 +64,8 @@ class Objects:
         What was not given.
     doubts
         Sentences, one for each thing that looks wrong.
+    pad_friction
+        Coefficient of friction of a pad that is tried under the object [-]; None to try none.
     """
 
     statue: Block
@@ -78,10 +75,11 @@ class Objects:
     tolerances: Mapping[str, float]
     plane: str
     round: bool = False
-    scan: "Scan | None" = None
+    scan: Scan | None = None
     livelier: float = 1.0
     assumed: tuple[Assumption, ...] = ()
     doubts: tuple[str, ...] = ()
+    pad_friction: float | None = None
 
     @property
     def body(self) -> Body:
@@ -152,58 +150,17 @@ class Objects:
             moves["restitution"] = partial(_livelier, self)
         if self.pedestals:
             moves["mass"] = partial(_heavier, self)
+        found = moved_to_both_sides(moves, self.tolerances)
         if self.scan is not None:
-            moves["contact"] = partial(_carried_by, self, self.scan)
-        spreads = dict(self.tolerances)
-        if self.scan is not None:
-            spreads.setdefault("contact", self.scan.spread)
-        return moved_to_both_sides(moves, spreads)
+            found += [_standing(self, self.scan, name) for name in self.scan.parts]
+        return found
 
 
-@dataclass(frozen=True)
-class Scan:
-    """A scan that stands on all points within some height above the lowest one.
-
-    Attributes
-    ----------
-    shape
-        The scan.
-    tolerance
-        That height [m].
-    retreat
-        Distance by which edges carry further in [m].
-    spread
-        Relative standard deviation of the height [-].
-    """
-
-    shape: Shape
-    tolerance: float
-    retreat: float
-    spread: float
-
-    def block(self, factor: float = 1.0) -> tuple[Block, float, float]:
-        """Return the block where it balances at the least angle, its direction [degrees] and angle [rad].
-
-        Parameters
-        ----------
-        factor
-            On the height up to which points carry.
-        """
-        direction, angle = self.shape.worst_direction(self.tolerance * factor)
-        return self.shape.block(direction, self.tolerance * factor, self.retreat), direction, angle
-
-
-def _carried_by(objects: Objects, scan: Scan, factor: float) -> Objects:
-    """Let points carry up to another height; as near to it as the object still stands."""
-    for part in _RETREATS:
-        try:
-            statue, *_ = scan.block(1 + part * (factor - 1))
-            moved = replace(objects, statue=statue)
-            _ = moved.body
-        except InputError:
-            continue
-        return moved
-    return objects
+def _standing(objects: Objects, scan: Scan, name: str) -> Moved[Objects]:
+    """The object in the ways to stand that are one standard deviation of a source away."""
+    low, high, spread = scan.sides()[name]
+    lower, upper = (replace(objects, statue=scan.block(at)) for at in (low, high))
+    return Moved(name, spread, lower, upper)
 
 
 def _wider(objects: Objects, factor: float) -> Objects:
@@ -276,19 +233,24 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
             doubts.append(doubt + ".")
     first = [_of_the_base(is_round, "mesh" in settings)]
     if not is_round and "restitution" not in settings:
-        first.append(_RESTITUTION)
+        first.append(_ON_POINTS if scan else _RESTITUTION)
+    on_points = scan is not None and not is_round and "restitution" not in settings
     objects = Objects(
         statue=statue,
         pedestals=pedestals,
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),
-        tolerances=_tolerances(settings),
+        tolerances=_tolerances(settings, on_points),
+        livelier=ON_POINTS["livelier"] if on_points else 1.0,
         plane=plane,
         round=is_round,
         scan=scan,
         assumed=(*first, *assumed),
         doubts=tuple(doubts),
+        pad_friction=settings.get("pad_friction"),
     )
+    if objects.round and objects.pad_friction is not None:
+        raise InputError("key pad_friction: is not simulated under a round base; leave it out.")
     _check_restitution(objects)
     return objects
 
@@ -297,6 +259,14 @@ _RESTITUTION = Assumption(
     "impacts lose what conservation of momentum takes",
     "Each impact takes as much energy as conservation of momentum does (Housner 1963); the restitution was not "
     "measured.",
+    ("restitution",),
+)
+
+
+_ON_POINTS = Assumption(
+    "impacts on few points take more than conservation of momentum does",
+    "Each impact leaves 0.7 to 1 times the velocity that conservation of momentum does, 0.85 in the middle; the "
+    "restitution was not measured.",
     ("restitution",),
 )
 
@@ -314,7 +284,8 @@ def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
     if is_mesh:
         return Assumption(
             "it rocks in one plane",
-            "It rocks in the plane in which it balances at the least angle.",
+            "It rocks in one plane; the planes of all directions and what carries in them are a source of the "
+            "interval.",
         )
     return Assumption(
         "the base is rectangular",
@@ -322,7 +293,7 @@ def _of_the_base(is_round: bool, is_mesh: bool) -> Assumption:
     )
 
 
-def _tolerances(settings: Mapping[str, Any]) -> Mapping[str, float]:
+def _tolerances(settings: Mapping[str, Any], on_points: bool) -> Mapping[str, float]:
     given = settings.get("tolerances", {})
     if "mass" in given and "pedestal" not in settings:
         raise InputError(
@@ -332,9 +303,8 @@ def _tolerances(settings: Mapping[str, Any]) -> Mapping[str, float]:
         raise InputError("key tolerances.restitution: a round base loses nothing; leave it out.")
     if "contact" in given and "mesh" not in settings:
         raise InputError("key tolerances.contact: is that of a scan; leave it out.")
-    return TOLERANCES | {
-        key: float(given[key]) for key in given if key in TOLERANCES or key == "contact"
-    }
+    usual = TOLERANCES | ({"restitution": ON_POINTS["restitution"]} if on_points else {})
+    return usual | {key: float(given[key]) for key in given if key in TOLERANCES}
 
 
 def _check_restitution(objects: Objects) -> None:
@@ -457,27 +427,19 @@ def _from_mesh(
                 ("cg_height",),
             )
         )
-    tolerance = mesh.get("contact_tolerance_m")
-    if tolerance is None:
-        tolerance = CONTACT_TOLERANCE
-        assumed.append(
-            Assumption(
-                f"points within {1000 * tolerance:g} mm of the lowest one carry",
-                f"Points of the scan within {1000 * tolerance:g} mm of the lowest one carry; the answer depends "
-                "much "
-                "on that where the foot is uneven.",
-                ("contact",),
-            )
-        )
-    spread = KNOWN_CONTACT_SPREAD if "contact_tolerance_m" in mesh else CONTACT_SPREAD
     try:
-        shape = _shape(mesh, folder, mass)
-        scan = Scan(shape, tolerance, float(mesh.get("edge_retreat_m", 0.0)), spread)
-        block, direction, angle = scan.block()
+        scan, of_scan = make_scan(
+            _shape(mesh, folder, mass), mesh, settings.get("tolerances", {}).get("contact")
+        )
     except InputError as error:
         raise InputError(_in_keys(str(error))) from None
-    plane = f"towards {direction:.0f}° of the mesh, where it balances at {math.degrees(angle):.1f}°"
-    return scan, block, plane
+    assumed += of_scan
+    way = scan.row_at(0.5)
+    plane = (
+        f"towards {way['direction_deg']:.0f}° of the mesh, where it balances at {way['alpha_deg']:.1f}°, as the "
+        f"middle one of {len(scan.ways)} ways to stand does"
+    )
+    return scan, scan.block(), plane
 
 
 def _shape(mesh: Mapping[str, Any], folder: Path, mass: float | None) -> Shape:

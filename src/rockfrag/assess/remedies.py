@@ -1,22 +1,31 @@
-"""What helps: the object changed, shaken by the same motions, as a factor on the probability."""
+"""What helps: the object changed, as a body, shaken by the same motions, as a factor on the probability."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
 
-from rockfrag.assess.objects import Objects, higher, wider
+from rockfrag.assess.objects import Objects, higher
 from rockfrag.assess.risk import LEVEL, Target, event_weights
 from rockfrag.assess.verdicts import Verdicts
-from rockfrag.system.blocks import Body, stacked
+from rockfrag.system.blocks import Block, Body, Stack, stacked
 
 WIDER = 1.25
-"""Factor of a wider base."""
+"""Width of a foot plate over that of the base."""
+
+PLATE, STEEL = 0.02, 7850.0
+"""Thickness of a foot plate [m], square and of steel [kg/m³]."""
 
 LOWER = 0.8
 """Factor of a lower centre of gravity."""
+
+BALLAST, BALLAST_AT = 0.25, 0.05
+"""Mass of ballast over that of the object, and its height over that of the object."""
+
+PEDESTAL_HEIGHT = 0.5
+"""Height of another pedestal over that of the one that is there."""
 
 
 @dataclass(frozen=True)
@@ -54,22 +63,50 @@ def remedies_of(objects: Objects) -> dict[str, Body]:
         The object as it is.
     """
     statue, pedestals = objects.statue, objects.pedestals
-    more, less = f"{100 * (WIDER - 1):.0f} % wider", f"{100 * (1 - LOWER):.0f} % lower"
-    if not pedestals:
-        return {
-            f"a base {more}": wider(statue, WIDER),
-            f"a centre of gravity {less}": higher(statue, LOWER),
-        }
-    lowest, highest = pedestals[0], pedestals[-1]
-    where = "lowest pedestal" if objects.many else "pedestal"
-    found = {
-        f"a base {more} under the {where}": stacked((wider(lowest, WIDER), *pedestals[1:], statue))
+    lower = {
+        f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": higher(statue, LOWER),
+        f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(statue),
     }
+    if not pedestals:
+        return {_plate_words(statue, "it"): on_plate(statue), **lower}
+    lowest, highest = pedestals[0], pedestals[-1]
+    where = "the lowest pedestal" if objects.many else "the pedestal"
+    found = {_plate_words(lowest, where): stacked((on_plate(lowest), *pedestals[1:], statue))}
     if WIDER * statue.width <= highest.width:
-        # beyond the pedestal's edges a wider base carries no further out
-        found[f"a base {more} under the object"] = stacked((*pedestals, wider(statue, WIDER)))
-    found[f"a centre of gravity {less}"] = stacked((*pedestals, higher(statue, LOWER)))
+        # beyond the pedestal's edges a plate carries no further out
+        found[_plate_words(statue, "the object")] = stacked((*pedestals, on_plate(statue)))
+    found |= {name: stacked((*pedestals, body)) for name, body in lower.items()}
+    half = replace(
+        lowest, height=PEDESTAL_HEIGHT * lowest.height, mass=PEDESTAL_HEIGHT * lowest.mass
+    )
+    found[f"another pedestal, {100 * half.height:.3g} cm high and as wide"] = stacked(
+        (half, *pedestals[1:], statue)
+    )
     return found | _fixed(objects)
+
+
+def on_plate(block: Block) -> Block:
+    """The block fixed to a square plate of steel under it, wider than its base."""
+    width = WIDER * block.width
+    plate = Block(width, PLATE, STEEL * PLATE * width**2)
+    return Stack(plate, block).rigidly_joined()
+
+
+def _plate_words(block: Block, what: str) -> str:
+    wide, thick = 100 * WIDER * block.width, 100 * PLATE
+    return f"a steel plate of {wide:.3g} cm, {thick:g} cm thick, fixed under {what}"
+
+
+def with_ballast(block: Block) -> Block:
+    """The block with ballast near its foot, in the middle of its base."""
+    added = BALLAST * block.mass
+    mass = block.mass + added
+    at = BALLAST_AT * block.height
+    height = (block.mass * block.h + added * at) / mass
+    aside = block.mass * block.cg_offset / mass
+    own = block.mass * ((block.h - height) ** 2 + (block.cg_offset - aside) ** 2)
+    inertia = block.centroidal_inertia + own + added * ((at - height) ** 2 + aside**2)
+    return replace(block, mass=mass, cg_height=height, cg_offset=aside, inertia=inertia)
 
 
 def _fixed(objects: Objects) -> dict[str, Body]:
@@ -143,4 +180,6 @@ def without_simulation() -> list[str]:
         "Fixing everything to the floor ends rocking; its anchors then carry the whole inertia.",
         "Base isolation helps against fast shaking and little against slow pulses; it needs a design of its own "
         "and is not simulated here.",
+        "An object on a pad (--pad-friction) slides instead of rocking; how far is said, and that it may leave "
+        "what it stands on, or meet a wall, is not counted.",
     ]

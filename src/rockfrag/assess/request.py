@@ -94,6 +94,8 @@ class Request:
         Time for the probability [year].
     records
         Where the motions come from.
+    value
+        What the object is worth, in any unit; NaN if not given.
     """
 
     name: str
@@ -103,6 +105,7 @@ class Request:
     hazard: tuple[HazardCurve, ...] = ()
     years: float = YEARS
     records: Records = field(default_factory=Records)
+    value: float = math.nan
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:

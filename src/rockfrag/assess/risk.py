@@ -22,6 +22,7 @@ bound; for the rate only where one earthquake holds every toppling.
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,21 +58,27 @@ def toppling_rate(levels: Floats, shares: Floats, hazard: HazardCurve, shift: fl
     shift
         Logarithm of a factor on all levels: the object bears so much more.
     """
-    x = np.log(levels) + shift
+    return float(shares @ _rate_weights(levels.tobytes(), hazard, shift))
+
+
+@lru_cache(maxsize=512)
+def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
+    """The rate of toppling where one level alone topples all, shape (levels,): rates are linear in shares."""
+    x = np.log(np.frombuffer(levels)) + shift
     # pieces end at levels of the ladder and at points of the hazard curve, where its slope changes
     knots = np.log(hazard.levels)
     inside = knots[(knots > x[0]) & (knots < x[-1])]
     ends = np.union1d(x, inside)
-    share = np.interp(ends, x, shares)
+    share = np.array([np.interp(ends, x, unit) for unit in np.eye(x.size)])
     rate = hazard.rate(np.exp(ends))
     slope = -np.diff(np.log(rate)) / np.diff(ends)
     width = np.diff(ends)
-    low, high = share[:-1], share[1:]
+    low, high = share[:, :-1], share[:, 1:]
     # ∫ (P0 + b u) k H0 e^{-ku} du over u = 0..w is P0 H0 - P1 H1 + b (H0 - H1) / k
     parts = (
         low * rate[:-1] - high * rate[1:] + (high - low) / width * (rate[:-1] - rate[1:]) / slope
     )
-    return float(parts.sum() + share[-1] * rate[-1])
+    return np.asarray(parts.sum(axis=1) + share[:, -1] * rate[-1])
 
 
 def probability_in(rate: float, years: float) -> float:

@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from rockfrag.plausibility import LARGEST_PEAK
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
 from rockfrag.system.blocks import Body
+from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
 
 Floats = NDArray[np.float64]
@@ -27,6 +28,12 @@ LEVELS = 80
 
 FEW_LEVELS = 28
 """Levels for what is only compared, and for many objects."""
+
+FEWEST_LEVELS = 14
+"""Levels for what is only compared of many objects."""
+
+MOST_TESTS = 400_000
+"""Tests that are simulated at once, which bounds the memory of their results."""
 
 RANGE = (0.05, 8.0)
 """Lowest and highest level over the median of the motions as recorded."""
@@ -62,6 +69,10 @@ class Ladder:
     allowed: NDArray[np.bool_]
 
 
+AT_REST = 1e-9
+"""Factor of motions that are not counted: at rest costs nothing."""
+
+
 def believable_scales(base: Sequence[Motion]) -> Floats:
     """Largest factor on each motion at which it is still one that a floor may feel, shape (motions, 1)."""
     return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
@@ -84,7 +95,7 @@ def make_ladder(
         Number of other levels.
     """
     values = motions.values(measure)
-    middle = float(np.median(values))
+    middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
     scales = levels / values[:, np.newaxis]
@@ -195,8 +206,7 @@ def verdicts_of(
     ladder
         The levels.
     """
-    systems = [objects.system_of(body) for body in bodies.values()]
-    return dict(zip(bodies, _shaken(systems, motions, ladder), strict=True))
+    return verdicts_of_each([objects], [bodies], motions, ladder)[0]
 
 
 def verdicts_of_all(
@@ -213,17 +223,48 @@ def verdicts_of_all(
     ladder
         The levels.
     """
-    return _shaken([one.system_of(one.body) for one in objects], motions, ladder)
+    bodies = [{"": one.body} for one in objects]
+    return [found[""] for found in verdicts_of_each(objects, bodies, motions, ladder)]
+
+
+def verdicts_of_each(
+    objects: Sequence[Objects],
+    bodies: Sequence[Mapping[str, Body]],
+    motions: MotionSet,
+    ladder: Ladder,
+) -> list[dict[str, Verdicts]]:
+    """Shake several bodies of each of several objects by every motion at every level.
+
+    Parameters
+    ----------
+    objects
+        The objects.
+    bodies
+        Bodies of each by name.
+    motions
+        The motions.
+    ladder
+        The levels.
+    """
+    systems = [
+        one.system_of(body)
+        for one, named in zip(objects, bodies, strict=True)
+        for body in named.values()
+    ]
+    most = max(1, MOST_TESTS // ladder.scales.size)
+    found: list[Verdicts] = []
+    for i in range(0, len(systems), most):
+        found += _shaken(systems[i : i + most], motions, ladder)
+    each = iter(found)
+    return [{name: next(each) for name in named} for named in bodies]
 
 
 def _shaken(systems: Sequence[System], motions: MotionSet, ladder: Ladder) -> list[Verdicts]:
-    """Verdicts of planar bodies; an engine in space would take both components of a record here."""
-    if not systems:
-        return []
+    """Outcomes of planar bodies; an engine in space would take both components of a record here."""
     if motions.worst:
         return _shaken_from_all_sides(systems, motions, ladder)
-    # what is beyond is not counted, and need not be simulated as it is
-    scales = np.minimum(ladder.scales, believable_scales(motions.base))
+    scales = np.where(ladder.allowed, ladder.scales, AT_REST)
+    scales = np.minimum(scales, believable_scales(motions.base))
     result, light = simulated(systems, motions.base, scales)
     rocked = limit_state_named("rocks").reached(result)
     return [
@@ -269,6 +310,7 @@ def _shaken_from_all_sides(
     shaking = [motion for _, turned in records for motion in turned]
     of_row = np.repeat([i for i, _ in records], [len(turned) for _, turned in records])
     scales = np.minimum(ladder.scales[of_row], believable_scales(shaking))
+    scales = np.where(ladder.allowed[of_row], scales, AT_REST)
     result, light = simulated(systems, shaking, scales)
     # the place of the record that stands for each motion
     place = np.arange(len(motions.base))
@@ -282,6 +324,38 @@ def _shaken_from_all_sides(
         np.logical_or.at(rocked, of_row, moves[i])
         found.append(Verdicts(ladder, fell[place], rocked[place], motions.events, light))
     return found
+
+
+def on_pad(
+    objects: Objects, friction: float, motions: MotionSet, ladder: Ladder
+) -> tuple[Verdicts, Floats]:
+    """Outcomes of the object on a pad on which it may slide, and how far it does.
+
+    Parameters
+    ----------
+    objects
+        The object as it is.
+    friction
+        Coefficient of friction of the pad, which lies between the object and what it stands on [-].
+    motions
+        The motions.
+    ladder
+        The levels.
+
+    Returns
+    -------
+    outcomes, slip
+        The largest displacement on the pad [m] has the shape (motions, levels).
+    """
+    system = objects.system_of(objects.body)
+    *below, pad = system.contacts
+    pad = replace(pad, friction=Friction(friction, friction))
+    system = replace(system, contacts=(*below, pad))
+    scales = np.where(ladder.allowed, ladder.scales, AT_REST)
+    result = overturns(system, motions.base, scales=scales)
+    rocked = limit_state_named("rocks").reached(result)[0]
+    outcomes = Verdicts(ladder, result.overturned[0], rocked, motions.events)
+    return outcomes, result.peak_slip[0, ..., -1]
 
 
 def share_with_sliding(

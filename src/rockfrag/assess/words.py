@@ -63,7 +63,12 @@ def estimate_words(estimate: Estimate) -> str:
 
 def _range(estimate: Estimate) -> str:
     """The limits of an interval, such as ``1.3 to 18 %``."""
-    return f"{_limit(estimate.lower)} to {_limit(estimate.upper)} %"
+    return range_words(estimate.lower, estimate.upper)
+
+
+def range_words(lower: float, upper: float) -> str:
+    """Two limits in per cent, such as ``1.3 to 18 %``."""
+    return f"{_limit(lower)} to {_limit(upper)} %"
 
 
 def _limit(share: float) -> str:

@@ -4,7 +4,6 @@ from .drift import (
 )
 from .floors import (
     floor_motions as floor_motions,
-    floor_spectra as floor_spectra,
     respond as respond,
 )
 from .hysteresis import (

@@ -7,7 +7,6 @@ from rockfrag.building.drift import judge_drift
 from rockfrag.building.inelastic import respond_hysteretically
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.response import BuildingResponse, respond_elastically
-from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
 from rockfrag.records.motion import Motion
 
 
@@ -73,38 +72,6 @@ def response_motions(
     return [
         _floor_motion(building, motion, response, label, building.level(label)) for label in floors
     ]
-
-
-def floor_spectra(
-    building: ShearBuilding,
-    motion: Motion,
-    periods: Sequence[float],
-    damping: float = 0.05,
-    floors: Sequence[str] | None = None,
-) -> dict[str, ResponseSpectrum]:
-    """Response spectra of labelled floors: of what light equipment on them would feel.
-
-    Parameters
-    ----------
-    building
-        Building; its model says whether it responds elastically or hysteretically.
-    motion
-        Ground acceleration.
-    periods
-        Natural periods [s].
-    damping
-        Fraction of critical damping of the equipment [-].
-    floors
-        Labels that the building gives to its floors; all of them if not given.
-
-    Returns
-    -------
-    Spectrum of each floor by its label.
-    """
-    return {
-        str(floor.metadata["floor"]): response_spectrum(floor, periods, damping)
-        for floor in floor_motions(building, motion, floors)
-    }
 
 
 def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:

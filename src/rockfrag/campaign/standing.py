@@ -52,7 +52,16 @@ def _uniform(low: float, high: float, fraction: float) -> float:
     return low + (high - low) * fraction
 
 
-def _lognormal(median: float, spread: float, fraction: float) -> float:
+def lognormal(median: float, spread: float, fraction: float) -> float:
+    """Quantile of a lognormal distribution.
+
+    Parameters
+    ----------
+    median, spread
+        Median, and standard deviation of the logarithm.
+    fraction
+        Probability below it, between 0 and 1.
+    """
     return median * math.exp(spread * float(norm.ppf(fraction)))
 
 
@@ -89,7 +98,7 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, U
             "the height up to which points carry",
             f"lognormal, median {median:g} mm (two standard deviations of a scanned height, which is as much as "
             f"noise lowers the lowest of many points), ± {100 * spread:g} %, of ours",
-            partial(_lognormal, median, spread),
+            partial(lognormal, median, spread),
         ),
         "edge_retreat_mm": Unknown(
             "how far the edges carry further in",
@@ -106,7 +115,11 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, U
 
 
 def ways_to_stand(
-    thing: Shape | Block, unknowns: Mapping[str, Unknown], count: int, seed: int
+    thing: Shape | Block,
+    unknowns: Mapping[str, Unknown],
+    count: int,
+    seed: int,
+    known: Mapping[str, float] | None = None,
 ) -> Trials:
     """Draw ways in which an object may stand, evenly over the distributions (scrambled Sobol points).
 
@@ -122,6 +135,8 @@ def ways_to_stand(
         Number of draws; a power of two fills the distributions most evenly.
     seed
         Of the scrambling.
+    known
+        What was measured, by the name of the unknown; its restitution conserves momentum if it is in neither.
 
     Raises
     ------
@@ -131,7 +146,7 @@ def ways_to_stand(
     points = qmc.Sobol(len(unknowns), scramble=True, rng=np.random.default_rng(seed)).random(count)
     rows, systems = [], []
     for point in points:
-        way = {
+        way = dict(known or {}) | {
             name: one.quantile(u) for (name, one), u in zip(unknowns.items(), point, strict=True)
         }
         try:
@@ -143,7 +158,7 @@ def ways_to_stand(
             continue
         momentum = min(block.momentum_restitution(+1), block.momentum_restitution(-1))
         rows.append(way | {"width_m": block.width, "alpha_deg": angle})
-        ratio = possible_restitution(block, way["restitution_ratio"] * momentum)
+        ratio = possible_restitution(block, way.get("restitution_ratio", 1.0) * momentum)
         systems.append(system_of(block, restitution=ratio))
     if not rows:
         raise InputError(

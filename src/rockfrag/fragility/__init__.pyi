@@ -9,7 +9,6 @@ from .discrete_hazard import (
     fit_step_hazard as fit_step_hazard,
 )
 from .empirical import (
-    isotonic_share as isotonic_share,
     local_share as local_share,
     share_in_bins as share_in_bins,
     survival_windows as survival_windows,
@@ -63,7 +62,6 @@ from .surface import (
 from .sweeps import (
     fragility_row as fragility_row,
     fragility_table as fragility_table,
-    fragility_tables as fragility_tables,
     record_set_hash as record_set_hash,
     table_hash as table_hash,
     with_measures as with_measures,

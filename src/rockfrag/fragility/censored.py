@@ -17,7 +17,6 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.intervals import (
     MOST_BLOCKS,
     Interval,
-    IntervalMethod,
     Over,
     WeightedFit,
     population,
@@ -218,30 +217,16 @@ def bracket_fitter(brackets: Brackets, over: Over = "motion") -> tuple[WeightedF
 
 
 def bracket_interval(
-    brackets: Brackets,
-    *,
-    over: Over | None = None,
-    method: IntervalMethod = "jackknife",
-    level: float = 0.90,
-    replicates: int = 1000,
-    seed: int = 0,
+    brackets: Brackets, *, over: Over | None = None, level: float = 0.90
 ) -> Interval:
-    """Confidence limits of a curve fitted to brackets, by resampling whole motions or events.
+    """Confidence limits of a curve fitted to brackets, by leaving out whole motions or events.
 
     Parameters
     ----------
     brackets
         Bounds of the amplitudes, see :class:`Brackets`.
-    over
-        What is resampled: ``motion`` or ``event``; None takes events where they are known.
-    method
-        Kind of limits: ``jackknife``, ``percentile`` or ``bca`` (bootstrap).
-    level
-        Of the confidence limits [-], 0 to 1.
-    replicates
-        Number of bootstrap replicates.
-    seed
-        Seed of the bootstrap.
+    over, level
+        As of :func:`rockfrag.fragility.interval_over_motions`.
 
     Returns
     -------
@@ -250,16 +235,7 @@ def bracket_interval(
     motions, events = (len(pd.unique(pd.Series(of))) for of in (brackets.motion, brackets.event))
     over, notes = population(motions, events, over)
     fit, groups = bracket_fitter(brackets, over)
-    found = resampled_interval(
-        fit,
-        groups,
-        over=over,
-        notes=notes,
-        method=method,
-        level=level,
-        replicates=replicates,
-        seed=seed,
-    )
+    found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
     if found.method == "none" and groups > 1 and brackets.n_overturned:
         # neighbouring steps touch, so the brackets may share no more than a point: all of them count
         return step_limits(found, float(brackets.lower.min()), float(brackets.upper.max()))

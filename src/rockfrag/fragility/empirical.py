@@ -1,4 +1,4 @@
-"""What the verdicts say without a curve: shares in bins, isotonic and local, survival windows.
+"""What the verdicts say without a curve: shares in bins and near a value, survival windows.
 
 Rocking bodies overturn at one amplitude and survive a larger one; a fitted curve cannot show it, so
 these stand beside it.
@@ -97,31 +97,6 @@ def share_in_bins(outcomes: Outcomes, bins: int = 10, level: float = 0.90) -> pd
     alone = np.array(independent)
     lower, upper = wilson_interval(table["share"].to_numpy() * alone, alone, level)
     return table.assign(share_lower=lower, share_upper=upper)
-
-
-def isotonic_share(outcomes: Outcomes) -> pd.DataFrame:
-    """Never-falling share of overturned tests closest to the verdicts (pool adjacent violators).
-
-    Parameters
-    ----------
-    outcomes
-        Verdicts with their measure, see :class:`Outcomes`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row per value of the measure, ascending: ``im``, ``tests``, ``share`` (raw),
-        ``isotonic``.
-    """
-    from scipy import optimize
-
-    values, code = np.unique(outcomes.im, return_inverse=True)
-    trials = np.bincount(code, outcomes.trials)
-    share = np.bincount(code, outcomes.overturned) / trials
-    fitted = optimize.isotonic_regression(share, weights=trials).x
-    return pd.DataFrame(
-        {"im": values, "tests": trials.astype(np.int64), "share": share, "isotonic": fitted}
-    )
 
 
 def local_share(outcomes: Outcomes, im: ArrayLike, bandwidth: float | None = None) -> Floats:

@@ -15,10 +15,10 @@ from rockfrag.fragility.censored import (
     fit_brackets,
 )
 from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_verdicts
-from rockfrag.fragility.empirical import survival_windows
-from rockfrag.fragility.intervals import Interval, IntervalMethod, interval_over_motions
+from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Outcomes, outcomes_from_table
+from rockfrag.fragility.sweep_data import SweepData, TableSweep
 from rockfrag.keywords import named_keywords
 from rockfrag.short_repr import short_repr
 
@@ -89,16 +89,11 @@ def fragility_of(
     outcomes: Outcomes,
     *,
     link: Link = "probit",
-    interval: IntervalMethod = "jackknife",
     level: float = 0.90,
-    replicates: int = 1000,
     seed: int = 0,
     dependence: Literal["tests", "motions"] | None = None,
 ) -> Fragility:
     """Fit a curve to verdicts and give it limits over motions, or events where they are known.
-
-    ``dependence`` says how the goodness of fit is simulated, see
-    :func:`rockfrag.fragility.goodness.goodness_of_fit`.
 
     Parameters
     ----------
@@ -106,25 +101,17 @@ def fragility_of(
         Verdicts with their measure, see :class:`Outcomes`.
     link
         ``probit`` (lognormal curve) or ``logit``.
-    interval
-        Kind of limits: ``jackknife``, ``percentile`` or ``bca`` (bootstrap).
     level
         Of the confidence limits [-], 0 to 1.
-    replicates
-        Number of bootstrap replicates.
-    seed
-        Seed of the bootstrap.
-    dependence
-        How the goodness of fit is simulated: ``tests`` or ``motions``; see :func:`goodness_of_fit`.
+    seed, dependence
+        How the goodness of fit is simulated, see :func:`goodness_of_fit`.
 
     Returns
     -------
     The :class:`Fragility`.
     """
     fit = fit_lognormal(outcomes, link=link)
-    limits = interval_over_motions(
-        outcomes, method=interval, level=level, replicates=replicates, seed=seed, link=link
-    )
+    limits = interval_over_motions(outcomes, level=level, link=link)
     return Fragility(fit, limits, checks_of_verdicts(outcomes, fit, limits, dependence, seed))
 
 
@@ -183,20 +170,10 @@ def fit_stripes(
 
     Parameters
     ----------
-    table
-        One row a test.
-    im
-        Column of the intensity measure.
-    overturned
-        Column with the verdicts.
+    table, im, overturned, motion, event, level
+        As of :func:`fit_cloud`.
     trials
         Column with the number of tests in a row; None where a row is one test.
-    motion
-        Column with the name of the motion; None where tests have none.
-    event
-        Column with the name of the event; None where it is not known.
-    level
-        Of the confidence limits [-], 0 to 1.
 
     Returns
     -------
@@ -211,7 +188,7 @@ def fit_stripes(
 
 @named_keywords
 def fit_incremental(
-    sweep: pd.DataFrame,
+    sweep: pd.DataFrame | SweepData,
     *,
     amplitude: str = "amplitude_g",
     motion: str = "motion",
@@ -223,7 +200,7 @@ def fit_incremental(
     Parameters
     ----------
     sweep
-        One row per motion and amplitude, with ``overturned``; one body.
+        One row per motion and amplitude, with ``overturned``; or the sweeps in another form. One body.
     amplitude, motion, event
         Names of the columns.
     level
@@ -233,34 +210,8 @@ def fit_incremental(
     -------
     The :class:`IncrementalFragility`.
     """
-    keys = [motion] if event is None else [motion, event]
-    windows = survival_windows(sweep, amplitude=amplitude, by=keys)
-    outcomes = outcomes_from_table(sweep, amplitude, motion=motion, event=event)
-    return incremental_of(
-        windows, outcomes, amplitude=amplitude, motion=motion, event=event, level=level
-    )
-
-
-def incremental_of(
-    windows: pd.DataFrame,
-    outcomes: Outcomes,
-    *,
-    amplitude: str = "amplitude_g",
-    motion: str = "motion",
-    event: str | None = None,
-    level: float = 0.90,
-) -> IncrementalFragility:
-    """Fit as :func:`fit_incremental` does, to survival windows and verdicts.
-
-    Parameters
-    ----------
-    windows
-        Of the sweeps by ``motion`` and ``event``.
-    outcomes
-        All verdicts with the amplitude.
-    amplitude, motion, event, level
-        As of :func:`fit_incremental`.
-    """
+    data = TableSweep(sweep, event, motion) if isinstance(sweep, pd.DataFrame) else sweep
+    windows = data.windows(amplitude, [motion] if event is None else [motion, event])
     readings = {}
     for reading in ("first", "always"):
         brackets = brackets_from_table(
@@ -277,7 +228,7 @@ def incremental_of(
     return IncrementalFragility(
         readings["first"],
         readings["always"],
-        fragility_of(outcomes, level=level),
+        fragility_of(data.outcomes(amplitude), level=level),
         windows,
         share,
     )
@@ -302,12 +253,8 @@ def fit_step_tests(
         Column of the largest amplitude survived.
     upper
         Column of the amplitude that overturned.
-    motion
-        Column with the name of the motion; None where tests have none.
-    event
-        Column with the name of the event; None where it is not known.
-    level
-        Of the confidence limits [-], 0 to 1.
+    motion, event, level
+        As of :func:`fit_cloud`.
 
     Returns
     -------

@@ -11,7 +11,6 @@ from scipy import special, stats
 
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.censored import Brackets, bracket_log_scores
-from rockfrag.fragility.intervals import bootstrap_draws
 from rockfrag.fragility.observations import Floats
 from rockfrag.fragility.pooling import MOST_VALUES, cells, counts
 
@@ -112,6 +111,8 @@ def share_best(scores: Floats, replicates: int, seed: int) -> Floats:
     scores
         Log scores, shape (measures, groups).
     """
-    drawn = bootstrap_draws(scores.shape[1], replicates, seed)
+    groups = scores.shape[1]
+    rng = np.random.default_rng(seed)
+    drawn = rng.multinomial(groups, np.full(groups, 1.0 / groups), size=replicates)
     winner = (scores @ drawn.T).argmax(axis=0)
     return np.asarray(np.bincount(winner, minlength=len(scores)) / replicates)

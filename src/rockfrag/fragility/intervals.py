@@ -1,9 +1,8 @@
 """Confidence intervals by resampling whole motions or events, never amplitudes of a motion.
 
-Three methods: the percentile and the BCa bootstrap (Efron, 1987, J. Am. Stat. Assoc. 82: 171-185)
-and the delete-one-group jackknife with Student's t. ``docs/validation-fragility.md`` shows how
-often each covers the truth for few and many groups; the automatic choice and its warnings follow
-from that table.
+The method is the delete-one-group jackknife with Student's t (Tukey, 1958, Ann. Math. Stat. 29: 614).
+``docs/validation-fragility.md`` shows how often it covers the truth for few and many groups, and that a
+bootstrap covers less often.
 """
 
 from collections.abc import Callable
@@ -24,8 +23,6 @@ from rockfrag.short_repr import short_repr
 
 FEWEST_GROUPS = 4
 """Fewest groups for which the jackknife's coverage was validated."""
-FEWEST_BOOTSTRAP_GROUPS = 100
-"""Below this the bootstrap warns: in the validation it was too narrow with 4 and with 22 groups."""
 
 MOST_BLOCKS = 100
 """More groups than this are left out in random blocks, which costs little and changes little."""
@@ -33,7 +30,6 @@ MOST_BLOCKS = 100
 BETA_POWER = -0.1
 """Power of β that is jackknifed. With ln β limits held in 86 % where events dominate, see the validation."""
 
-IntervalMethod = Literal["percentile", "bca", "jackknife"]
 Over = Literal["motion", "event"]
 WeightedFit = Callable[[Floats], Floats]
 """Turns weights of the groups, shape (batch, groups), into (intercept, slope), shape (batch, 2)."""
@@ -50,8 +46,8 @@ class Interval:
     level
         Two-sided confidence level, for example 0.90.
     method
-        ``percentile``, ``bca`` or ``jackknife``; ``common step`` where all capacities lie in one step
-        (:func:`step_limits`); or ``none``.
+        ``jackknife``; ``common step`` where all capacities lie in one step (:func:`step_limits`); or
+        ``none``.
     groups
         Number of independent groups that were resampled.
     over
@@ -59,7 +55,7 @@ class Interval:
     estimate
         Intercept and slope of the fit that the interval belongs to.
     replicates
-        Intercept and slope of each replicate, shape (replicates, 2).
+        Intercept and slope without each group (or block of groups), shape (replicates, 2).
     link
         ``probit`` or ``logit``.
     warnings
@@ -86,16 +82,10 @@ class Interval:
             return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
         predictors = self.replicates[:, :1] + self.replicates[:, 1:] * x
         centre = self.estimate[0] + self.estimate[1] * x
-        if self.method == "jackknife":
-            half = student(self.level, len(self.replicates)) * jackknife_error(predictors)
-            half = np.where(np.isfinite(half), half, np.inf)
-            lower, upper = centre - half, centre + half
-        else:
-            tail = 0.5 - 0.5 * self.level
-            lower = _quantile(predictors, tail, -np.inf)
-            upper = _quantile(predictors, 1.0 - tail, np.inf)
+        half = student(self.level, len(self.replicates)) * jackknife_error(predictors)
+        half = np.where(np.isfinite(half), half, np.inf)
         function = special.ndtr if self.link == "probit" else special.expit
-        return np.asarray(function(lower)), np.asarray(function(upper))
+        return np.asarray(function(centre - half)), np.asarray(function(centre + half))
 
 
 def population(motions: int, events: int, over: Over | None) -> tuple[Over, tuple[str, ...]]:
@@ -108,21 +98,6 @@ def population(motions: int, events: int, over: Over | None) -> tuple[Over, tupl
             "motions of these events only, and were too narrow for other events in the validation.",
         )
     return over, ()
-
-
-def _few_groups(method: IntervalMethod, groups: int, over: Over) -> tuple[str, ...]:
-    """Warn where the validation found, or did not test, too low a coverage."""
-    if groups < FEWEST_GROUPS:
-        return (
-            f"With {groups} {over}s the coverage of the interval was not validated "
-            f"({FEWEST_GROUPS} are the fewest that were).",
-        )
-    if method != "jackknife" and groups < FEWEST_BOOTSTRAP_GROUPS:
-        return (
-            f"With {groups} {over}s a {method} bootstrap covers less often than it says (instead "
-            "of 90 %: 36 to 77 % with 4 groups, 77 to 86 % with 22); use the jackknife.",
-        )
-    return ()
 
 
 def verdict_fitter(
@@ -165,16 +140,9 @@ def verdict_fitter(
 
 
 def interval_over_motions(
-    outcomes: Outcomes,
-    *,
-    over: Over | None = None,
-    method: IntervalMethod = "jackknife",
-    level: float = 0.90,
-    replicates: int = 1000,
-    seed: int = 0,
-    link: Link = "probit",
+    outcomes: Outcomes, *, over: Over | None = None, level: float = 0.90, link: Link = "probit"
 ) -> Interval:
-    """Confidence limits of a curve fitted to verdicts, by resampling whole motions or events.
+    """Confidence limits of a curve fitted to verdicts, by leaving out whole motions or events.
 
     Parameters
     ----------
@@ -183,12 +151,8 @@ def interval_over_motions(
     over
         ``motion`` answers for other motions of the same events, ``event`` for other events; None
         takes events where they are known and some have several motions.
-    method
-        ``jackknife`` held its level from 4 groups up; ``percentile`` and ``bca`` warn below 100.
     level
         Of the confidence limits [-], 0 to 1.
-    replicates, seed
-        Of the bootstrap; the jackknife needs neither.
     link
         ``probit`` (lognormal curve) or ``logit``.
 
@@ -200,17 +164,7 @@ def interval_over_motions(
     labels = outcomes.motion if over == "motion" else outcomes.event
     fit = verdict_fitter(outcomes, labels, link)[0]
     groups = outcomes.n_motions if over == "motion" else outcomes.n_events
-    found = resampled_interval(
-        fit,
-        groups,
-        over=over,
-        notes=notes,
-        method=method,
-        level=level,
-        replicates=replicates,
-        seed=seed,
-        link=link,
-    )
+    found = resampled_interval(fit, groups, over=over, notes=notes, level=level, link=link)
     apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0)[0]
     if not apart:
         return found
@@ -255,22 +209,13 @@ def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
     )
 
 
-def bootstrap_draws(groups: int, replicates: int, seed: int) -> NDArray[np.int64]:
-    """How often each group is in each bootstrap sample, shape (replicates, groups)."""
-    shares = np.full(groups, 1.0 / groups)
-    return np.random.default_rng(seed).multinomial(groups, shares, size=replicates)
-
-
 def resampled_interval(
     fit: WeightedFit,
     groups: int,
     *,
     over: Over = "motion",
     notes: tuple[str, ...] = (),
-    method: IntervalMethod = "jackknife",
     level: float = 0.90,
-    replicates: int = 1000,
-    seed: int = 0,
     link: Link = "probit",
 ) -> Interval:
     """Confidence limits of θ and β from a function that refits reweighted groups.
@@ -279,52 +224,50 @@ def resampled_interval(
     ----------
     fit, groups
         As :func:`verdict_fitter` returns them.
+    over, level, link
+        As of :func:`interval_over_motions`.
     notes
         Warnings that the interval carries on.
+
+    Returns
+    -------
+    The :class:`Interval`.
+
+    Raises
+    ------
+    InputError
+        If the level does not lie between 0 and 1.
     """
     if not 0.0 < level < 1.0:
         raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
     estimate = fit(np.ones((1, groups)))[0]
-    usable = np.isfinite(estimate).all() and estimate[1] >= LEAST_SLOPE
-    if groups < 2 or not usable:
-        reason = (
-            f"One {over} gives no interval for other {over}s."
-            if groups < 2
-            else "There is no curve, so there is no interval."
+    centre = (float(estimate[0]), float(estimate[1]))
+
+    def without_limits(reason: str) -> Interval:
+        nan = (float("nan"), float("nan"))
+        said = (*notes, reason)
+        return Interval(nan, nan, level, "none", groups, over, centre, np.empty((0, 2)), link, said)
+
+    if groups < 2:
+        return without_limits(f"One {over} gives no interval for other {over}s.")
+    if not np.isfinite(estimate).all() or estimate[1] < LEAST_SLOPE:
+        return without_limits("There is no curve, so there is no interval.")
+    if groups < FEWEST_GROUPS:
+        few = (
+            f"With {groups} {over}s the coverage of the interval was not validated "
+            f"({FEWEST_GROUPS} are the fewest that were)."
         )
-        return _none(estimate, level, groups, over, link, (*notes, reason))
-    notes = (*notes, *_few_groups(method, groups, over))
-    deleted = fit(all_but_one(groups, seed))
+        notes = (*notes, few)
+    deleted = fit(all_but_one(groups))
     if np.ptp(deleted, axis=0).max() < 1e-9:
-        reason = f"All {over}s agree within the steps of the amplitude, which gives no limits."
-        return _none(estimate, level, groups, over, link, (*notes, reason))
+        return without_limits(
+            f"All {over}s agree within the steps of the amplitude, which gives no limits."
+        )
     own = float(_beta(estimate[None, :])[0])
-    if method == "jackknife":
-        theta, beta = _jackknife_limits(estimate, deleted, level)
-        # to more digits than two ways of fitting agree to
-        beta = (min(beta[0], own * (1 - 1e-9)), max(beta[1], own * (1 + 1e-9)))
-        return Interval(
-            theta, beta, level, method, groups, over, _pair(estimate), deleted, link, notes
-        )
-    draws = bootstrap_draws(groups, replicates, seed)
-    # few groups have few different samples (35 of four), each fitted once
-    different, which = np.unique(draws, axis=0, return_inverse=True)
-    again = fit(different.astype(np.float64))[which]
-    limits = []
-    for k, of in enumerate((_log_theta, _beta)):
-        values, centre, left_out = of(again), of(estimate[None, :])[0], of(deleted)
-        tails = (0.5 - 0.5 * level, 0.5 + 0.5 * level)
-        if method == "bca":
-            tails = _bca_tails(values, float(centre), left_out, level)
-        pair = (
-            float(_quantile(values[:, None], tails[0], -np.inf if k == 0 else 0.0)[0]),
-            float(_quantile(values[:, None], tails[1], np.inf)[0]),
-        )
-        limits.append(pair)
-    theta = (float(np.exp(limits[0][0])), float(np.exp(limits[0][1])))
-    return Interval(
-        theta, limits[1], level, method, groups, over, _pair(estimate), again, link, notes
-    )
+    theta, beta = _jackknife_limits(estimate, deleted, level)
+    # to more digits than two ways of fitting agree to
+    beta = (min(beta[0], own * (1 - 1e-9)), max(beta[1], own * (1 + 1e-9)))
+    return Interval(theta, beta, level, "jackknife", groups, over, centre, deleted, link, notes)
 
 
 def _log_theta(coefficients: Floats) -> Floats:
@@ -343,35 +286,7 @@ def _beta(coefficients: Floats) -> Floats:
     return np.asarray(np.where(np.isnan(slope), np.nan, value))
 
 
-def _quantile(values: Floats, share: float, unknown: float) -> Floats:
-    """Quantile along the first axis, with NaN counted on the unfavourable side."""
-    filled = np.where(np.isnan(values), unknown, values)
-    ordered = np.sort(filled, axis=0)
-    position = int(np.clip(np.floor(share * len(ordered)), 0, len(ordered) - 1))
-    if share > 0.5:
-        position = int(np.clip(np.ceil(share * len(ordered)) - 1, 0, len(ordered) - 1))
-    return np.asarray(ordered[position])
-
-
-def _bca_tails(
-    values: Floats, centre: float, left_out: Floats, level: float
-) -> tuple[float, float]:
-    """Shares of the bootstrap distribution that the BCa interval reads (Efron, 1987, eq. 3.2)."""
-    known = values[~np.isnan(values)]
-    below = (np.sum(known < centre) + 0.5 * np.sum(known == centre)) / max(known.size, 1)
-    bias = stats.norm.ppf(np.clip(below, 0.5 / values.size, 1.0 - 0.5 / values.size))
-    finite = left_out[np.isfinite(left_out)]
-    offset = finite.mean() - finite if finite.size else np.zeros(1)
-    spread = np.sum(offset**2) ** 1.5
-    acceleration = np.sum(offset**3) / (6.0 * spread) if spread > 0 else 0.0
-    tails = []
-    for side in (-1.0, 1.0):
-        z = bias + side * stats.norm.ppf(0.5 + 0.5 * level)
-        tails.append(float(stats.norm.cdf(bias + z / (1.0 - acceleration * z))))
-    return tails[0], tails[1]
-
-
-def all_but_one(groups: int, seed: int) -> Floats:
+def all_but_one(groups: int, seed: int = 0) -> Floats:
     """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups."""
     if groups <= MOST_BLOCKS:
         return np.asarray(1.0 - np.eye(groups))
@@ -426,15 +341,3 @@ def _jackknife_limits(
     lower = (centre + half_beta) ** (1 / BETA_POWER)
     upper = (centre - half_beta) ** (1 / BETA_POWER) if centre > half_beta else np.inf
     return theta, (float(lower), float(upper))
-
-
-def _pair(coefficients: Floats) -> tuple[float, float]:
-    return float(coefficients[0]), float(coefficients[1])
-
-
-def _none(
-    estimate: Floats, level: float, groups: int, over: str, link: Link, notes: tuple[str, ...]
-) -> Interval:
-    nan = (float("nan"), float("nan"))
-    empty = np.empty((0, 2))
-    return Interval(nan, nan, level, "none", groups, over, _pair(estimate), empty, link, notes)

@@ -82,11 +82,6 @@ class FragilityFit:
     __repr__ = short_repr
 
     @property
-    def se(self) -> tuple[float, float]:
-        """Standard errors of ln θ and of β."""
-        return self.se_log_theta, self.se_beta
-
-    @property
     def se_log_theta(self) -> float:
         """Standard error of ln θ."""
         return float(np.sqrt(self.covariance[0][0]))

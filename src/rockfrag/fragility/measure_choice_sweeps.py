@@ -33,7 +33,7 @@ from rockfrag.fragility.sweeps import scale_power, with_measures
 
 
 def recommend_sweep_measure(
-    sweep: pd.DataFrame,
+    sweep: pd.DataFrame | SweepData,
     measures: pd.DataFrame,
     columns: Sequence[str],
     *,
@@ -49,7 +49,7 @@ def recommend_sweep_measure(
     ----------
     sweep
         One row per motion and amplitude of one body, with ``motion``, ``amplitude_g``,
-        ``overturned``.
+        ``overturned``; or sweeps in another form that know the measures.
     measures
         One row per motion as recorded, with ``name`` and ``pga_g``.
     columns
@@ -76,39 +76,6 @@ def recommend_sweep_measure(
     """
     if not columns:
         raise InputError("columns: name at least one intensity measure.")
-    data = TableSweep(with_measures(sweep, measures, columns), event)
-    return recommend_measure_of(
-        data,
-        measures,
-        columns,
-        given=given,
-        event=event,
-        level=level,
-        replicates=replicates,
-        seed=seed,
-    )
-
-
-def recommend_measure_of(
-    sweep: SweepData,
-    measures: pd.DataFrame,
-    columns: Sequence[str],
-    *,
-    given: Sequence[str] = (),
-    event: str | None = "event",
-    level: float = 0.90,
-    replicates: int = 200,
-    seed: int = 0,
-) -> MeasureChoice:
-    """Compare as :func:`recommend_sweep_measure` does, on sweeps in any form.
-
-    Parameters
-    ----------
-    sweep
-        Sweeps of one body.
-    measures, columns, given, event, level, replicates, seed
-        As of :func:`recommend_sweep_measure`.
-    """
     powers = {column: scale_power(column) for column in columns}
     fixed = [column for column, power in powers.items() if power == 0]
     if fixed:
@@ -116,8 +83,9 @@ def recommend_measure_of(
             f"measure {fixed[0]!r} does not grow with the amplitude, so no amplitude overturns by "
             "it; name it among the given columns instead."
         )
-    keys = ["motion"] if event is None else ["motion", event]
-    windows = sweep.windows("amplitude_g", keys)
+    if isinstance(sweep, pd.DataFrame):
+        sweep = TableSweep(with_measures(sweep, measures, columns), event)
+    windows = sweep.windows("amplitude_g", ["motion"] if event is None else ["motion", event])
     amplitude = brackets_from_table(
         windows, lower="first_lower", upper="first_upper", event=event, measure="amplitude_g"
     )

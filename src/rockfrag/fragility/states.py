@@ -114,12 +114,8 @@ def fit_three_states(
         Column of the intensity measure of the curves.
     acceleration
         Column of the peak acceleration of the test [g].
-    motion
-        Column with the name of the motion; None where tests have none.
-    event
-        Column with the name of the event; None where it is not known.
-    level
-        Of the confidence limits [-], 0 to 1.
+    motion, event, level
+        As of :func:`rockfrag.fragility.fit_cloud`.
 
     Returns
     -------

@@ -32,10 +32,13 @@ class TableSweep:
         With ``motion``, ``overturned``, the amplitude and the measures.
     event
         Column of the earthquake; None where motions have none.
+    motion
+        Column of the motion.
     """
 
     table: pd.DataFrame
     event: str | None = "event"
+    motion: str = "motion"
 
     def windows(self, amplitude: str, by: list[str]) -> pd.DataFrame:
         """See :class:`SweepData`."""
@@ -43,8 +46,10 @@ class TableSweep:
 
     def outcomes(self, column: str) -> Outcomes:
         """See :class:`SweepData`."""
-        return outcomes_from_table(self.table, column, event=self.event, source="sweep")
+        return outcomes_from_table(
+            self.table, column, motion=self.motion, event=self.event, source="sweep"
+        )
 
     def motions(self) -> pd.DataFrame:
         """See :class:`SweepData`."""
-        return self.table.drop_duplicates("motion")
+        return self.table.drop_duplicates(self.motion)

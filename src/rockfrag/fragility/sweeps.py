@@ -11,7 +11,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.drawn_curves import curve_points, share_points, verdict_bins
-from rockfrag.fragility.estimators import Fragility, fragility_of, incremental_of
+from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.observations import positive
 from rockfrag.fragility.sweep_data import SweepData, TableSweep
 from rockfrag.motions.declared import declared, measure_of
@@ -243,41 +243,6 @@ def fragility_table(
         :class:`rockfrag.fragility.shares.Shares`); ``beta_statistical`` and ``beta_total`` (with the
         model's uncertainty, :mod:`rockfrag.fragility.curve_facts`); ``record_set_sha256``, ``warnings``.
     """
-    return fragility_tables(
-        sweep, columns, by=by, event=event, record_set=record_set, level=level
-    ).curves
-
-
-def fragility_tables(
-    sweep: pd.DataFrame,
-    columns: Sequence[str] = ("amplitude_g",),
-    *,
-    by: Sequence[str] = ("configuration",),
-    event: str | None = "event",
-    record_set: str = "",
-    level: float = 0.90,
-) -> FragilityTables:
-    """Fit as :func:`fragility_table` does, and keep the points of the curves for drawing too.
-
-    Parameters
-    ----------
-    sweep
-        One row an amplitude, of every motion and configuration.
-    columns
-        Columns of the intensity measures.
-    by
-        Columns whose values have a curve of their own each.
-    event
-        Column with the name of the event; None where it is not known.
-    record_set
-        Digest of the motions.
-    level
-        Of the confidence limits [-], 0 to 1.
-
-    Returns
-    -------
-    The :class:`FragilityTables`.
-    """
     for column in by:
         if column not in sweep:
             raise InputError(f"sweep: there is no column {column!r}; correct the name.")
@@ -285,7 +250,7 @@ def fragility_tables(
         (dict(zip(by, key, strict=True)), TableSweep(part, event))
         for key, part in sweep.groupby(list(by), sort=True)
     )
-    return tables_of_sweeps(parts, columns, event=event, record_set=record_set, level=level)
+    return tables_of_sweeps(parts, columns, event=event, record_set=record_set, level=level).curves
 
 
 def tables_of_sweeps(
@@ -296,26 +261,26 @@ def tables_of_sweeps(
     record_set: str = "",
     level: float = 0.90,
 ) -> FragilityTables:
-    """Fit as :func:`fragility_tables` does, to sweeps in any form, each with the labels of its curves.
+    """Fit as :func:`fragility_table` does, to sweeps in any form, and keep what figures draw too.
 
     Parameters
     ----------
     sweeps
-        Labels and sweeps of each configuration.
+        Labels of the curves and sweeps of each configuration.
     columns, event, record_set, level
-        As of :func:`fragility_tables`.
+        As of :func:`fragility_table`.
+
+    Returns
+    -------
+    The :class:`FragilityTables`.
     """
     rows: list[dict[str, Any]] = []
     bands, bins, shares = [], [], []
-    keys = ["motion"] if event is None else ["motion", event]
     for labels, sweep in sweeps:
         for column in columns:
             outcomes = sweep.outcomes(column)
             if column in ("amplitude_g", "pga_g"):
-                windows = sweep.windows(column, keys)
-                result = incremental_of(
-                    windows, outcomes, amplitude=column, event=event, level=level
-                )
+                result = fit_incremental(sweep, amplitude=column, event=event, level=level)
                 readings = {
                     "mean_probability": result.probability,
                     "first_overturning": result.first,

@@ -58,6 +58,10 @@ class Interaction:
     kept: bool
 
 
+NOT_TRIED = Interaction(np.nan, np.nan, np.nan, kept=False)
+"""Of tests that allow no test of an interaction, or where none was asked for."""
+
+
 @dataclass(frozen=True)
 class VectorFragility:
     """P(overturn | IM1, IM2) with limits over earthquakes.
@@ -182,6 +186,7 @@ def fit_vector(
     earthquake: str | None = "event",
     level: float = 0.90,
     source: str = "table",
+    try_interaction: bool = True,
 ) -> VectorFragility:
     """Fit the probability of overturning in two intensity measures.
 
@@ -199,6 +204,8 @@ def fit_vector(
         Two-sided confidence level of limits [-].
     source
         What messages call the table.
+    try_interaction
+        Whether to test an interaction, which takes most of the time; without it none is kept.
 
     Returns
     -------
@@ -216,7 +223,9 @@ def fit_vector(
     logs = [np.log(positive(table, column, source)) for column in measures]
     outcome = read_outcomes(table, overturned, source)
     group = pd.factorize(pd.Series(labels(table, earthquake, source)))[0]
-    interaction = _interaction(table, plain, logs, outcome, group, overturned, source)
+    interaction = NOT_TRIED
+    if try_interaction:
+        interaction = _interaction(table, plain, logs, outcome, group, overturned, source)
     surface = plain
     if interaction.kept:
         surface = fit_surface(
@@ -262,10 +271,9 @@ def _interaction(
     source: str,
 ) -> Interaction:
     """Test whether the product of the logarithms adds to the fit without it."""
-    nothing = Interaction(np.nan, np.nan, np.nan, kept=False)
     design = design_of(logs, interaction=True)
     if np.linalg.matrix_rank(design) < 4 or "penalised" in plain.method:
-        return nothing
+        return NOT_TRIED
     p = interaction_p(np.array(plain.coefficients), design, outcome, group)
     full = fit_surface(
         table, plain.measures, interaction=True, overturned=overturned, source=source

@@ -33,8 +33,6 @@ from .intensity import (
     predominant_period as predominant_period,
     significant_duration as significant_duration,
     spectral_acceleration as spectral_acceleration,
-    spectral_displacement as spectral_displacement,
-    spectral_velocity as spectral_velocity,
     uplift_ratio as uplift_ratio,
     velocity_ratio as velocity_ratio,
 )
@@ -52,7 +50,6 @@ from .processing import (
 )
 from .pulse_extraction import (
     StrongestPulse as StrongestPulse,
-    pulse_motion as pulse_motion,
     strongest_pulse as strongest_pulse,
 )
 from .pulses import (
@@ -73,8 +70,6 @@ from .rotation import (
     rotate as rotate,
     rotate_to_azimuth as rotate_to_azimuth,
     rotd as rotd,
-    rotd50 as rotd50,
-    rotd100 as rotd100,
     stronger_direction as stronger_direction,
 )
 from .scaling import (

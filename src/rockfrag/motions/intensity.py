@@ -315,58 +315,6 @@ def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
 
-def spectral_velocity(motion: Motion, period: float, damping: float = 0.05) -> float:
-    """Spectral velocity Sv(T), peak relative velocity [m/s].
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    period
-        Natural period [s], positive.
-    damping
-        Fraction of critical damping [-].
-
-    Returns
-    -------
-    Spectral velocity [m/s].
-
-    Raises
-    ------
-    InputError
-        If the period is not positive or the damping negative.
-    """
-    from rockfrag.motions.spectra import response_spectrum
-
-    return float(response_spectrum(motion, [period], damping).velocity[0])
-
-
-def spectral_displacement(motion: Motion, period: float, damping: float = 0.05) -> float:
-    """Spectral displacement Sd(T), peak relative displacement [m].
-
-    Parameters
-    ----------
-    motion
-        Motion to be measured.
-    period
-        Natural period [s], positive.
-    damping
-        Fraction of critical damping [-].
-
-    Returns
-    -------
-    Spectral displacement [m].
-
-    Raises
-    ------
-    InputError
-        If the period is not positive or the damping negative.
-    """
-    from rockfrag.motions.spectra import response_spectrum
-
-    return float(response_spectrum(motion, [period], damping).displacement[0])
-
-
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 241)
 """Periods of the Housner intensity [s]."""
 

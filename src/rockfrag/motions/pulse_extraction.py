@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from rockfrag.motions.pulses import mavroeidis_papageorgiou
 from rockfrag.motions.sliding_pulse import best_place, best_pulse
 from rockfrag.records.integration import integrate
 from rockfrag.records.motion import Motion
@@ -111,23 +110,6 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
         time=middle * motion.dt,
         explained=gain / float(energy[-1]),
     )
-
-
-def pulse_motion(pulse: StrongestPulse, dt: float) -> Motion:
-    """Return an extracted pulse as an input motion of its own; it starts where the pulse does.
-
-    Parameters
-    ----------
-    pulse
-        Pulse as :func:`strongest_pulse` returns it.
-    dt
-        Longest sampling interval [s].
-
-    Returns
-    -------
-    The :class:`Motion` of the pulse alone.
-    """
-    return mavroeidis_papageorgiou(pulse.velocity, pulse.period, pulse.cycles, pulse.phase_deg, dt)
 
 
 def _periods(motion: Motion) -> Floats:

@@ -77,54 +77,6 @@ def rotd(
     return float(np.percentile(values, percentile))
 
 
-def rotd50(first: Motion, second: Motion, measure: Callable[[Motion], float]) -> float:
-    """Median over all directions of a measure; see :func:`rotd`.
-
-    Parameters
-    ----------
-    first
-        First of two perpendicular components, sampled at the same times.
-    second
-        Second component.
-    measure
-        Any measure of one component.
-
-    Returns
-    -------
-    The median value over all directions, in the unit of the measure.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together.
-    """
-    return rotd(first, second, measure, 50.0)
-
-
-def rotd100(first: Motion, second: Motion, measure: Callable[[Motion], float]) -> float:
-    """Largest value over all directions of a measure; see :func:`rotd`.
-
-    Parameters
-    ----------
-    first
-        First of two perpendicular components, sampled at the same times.
-    second
-        Second component.
-    measure
-        Any measure of one component.
-
-    Returns
-    -------
-    The largest value over all directions, in the unit of the measure.
-
-    Raises
-    ------
-    InputError
-        If the components do not fit together.
-    """
-    return rotd(first, second, measure, 100.0)
-
-
 def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Motion:
     """Component of a horizontal motion in the direction of an azimuth.
 

@@ -55,11 +55,11 @@ def measure_choice(
     :class:`rockfrag.fragility.measure_choice.MeasureChoice`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.
     """
-    from rockfrag.fragility.measure_choice_sweeps import recommend_measure_of
+    from rockfrag.fragility.measure_choice_sweeps import recommend_sweep_measure
 
     parts = []
     for name, sweep in sweeps.items():
-        choice = recommend_measure_of(
+        choice = recommend_sweep_measure(
             sweep, measures, candidates(), given=GIVEN, level=level, seed=seed
         )
         table = choice.table.copy()

@@ -1,0 +1,166 @@
+"""A scanned object as it may stand: drawn ways, in the order of the angle at which they balance.
+
+Which points carry, how far in edges carry and where the object faces are not known; each has a distribution
+(:mod:`rockfrag.campaign.standing`) unless it was measured.  The way in the middle stands for the object, and each
+unknown moves along the order by its part of the variance of normal scores (Saltelli et al. 2008, first-order
+effects; of the order, since a foot that carries from some tolerance on makes the angle jump).
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from scipy.stats import norm
+
+from rockfrag.assess.assumed import Assumption
+from rockfrag.campaign.standing import Unknown, lognormal, unknowns_of, ways_to_stand
+from rockfrag.campaign.trials import block_of
+from rockfrag.fragility.model_error import SCAN
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import Shape
+
+SOURCE_OF = {
+    "contact_tolerance_mm": "contact",
+    "edge_retreat_mm": "retreat",
+    "direction_deg": "facing",
+}
+"""Sources of uncertainty by the unknown."""
+
+WAYS = 256
+"""Ways to stand that are drawn."""
+
+KNOWN_CONTACT_SPREAD = 0.2
+"""Relative standard deviation of a contact tolerance that was given: of ours."""
+
+_BINS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """A scan, and the ways in which it may stand.
+
+    Attributes
+    ----------
+    shape
+        The scan.
+    ways
+        A row each, by rising angle at which it balances (``alpha_deg``).
+    parts
+        Part of the variance of the order by source; the sum is 1.
+    """
+
+    shape: Shape
+    ways: pd.DataFrame
+    parts: Mapping[str, float]
+
+    def row_at(self, fraction: float) -> Mapping[str, float]:
+        """The way below which a fraction of all balances.
+
+        Parameters
+        ----------
+        fraction
+            From 0 to 1.
+        """
+        place = min(int(fraction * len(self.ways)), len(self.ways) - 1)
+        return {str(key): float(value) for key, value in self.ways.iloc[place].items()}
+
+    def block(self, fraction: float = 0.5) -> Block:
+        """The planar block of such a way.
+
+        Parameters
+        ----------
+        fraction
+            As in :meth:`row_at`.
+        """
+        return block_of(self.shape, self.row_at(fraction))
+
+    def sides(self) -> dict[str, tuple[float, float, float]]:
+        """Places of each source's standard deviation to both sides, and half their distance in ln angle."""
+        found = {}
+        for name, part in self.parts.items():
+            low, high = norm.cdf(-math.sqrt(part)), norm.cdf(math.sqrt(part))
+            angles = [self.row_at(at)["alpha_deg"] for at in (low, high)]
+            found[name] = (float(low), float(high), math.log(angles[1] / angles[0]) / 2)
+        return found
+
+
+def make_scan(
+    shape: Shape, mesh: Mapping[str, Any], contact_spread: float | None
+) -> tuple[Scan, list[Assumption]]:
+    """Draw the ways in which a scan may stand.
+
+    Parameters
+    ----------
+    shape
+        The scan.
+    mesh
+        What was given of it: ``contact_tolerance_m``, ``edge_retreat_m``, ``direction_deg``, ``scan_accuracy_m``.
+    contact_spread
+        Relative standard deviation of the contact tolerance that was stated; None if none was.
+
+    Returns
+    -------
+    tuple
+        The scan, and what was assumed of it.
+
+    Raises
+    ------
+    InputError
+        If it cannot stand.
+    """
+    accuracy = mesh.get("scan_accuracy_m")
+    unknowns = unknowns_of(SCAN, None if accuracy is None else 1e3 * accuracy)
+    del unknowns["restitution_ratio"]
+    given = {
+        "edge_retreat_mm": _in_mm(mesh.get("edge_retreat_m")),
+        "direction_deg": mesh.get("direction_deg"),
+    }
+    tolerance = _in_mm(mesh.get("contact_tolerance_m"))
+    if tolerance is not None or contact_spread is not None:
+        unknowns["contact_tolerance_mm"] = _about(
+            unknowns["contact_tolerance_mm"], tolerance, contact_spread
+        )
+    exact = {name: float(value) for name, value in given.items() if value is not None}
+    # what is wrong with the mesh is said of its middle tolerance
+    shape.contact_polygon(unknowns["contact_tolerance_mm"].quantile(0.5) / 1e3)
+    open_ones = {name: one for name, one in unknowns.items() if name not in exact}
+    ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
+    ways = ways.sort_values("alpha_deg", kind="stable", ignore_index=True)
+    assumed = [
+        Assumption(
+            f"{one.words} was not measured",
+            f"{one.words.capitalize()}: {one.source}.",
+            (SOURCE_OF[name],),
+        )
+        for name, one in open_ones.items()
+        if name != "contact_tolerance_mm" or tolerance is None
+    ]
+    return Scan(shape, ways, _parts(ways, list(open_ones))), assumed
+
+
+def _in_mm(metres: float | None) -> float | None:
+    return None if metres is None else 1e3 * metres
+
+
+def _about(unknown: Unknown, tolerance: float | None, spread: float | None) -> Unknown:
+    """A contact tolerance that was given, or whose spread was."""
+    middle = unknown.quantile(0.5) if tolerance is None else tolerance
+    known = KNOWN_CONTACT_SPREAD if spread is None else spread
+    return Unknown(unknown.words, unknown.source, partial(lognormal, middle, known))
+
+
+def _parts(ways: pd.DataFrame, names: list[str]) -> dict[str, float]:
+    """Part of each unknown in the variance of the order: that of its means in bins of equally many ways."""
+    values = norm.ppf((ways["alpha_deg"].rank(method="first").to_numpy() - 0.5) / len(ways))
+    found = {}
+    for name in names:
+        bins = (ways[name].rank(method="first", pct=True).to_numpy() * _BINS * 0.999999).astype(int)
+        means = np.array([values[bins == k].mean() for k in range(_BINS)])
+        # means of few ways differ by chance too
+        found[SOURCE_OF[name]] = max(0.0, float(means.var() - values.var() * _BINS / len(values)))
+    total = sum(found.values())
+    return {name: value / total for name, value in found.items() if value > 0}
